@@ -31,13 +31,23 @@ PATIENCE = 60.0
 """Seconds until an agent that decides nothing has failed."""
 
 UTTERANCES = (
-    "hello", "how are you", "what is your name", "i live in a small house by the sea", "do you like games?",
-    "where do you live", "what is the capital of peru", "that is very nice of you", "will it rain today",
-    "tell me something", "my sister plays the piano", "how old are you?", "why is the sky blue", "no, not really",
-    "i work as a baker in bremen", "what can you do", "who wrote this?", "i am a bit tired", "yes, of course",
-    "what are you up to today", "how many people live in france?", "thank you!", "do you have any friends",
-    "i would like to go to the cinema tomorrow evening",
+    "hello {name}", "how are you, {name}", "what is your name? i am {name}", "i live in a small house near {town}",
+    "do you like {thing}?", "where do you live, near {town}?", "what is the capital of {country}",
+    "that is very nice of you, {name}", "will it rain in {town} today", "tell me something about {thing}",
+    "my sister {name} plays the piano", "how old are you, {name}?", "why is {thing} so popular", "no, not really, {name}",
+    "i work as a baker in {town}", "what can you do with {thing}", "who wrote about {town}?",
+    "i am a bit tired of {thing}", "yes, of course, {name}", "what are you up to in {town} today",
+    "how many people live in {country}?", "thank you, {name}!", "do you have any friends in {town}",
+    "i would like to go to {country} tomorrow evening",
 )  # fmt: skip
+"""Utterances of a talk. Each round says them about other people and things: a vector that is known costs nothing."""
+
+WORDS = (
+    ("Ada", "Bremen", "tea", "Peru"), ("Ben", "Delft", "chess", "France"), ("Cleo", "Turin", "cheese", "Chile"),
+    ("Dora", "Graz", "jazz", "Kenya"), ("Emil", "Porto", "football", "Japan"), ("Fritz", "Ghent", "opera", "Norway"),
+    ("Greta", "Malmo", "bread", "India"), ("Hugo", "Lyon", "sailing", "Egypt"), ("Ines", "Basel", "snow", "Cuba"),
+)  # fmt: skip
+"""A person, a town, a thing and a country for each round."""
 
 
 def decide(rounds: int) -> dict[str, list[float]]:
@@ -61,6 +71,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
                 decided.set_result(time.perf_counter())
 
         times: list[float] = []
+        assert rounds < len(WORDS)
         parts = [getattr(modules, name) for name in COMPLETE]
         with tempfile.TemporaryDirectory() as folder:
             os.environ["XDG_DATA_HOME"] = folder
@@ -68,7 +79,9 @@ def decide(rounds: int) -> dict[str, list[float]]:
             async with rs.Context(*parts, settings=settings, seed=1) as context:
                 context.observe(watch)
                 for number in range(rounds + 1):  # the first loads everything
-                    for text in UTTERANCES:
+                    name, town, thing, country = WORDS[number]
+                    for template in UTTERANCES:
+                        text = template.format(name=name, town=town, thing=thing, country=country)
                         decided = asyncio.get_running_loop().create_future()
                         begin = time.perf_counter()
                         context.put(rawio.input, text)

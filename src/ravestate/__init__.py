@@ -38,41 +38,11 @@ if TYPE_CHECKING:
     from ravestate.settings import Settings
 
 __all__ = [
-    "ClauseView",
-    "Collection",
-    "Condition",
-    "Constraint",
-    "Context",
-    "DeclarationError",
-    "DeclarationErrors",
-    "EngineError",
-    "Entry",
-    "Flag",
-    "Module",
-    "PlatformError",
-    "Policy",
-    "RavestateError",
-    "Resign",
-    "Retire",
-    "Rule",
-    "RuleContext",
-    "RuleError",
-    "RuleFailure",
-    "RuleTimeout",
-    "RunEnded",
-    "Settings",
-    "Signal",
-    "Slot",
-    "UndeclaredError",
-    "activity",
-    "compile",
-    "error",
-    "pressure",
-    "run",
-    "setting",
-    "shutdown",
-    "startup",
-]
+    "ClauseView", "Collection", "Condition", "Constraint", "Context", "DeclarationError", "DeclarationErrors",
+    "EngineError", "Entry", "Flag", "Module", "PlatformError", "Policy", "RavestateError", "Resign", "Retire", "Rule",
+    "RuleContext", "RuleError", "RuleFailure", "RuleTimeout", "RunEnded", "Settings", "Signal", "Slot",
+    "UndeclaredError", "activity", "compile", "error", "pressure", "run", "setting", "shutdown", "startup",
+]  # fmt: skip
 
 __version__ = "1.0.0.dev0"
 

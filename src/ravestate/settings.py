@@ -125,13 +125,10 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 
 
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
-    """Return the value that a text from outside stands for: the text itself for a text field, else its parsed form.
+    """Return the value of a `field` that a text from the environment or from ``--set`` stands for.
 
-    Args:
-        text: The text of an environment variable, or of a ``--set`` option.
-        model: The settings class of the module.
-        field: The name of one of its fields.
-        parse: A parser that raises a ValueError for a text that it cannot read; such a text stays as it is.
+    A text field takes the text itself, any other field its parsed form. If `parse` raises a ValueError, the text stays
+    as it is.
     """
     annotation = cast("Any", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}

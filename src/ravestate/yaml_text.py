@@ -26,16 +26,7 @@ LARGEST = 100_000
 def load_yaml(text: str, name: str) -> Any:
     """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
 
-    Args:
-        text: The YAML text.
-        name: The name of the text's file, for messages.
-
-    Raises:
-        DeclarationError: The text is not valid YAML, nests too deeply, or stands for too many values.
-
-    Example:
-        >>> load_yaml("modules: [rawio, idle]", "agent.yaml")
-        {'modules': ['rawio', 'idle']}
+    If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError` with its line.
     """
     try:
         return yaml.load(text, _SafeLoader)
@@ -48,12 +39,7 @@ def load_yaml(text: str, name: str) -> Any:
 def compose_yaml(text: str, name: str) -> yaml.Node | None:
     """Return the root node of a YAML text; `None` if it is empty. Nodes know their lines, and every scalar is text.
 
-    Args:
-        text: The YAML text.
-        name: The name of the text's file, for messages.
-
-    Raises:
-        DeclarationError: As for `load_yaml`.
+    Faults are those of `load_yaml`.
     """
     try:
         return yaml.compose(text, Loader=_TextLoader)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from ravestate.board import idle_share
-from ravestate.board.idle_share import IdleShare
+from ravestate.board import recorder
+from ravestate.board.recorder import IdleShare
 
 
 class Clocks:
@@ -22,9 +22,9 @@ class Clocks:
 @pytest.fixture
 def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
     clocks = Clocks()
-    monkeypatch.setattr(idle_share, "perf_counter", lambda: clocks.passed)
-    monkeypatch.setattr(idle_share, "process_time", lambda: clocks.computed)
-    monkeypatch.setattr(idle_share, "_kept_waiting", lambda: clocks.kept)
+    monkeypatch.setattr(recorder, "perf_counter", lambda: clocks.passed)
+    monkeypatch.setattr(recorder, "process_time", lambda: clocks.computed)
+    monkeypatch.setattr(recorder, "_kept_waiting", lambda: clocks.kept)
     return clocks
 
 
@@ -60,5 +60,5 @@ def test_without_a_measure_no_time_counts_as_waiting(
     file = tmp_path / "schedstat"
     if told is not None:
         file.write_text(told)
-    monkeypatch.setattr(idle_share, "SCHEDULE", str(file))
-    assert idle_share._kept_waiting() == seconds
+    monkeypatch.setattr(recorder, "SCHEDULE", str(file))
+    assert recorder._kept_waiting() == seconds

@@ -6,7 +6,7 @@ import ravestate as rs
 from board.looking import gossip
 from modules.platform.webio.visit import parrot
 from ravestate.board.description import describe
-from ravestate.board.picture import draw
+from ravestate.board.inspector import drawing
 from ravestate.draw.fold import fold
 from ravestate.modules import hibye, idle
 
@@ -40,7 +40,7 @@ def test_the_layout_of_a_hundred_rules_has_every_node_in_a_place_of_its_own() ->
             name=f"rule_{number}",
         )(lambda ctx: None)  # fmt: skip
         signals.append(signal)
-    drawn = draw(describe(rs.compile(module)).diagram, ["large"])
+    drawn = drawing(describe(rs.compile(module)).diagram, ["large"])
     assert len([node for node in drawn.nodes if node.kind == "rule"]) == 120
     for one, other in itertools.combinations([node.box for node in drawn.nodes], 2):
         apart = (

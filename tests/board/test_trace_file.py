@@ -15,7 +15,7 @@ from ravestate.board.description import describe
 from ravestate.board.recorder import Gap
 from ravestate.board.trace_file import MOST_VALUES, open_trace, read_apart, read_trace, save_trace
 from ravestate.board.why_not import why_not
-from ravestate.board.wire import data_of, record_of
+from ravestate.board.wire import checked_record, data_of
 from ravestate.engine.trace import Born, Record, Settled
 from ravestate.errors import PlatformError
 from ravestate.modules import rawio
@@ -150,7 +150,7 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 
 
 def test_a_gap_is_carried_along() -> None:
-    assert record_of(data_of(Gap(1.5, 7))) == Gap(1.5, 7)
+    assert checked_record(data_of(Gap(1.5, 7))) == Gap(1.5, 7)
 
 
 def test_a_description_is_plain_data() -> None:
@@ -176,6 +176,6 @@ def test_a_failure_keeps_its_traceback_in_a_recording() -> None:
     data = data_of(settled)
     assert data["error"].startswith("Traceback (most recent call last):")
     assert data["error"].endswith("ValueError: out of ink\n")
-    read = record_of(data)
+    read = checked_record(data)
     assert data_of(read) == data
     assert "error" not in data_of(Settled(1.0, 1, "m:draw", "done", "", True))

@@ -16,7 +16,7 @@ from ravestate.board.description import describe
 from ravestate.board.recorder import Gap
 from ravestate.board.source import gates_of
 from ravestate.board.why_not import MOST, why_not
-from ravestate.board.wire import data_of, record_of
+from ravestate.board.wire import checked_record, data_of
 from ravestate.engine.reasons import LossReason, PassReason, Verdict
 from ravestate.engine.trace import Born, GaveUp, Passed, Settled, Started
 from ravestate.testing import Simulation, simulate
@@ -208,7 +208,7 @@ def test_a_detached_rule_has_not_answered_the_cause(stage: Stage, told: bool) ->
         for record in kept:
             if record["kind"] == "passed" and not told:
                 del record["by"], record["run"]  # as in older files
-        records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
+        records = [record for record in map(checked_record, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:too_late", spike)
     assert found.verdict == "passed"
@@ -680,7 +680,7 @@ def test_a_trace_without_runs_names_the_rule_alone(stage: Stage) -> None:
         for record in kept:
             if record["kind"] == "gaveup":
                 del record["run"]  # as in older files
-        records = [record for record in map(record_of, kept) if not isinstance(record, Gap)]
+        records = [record for record in map(checked_record, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:talk", spike)
     assert found.verdict == "outrun"

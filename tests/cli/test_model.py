@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from huggingface_hub import file_download
 
 from cli.examples import call
 from modules.skill.wildtalk.stand_ins import CONTENT, MODEL, Hub, Quiet, serving, write_gguf
-from ravestate.modules.skill.wildtalk import download, found_models, local_servers, model_store
+from ravestate.modules.skill.wildtalk import found_models, local_servers, model_store
 from ravestate.modules.skill.wildtalk.download import size_of
 
 Capture = pytest.CaptureFixture[str]
@@ -58,19 +59,19 @@ def test_a_model_is_fetched_listed_used_and_removed(hub: Hub, place: Path, capsy
 def test_an_interruption_keeps_the_part_and_says_so(
     hub: Hub, place: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real = download._attempt
+    real = file_download.http_get
 
-    def stop(model: Any, part: Any, *rest: Any) -> None:
+    def stop(url: str, part: Any, **_: Any) -> None:
         part.write(CONTENT[:200_000])
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(download, "_attempt", stop)
+    monkeypatch.setattr(file_download, "http_get", stop)
     code, out, errors = call(capsys, "model", "get")
     assert (code, out) == (130, "")
     kept = f"{size_of(200_000)} of {size_of(MODEL.size)} are kept in {MODEL.part}"
     assert errors.endswith(f"ravestate model: interrupted; {kept}, and the same command continues\n")
     assert "39% fetched" in call(capsys, "model", "list")[1]
-    monkeypatch.setattr(download, "_attempt", real)
+    monkeypatch.setattr(file_download, "http_get", real)
     assert call(capsys, "model", "get")[0] == 0
     assert hub.requests[0][1]["range"] == "bytes=200000-"
 
@@ -84,7 +85,7 @@ def test_an_unfinished_download_can_be_removed(place: Path, capsys: Capture) -> 
 def test_failures_are_messages(hub: Hub, capsys: Capture) -> None:
     hub.script = [404]
     code, _, errors = call(capsys, "model", "get")
-    assert code == 1 and "ravestate model: http://127.0.0.1:" in errors and "(404): take another model" in errors
+    assert code == 1 and "ravestate model: http://127.0.0.1:" in errors and "take another model" in errors
     code, _, errors = call(capsys, "model", "get", "tinny")
     assert code == 2 and "there is no model 'tinny'; did you mean 'tiny'?; there are: tiny" in errors
     assert call(capsys, "model")[0] == 2

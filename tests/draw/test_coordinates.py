@@ -1,19 +1,11 @@
-from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.draw.brandes_koepf import brandes_koepf, separation
 from ravestate.draw.coordinates import assign_coordinates
 from ravestate.draw.crossings import minimise_crossings
-from ravestate.draw.layered import LayeredGraph, Link, proper_layering
-from ravestate.draw.ports import place_ports
-from ravestate.draw.relax import relax
-
-WAYS = {"brandes_koepf": brandes_koepf, "relax": partial(relax, spread=1.0), "best": assign_coordinates}
+from ravestate.draw.layered import LayeredGraph, Link, place_ports, proper_layering
 
 
 @st.composite
@@ -32,14 +24,12 @@ def arranged(draw: st.DrawFn) -> LayeredGraph:
     return graph
 
 
-@pytest.mark.parametrize("way", WAYS)
-@given(graph=arranged())
-def test_neighbours_of_a_layer_keep_their_distance(way: str, graph: LayeredGraph) -> None:
-    place: Callable[[LayeredGraph], list[float]] = WAYS[way]
-    middle = place(graph)
+@given(graph=arranged(), room=st.sampled_from((None, 200.0)))
+def test_neighbours_of_a_layer_keep_their_distance(graph: LayeredGraph, room: float | None) -> None:
+    middle = assign_coordinates(graph, room)
     for layer in graph.order:
         for u, v in pairwise(layer):
-            assert middle[v] - middle[u] >= separation(graph, u, v) - 1e-6
+            assert middle[v] - middle[u] >= graph.separation(u, v) - 1e-6
 
 
 def test_a_long_line_without_obstacles_is_straight() -> None:

@@ -10,8 +10,7 @@ from hypothesis import given
 from draw.examples import diagrams, games, many_rules, prompting, rule
 from ravestate.declare.module import Module
 from ravestate.draw.build import build
-from ravestate.draw.graph import Diagram, Edge, Node
-from ravestate.draw.notation import EDGES, NODES
+from ravestate.draw.graph import EDGES, NODES, Diagram, Edge, Node
 from ravestate.draw.svg import svg
 from ravestate.draw.text import clean
 

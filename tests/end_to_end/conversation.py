@@ -46,7 +46,8 @@ class Conversation:
 
     Args:
         folder: Where its memory and its documents are.
-        settings: For a module's name the values of its settings.
+        settings: For a module's name the values of its settings. With wildtalk's backend ``listen``, the listening skill
+            makes small talk; otherwise a model that always says the same.
         without: Modules that do not take part.
     """
 
@@ -66,6 +67,7 @@ class Conversation:
         }
         for name, values in (settings or {}).items():
             chosen[name] = {**chosen.get(name, {}), **values}
+        self.listens = chosen["wildtalk"].get("backend") == "listen"
         self.sim = simulate(
             *(getattr(modules, name) for name in self.parts),
             settings={name: values for name, values in chosen.items() if name in self.parts},
@@ -74,7 +76,7 @@ class Conversation:
 
     def __enter__(self) -> Conversation:
         self.sim.__enter__()
-        if "wildtalk" in self.parts:
+        if "wildtalk" in self.parts and not self.listens:
             self.sim.put(wildtalk.model, Model())
         return self
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from end_to_end.conversation import WORDS, Conversation, spoken_by
 
 
-def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path) -> None:
-    with Conversation(tmp_path) as talk:
+@pytest.mark.parametrize("backend", ["auto", "listen"])
+def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path, backend: str) -> None:
+    with Conversation(tmp_path, {"wildtalk": {"backend": backend}}) as talk:
         assert spoken_by(talk.say("will it rain today")) == ["wildtalk"]
         assert spoken_by(talk.say("know if it's gonna rain today")) == ["wildtalk"]
         (answer,) = talk.say("when did it start to rain")
@@ -33,8 +36,9 @@ def test_example_2_an_answer_is_asked_for_stored_and_known_after_a_restart(tmp_p
         assert (reply.module, "Hannover" in reply.text) == ("persqa", True)
 
 
-def test_example_3_a_greeting_the_agent_and_its_feelings(tmp_path: Path) -> None:
-    with Conversation(tmp_path, {"emotion": {"shy": 1.0}}) as talk:
+@pytest.mark.parametrize("backend", ["auto", "listen"])
+def test_example_3_a_greeting_the_agent_and_its_feelings(tmp_path: Path, backend: str) -> None:
+    with Conversation(tmp_path, {"emotion": {"shy": 1.0}, "wildtalk": {"backend": backend}}) as talk:
         assert spoken_by(talk.say("Hello")) == ["hibye"]
         assert spoken_by(talk.say("how are you"))[:1] == ["agentqa"]
         said = talk.say("What are you up to today", 5.0)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ravestate.policy.wording import SHOWN, few
+from ravestate.declare.wording import SHOWN, few
 
 
 @pytest.mark.parametrize(

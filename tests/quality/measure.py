@@ -2,15 +2,7 @@
 
     python tests/quality/measure.py MODULE... [--misses]
 
-`MODULE` is a dotted name. Each of its functions that has the name of a set is measured on it. A function `results`
-returns the results of sets that the module has itself.
-
-| Function | Takes a text, gives |
-|---|---|
-| `triples` | the triples, each (subject, predicate, object), as strings |
-| `questions`, `yesno`, `agentqa`, `emotions` | the label in the words of the set's file, `-` for none |
-| `genqa` | a `Reply`, or None for silence |
-
+`MODULE` is a dotted name. Its function `results` returns the results of its sets.
 """
 
 import argparse
@@ -20,14 +12,11 @@ import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import yaml
 
 HERE = Path(__file__).parent
 NONE = "-"  # the label of a sentence that the set's module must leave alone
-LABELLED = ("questions", "yesno", "agentqa", "emotions")
-SETS = ("triples", *LABELLED, "genqa")
 
 Triples = frozenset[tuple[str, str, str]]
 
@@ -84,12 +73,6 @@ def labelled(name: str) -> list[tuple[str, str]]:
     lines = (HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
     pairs = (line.split("\t") for line in lines if line and not line.startswith("#"))
     return [(text, label) for text, label in pairs]
-
-
-def triples() -> list[tuple[str, Triples]]:
-    """The sentences with the triples they state or ask for."""
-    cases = yaml.safe_load((HERE / "triples.yaml").read_text(encoding="utf-8"))
-    return [(case["text"], frozenset(tuple(triple) for triple in case["triples"])) for case in cases]
 
 
 def facts() -> list[Fact]:
@@ -157,17 +140,6 @@ def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Resu
     return Result("genqa", len(cases), shares, misses)
 
 
-def measure(name: str, function: Callable[[str], Any]) -> Result:
-    """One set, by its name, on the function that does the work."""
-    if name == "triples":
-        return measure_triples(function, triples())
-    if name == "genqa":
-        return measure_facts(function, facts())
-    if name in LABELLED:
-        return measure_labels(name, function, labelled(name))
-    raise ValueError(f"no set {name!r}; there are {', '.join(SETS)}")
-
-
 def table(results: Iterable[Result]) -> str:
     """Return the results as a table with one share a line."""
     lines = [f"{'set':<16} {'cases':>5}  {'':<22} {'share':>7}"]
@@ -182,18 +154,13 @@ def main(argv: list[str] | None = None) -> int:
     """Measure the functions of the module that is named on the command line."""
     parser = argparse.ArgumentParser(description="Measure how well text is understood.")
     parser.add_argument(
-        "modules", nargs="+", metavar="MODULE",
-        help="dotted name of a module with functions named like the sets, or with a function `results`",
-    )  # fmt: skip
+        "modules", nargs="+", metavar="MODULE", help="dotted name of a module with a function `results`"
+    )
     parser.add_argument("--misses", action="store_true", help="also print each sentence that went wrong")
     arguments = parser.parse_args(argv)
-    results: list[Result] = []
-    for module in arguments.modules:
-        functions = vars(importlib.import_module(module))
-        results += functions["results"]() if "results" in functions else []
-        results += [measure(name, functions[name]) for name in SETS if name in functions]
-    if not results:
-        parser.error(f"{', '.join(arguments.modules)}: no function {', '.join(SETS)}, results")
+    results: list[Result] = [
+        result for module in arguments.modules for result in importlib.import_module(module).results()
+    ]
     print(table(results))
     if arguments.misses:
         for result in results:

@@ -1,6 +1,5 @@
 """The sets are well formed, and the measure counts right."""
 
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -8,85 +7,22 @@ import pytest
 from quality import measure, modules
 from quality.measure import Fact, Reply
 
-LABELS = {
-    "questions": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
-    "yesno": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
-    "agentqa": {
-        "identity",
-        "name",
-        "age",
-        "hobbies",
-        "likes",
-        "origin",
-        "home",
-        "father",
-        "siblings",
-        "friends",
-        "ambition",
-        "membership",
-        "can_do",
-        "learned",
-        "how_are_you",
-        "-",
-    },
-    "emotions": {"shy", "surprised", "happy", "affectionate", "-"},
-}
-AT_LEAST = {"triples": 60, "questions": 60, "yesno": 60, "agentqa": 120, "emotions": 40, "genqa": 40}
 
-
-def texts(name: str) -> list[str]:
-    if name == "triples":
-        return [text for text, _ in measure.triples()]
-    if name == "genqa":
-        return [fact.question for fact in measure.facts()]
-    return [text for text, _ in measure.labelled(name)]
-
-
-@pytest.mark.parametrize("name", measure.SETS)
-def test_a_set_is_large_enough_and_says_nothing_twice(name: str) -> None:
-    sentences = texts(name)
-    assert len(sentences) >= AT_LEAST[name]
-    assert [text for text, count in Counter(text.casefold() for text in sentences).items() if count > 1] == []
-
-
-@pytest.mark.parametrize("name", measure.LABELLED)
-def test_each_label_is_known_and_each_known_label_occurs(name: str) -> None:
-    assert {label for _, label in measure.labelled(name)} == LABELS[name]
-
-
-def test_the_agents_questions_are_measured_without_their_likes_among_the_examples() -> None:
-    life = modules._router().life
-    examples = {modules.plain(q) for topic in life.topics.values() for q in topic.questions}
-    examples |= set(map(modules.plain, life.others))
-    assert len(examples) > 500
-    assert examples.isdisjoint(map(modules.plain, texts("agentqa")))
+def test_the_set_is_large_enough_and_says_nothing_twice() -> None:
+    sentences = [fact.question.casefold() for fact in measure.facts()]
+    assert len(set(sentences)) == len(sentences) >= 40
 
 
 def test_no_question_to_the_world_is_among_those_of_the_calibration() -> None:
     calibration = Path(__file__).parents[1] / "modules" / "skill" / "genqa" / "questions.yaml"
     known = set(map(modules.plain, measure.yaml.safe_load(calibration.read_text(encoding="utf-8"))))
-    assert known.isdisjoint(map(modules.plain, texts("genqa")))
-
-
-def test_half_of_the_agents_questions_are_for_others() -> None:
-    assert sum(label == measure.NONE for _, label in measure.labelled("agentqa")) >= 50
+    assert known.isdisjoint(modules.plain(fact.question) for fact in measure.facts())
 
 
 def test_a_fact_is_either_answerable_or_a_case_for_silence() -> None:
     cases = measure.yaml.safe_load((measure.HERE / "genqa.yaml").read_text(encoding="utf-8"))
     for case in cases:
         assert case.get("silent", False) == (not case.keys() & {"answers", "number"}), case
-
-
-@pytest.mark.parametrize("name", measure.LABELLED)
-def test_perfect_labels_measure_as_perfect(name: str) -> None:
-    result = measure.measure(name, dict(measure.labelled(name)).__getitem__)
-    assert result.shares == {"right": 1.0, "F1": 1.0}
-    assert result.misses == []
-
-
-def test_perfect_triples_measure_as_perfect() -> None:
-    assert measure.measure("triples", dict(measure.triples()).__getitem__).shares["exact"] == 1.0
 
 
 def test_one_triple_too_many_is_not_exact() -> None:
@@ -139,15 +75,11 @@ def test_answers_and_silences_are_told_apart() -> None:
 def test_the_table_names_each_set_and_the_misses_are_told(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    (tmp_path / "nobody.py").write_text("def emotions(text):\n    return '-'\n")
+    lines = ["from quality.measure import measure_labels", "def results():"]
+    lines.append("    return [measure_labels('moods', lambda text: '-', [('hooray', 'happy'), ('well', '-')])]")
+    (tmp_path / "nobody.py").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path))
     assert measure.main(["nobody", "--misses"]) == 0
     printed = capsys.readouterr().out
-    assert "emotions" in printed
-    assert "20.0%" in printed
-    assert "emotions: 32 wrong" in printed
-
-
-def test_an_unknown_set_is_refused() -> None:
-    with pytest.raises(ValueError, match="no set 'jokes'; there are triples"):
-        measure.measure("jokes", str)
+    assert "moods                2  right                    50.0%" in printed
+    assert "moods: 1 wrong\n  'hooray': - instead of happy" in printed

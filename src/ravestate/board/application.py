@@ -14,8 +14,7 @@ from starlette.websockets import WebSocket
 
 from ravestate.board.inspector import Inspector
 from ravestate.board.recorder import Recorders
-from ravestate.board.recordings import Recordings
-from ravestate.board.trace_file import Recording, read_apart
+from ravestate.board.trace_file import Recording, Recordings, read_apart
 from ravestate.modules.platform.webio.access import PAUSE
 from ravestate.modules.platform.webio.application import AccessMiddleware
 from ravestate.modules.platform.webio.pages import Pages
@@ -25,18 +24,14 @@ from ravestate.runtime.context import Context
 PAGE = Path(__file__).parent / "page"
 """The folder of the board's page, which ``npm run build`` in ``frontend/`` makes."""
 
-INSIDE = "board/"
-"""The board's address, relative to the chat page."""
+INSIDE = "board/"  # the board's address, relative to the chat page
 
 LARGEST = 64 * 1024 * 1024
 """The maximum number of bytes in an uploaded recording: twice the page's largest export, which has some 125,000 records
 of 270 bytes."""
 
-AT_ONCE = 4
-"""The maximum number of uploads at the same time."""
-
-LONGEST = 300.0
-"""The maximum number of seconds that an upload may take."""
+AT_ONCE = 4  # the maximum number of uploads at the same time
+LONGEST = 300.0  # the maximum number of seconds that an upload may take
 
 
 class RecordedAgent(Agent):
@@ -58,13 +53,9 @@ def routes(
 ) -> list[BaseRoute]:
     """Return the routes below ``/board``, for ``webio.app(agent, routes(), inside=INSIDE)``.
 
-    The board is for the agent's developers: anybody with access to the page can inspect every conversation and act on it.
-    Sites that may embed the chat may neither embed the board nor connect to it.
-
-    Args:
-        recorders: The recorders of a `RecordedAgent`. Without them, recording starts when a board opens.
-        recording: The recording to show, unless a page asks for a conversation; None to show conversations only.
-        title: The agent's name on the page; None for the name that the agent gives itself.
+    The board is for the agent's developers: anybody with access to the page can inspect every conversation and act on
+    it. Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
+    starts when a board opens. Unless a page asks for a conversation, the board shows the `recording`, if there is one.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)

@@ -16,7 +16,7 @@ from ravestate.policy.completion import UNIT
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-_Users = dict[str, list[str]]
+_Users = dict[str, list[str]]  # slot's name → the rules that read it, or write it
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,18 +139,13 @@ class Description:
 
 
 def describe(policy: Policy) -> Description:
-    """Return the description of a policy. A hundred rules take milliseconds, so describe each policy once.
-
-    Example:
-        >>> import ravestate as rs
-        >>> lamp = rs.Module("lamp")
-        >>> lit = lamp.flag("lit")
-        >>> @lamp.rule(when=rs.startup, writes=lit)
-        ... def light(ctx): ...
-        >>> describe(rs.compile(lamp)).rules[0].raises
-        ('lamp:lit:changed', 'lamp:lit:true', 'lamp:lit:false')
-    """
-    readers, writers = _users(policy)
+    """Return the description of a policy. A hundred rules take milliseconds, so describe each policy once."""
+    readers: _Users = {}
+    writers: _Users = {}
+    for name, rule in policy.rules.items():
+        for slots, users in ((rule.reads, readers), (rule.writes, writers)):
+            for slot in slots:
+                users.setdefault(slot.name, []).append(name)
     return Description(
         tuple(module.name for module in policy.modules),
         tuple(_rule(policy, plan) for plan in policy.rule_plans),
@@ -239,17 +234,6 @@ def _slot(plan: SlotPlan, readers: _Users, writers: _Users) -> SlotView:
         tuple(readers.get(plan.name, ())),
         tuple(writers.get(plan.name, ())),
     )
-
-
-def _users(policy: Policy) -> tuple[_Users, _Users]:
-    """Return slot's name → the rules that read the slot, and slot's name → the rules that write it."""
-    readers: _Users = {}
-    writers: _Users = {}
-    for name, rule in policy.rules.items():
-        for slots, users in ((rule.reads, readers), (rule.writes, writers)):
-            for slot in slots:
-                users.setdefault(slot.name, []).append(name)
-    return readers, writers
 
 
 def _module(name: str) -> str:

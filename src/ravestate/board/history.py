@@ -8,13 +8,14 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import accumulate
 from operator import attrgetter
 
+from ravestate.board.description import Description, RuleView
 from ravestate.engine import trace as t
+from ravestate.engine.explain import join, seconds
 from ravestate.engine.reasons import Outcome
+from ravestate.engine.trace import GaveUp, Passed, Waits
 
-NEVER = float("inf")
 BY_TIME = attrgetter("time")
 
 
@@ -85,13 +86,6 @@ class Attempt:
 class History:
     """A trace, indexed for questions about the causal group of one spike.
 
-    Args:
-        records: The records of the trace, in order.
-        spike: The number of a spike in the trace.
-
-    Attributes:
-        raising: The pairs (run's number, signal) of all signals that runs raised.
-
     Raises:
         LookupError: The trace does not contain the spike, or not any more.
     """
@@ -112,11 +106,8 @@ class History:
         self._into: dict[int, int] = {}
         self._answers: list[Attempt] = []  # in the order of their ends
         self._of: dict[str, list[Attempt]] = {}
-        self._spans: dict[str, tuple[list[float], list[float]]] = {}
-        started = False
-        for record in records:
-            if not started:
-                self.first, started = record.time, True
+        for number, record in enumerate(records):
+            self.first = record.time if not number else self.first
             self.last = record.time
             self._read(record)
         if spike not in self.born:
@@ -146,32 +137,24 @@ class History:
 
     def ran(self, rule: str, time: float) -> bool:
         """Return whether a rule was running for the group at a time (seconds)."""
-        if rule not in self._spans:
-            spans = sorted(
-                (attempt.started.time, NEVER if attempt.end is None else attempt.end)
-                for attempt in self.of(rule)
-                if attempt.started is not None
-            )
-            self._spans[rule] = (
-                [start for start, _ in spans],
-                list(accumulate((end for _, end in spans), max)),
-            )
-        starts, ends = self._spans[rule]
-        begun = bisect_right(starts, time)
-        return begun > 0 and ends[begun - 1] >= time
+        return any(
+            attempt.started is not None
+            and attempt.started.time <= time
+            and (attempt.end is None or attempt.end >= time)
+            for attempt in self.of(rule)
+        )
 
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run that answered the cause of the group; None if no run of the given rules did.
 
-        Args:
-            hears: Rule to consider → for each of its clauses, the signals that the clause consumes. A detached
-                constraint consumes none (L19).
+        For each rule to consider, `hears` has the signals that its clauses consume. A detached constraint consumes none
+        (L19).
         """
-        return next((a for a in self._answers if a.rule in hears and self._is_taken(a, hears[a.rule][a.clause])), None)
 
-    def _is_taken(self, attempt: Attempt, signals: Collection[str]) -> bool:
-        """Return whether an attempt took a spike of one of these signals in the group."""
-        return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
+        def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
+            return any(spike in self.group and self.born[spike].signal in signals for spike in attempt.spikes)
+
+        return next((a for a in self._answers if a.rule in hears and is_taken(a, hears[a.rule][a.clause])), None)
 
     def before(self, run: int) -> str:
         """Return the rule that raised the input of a run in this group; empty if no rule did, or the trace lacks it."""
@@ -248,3 +231,81 @@ class History:
             self.fired.setdefault(record.rule, []).append(record.time)
         if record.outcome == Outcome.RETIRED:
             self.retired.setdefault(record.rule, record.time)
+
+
+class Rivals:
+    """Phrases about the other rules in an explanation: those for which a rule waited, and the one that answered."""
+
+    def __init__(self, history: History, description: Description) -> None:
+        self._history = history
+        self._description = description
+        self._first: dict[str, Attempt | None] = {}  # losing rule → the run that answered first
+
+    def waited(self, rule: RuleView, attempt: Attempt) -> str:
+        """Return which rules the attempt last waited for, as a phrase; empty if it did not wait."""
+        if not attempt.waits:
+            return ""
+        return f"it was ready and waited for {self.names(rule, attempt, attempt.waits[-1])}"
+
+    def names(self, rule: RuleView, attempt: Attempt, wait: Waits) -> str:
+        """Return the names of the rules that the attempt waited for, each with the reason."""
+        parts: list[str] = []
+        for name in wait.for_:
+            if name == rule.name:
+                parts.append("another run of its own on the same spike")
+            elif self._history.ran(name, wait.time):
+                other = self._description.rule(name)
+                common = [] if other is None else [slot for slot in rule.writes if slot in other.writes]
+                parts.append(f"{name}, which was running and had taken {join(common) or 'the spike'}")
+            else:
+                parts.append(f"{name}{self.ahead(name, rule, attempt, wait.time)}")
+        return join(parts)
+
+    def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
+        """Return, in brackets, by how much the utility of the rule `name` is ahead; empty if it is not ahead."""
+        other = self._description.rule(name)
+        if other is None or name == rule.name:
+            return ""
+        theirs = max((clause.base for clause in other.clauses), default=0.0) * self._recovered(other, time)
+        nats = theirs - rule.clauses[attempt.clause].base * self._recovered(rule, time)
+        if nats > 1e-8:
+            return f" ({nats:.3f} nats ahead)"
+        return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
+
+    def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
+        """Return the answering rule, and a path: that rule, preceded by the one that raised its input."""
+        by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
+        before = self._history.before(run)
+        return by, f"{before} → {by}" if before else by
+
+    def pressure(self, rule: RuleView, end: float) -> str:
+        """Say which other rule waited until the patience of `rule` ran out, at the latest at `end` (seconds)."""
+        pressed = self._history.pressed.get(rule.name, [])
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted: a rule's patience never changes
+        ended = f"this rule's patience ran out at {seconds(end)}"
+        if not times:
+            return ended
+        last = pressed[times - 1]
+        return f"{last.by} waited for it from {seconds(last.time)} on, and {ended}"
+
+    def _recovered(self, rule: RuleView, time: float) -> float:
+        """Return the share of its utility that a rule has recovered since its last run (L9)."""
+        fired = self._history.fired.get(rule.name, [])
+        times = bisect_right(fired, time)
+        return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
+
+    def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
+        """Return the first other rule that wrote one of `rule`'s slots before `time`, and the number of its run."""
+        if rule.name not in self._first:
+            slots = set(rule.writes)
+            self._first[rule.name] = self._history.answered(
+                {
+                    other.name: [{c.signal for c in clause.constraints if not c.detached} for clause in other.clauses]
+                    for other in self._description.rules
+                    if other.name != rule.name and slots & set(other.writes)
+                }
+            )
+        first = self._first[rule.name]
+        if first is None or first.end is None or first.end > time:
+            return "another rule", 0
+        return first.rule, first.id

@@ -11,20 +11,13 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Flag, Slot, checkable
 from ravestate.errors import RavestateError
 
-SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})
-"""One value of each JSON type except null."""
+SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON type except null
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
-    """Refuse a value that a user may not write to a slot. `Slot.check` makes further checks during the write.
+    """Refuse a JSON value that a user may not write to a slot. `Slot.check` makes further checks during the write.
 
-    Args:
-        slot: The slot to write.
-        value: The value from JSON.
-        holds: The slot's current value; its type stands in if the slot declares none.
-
-    Raises:
-        RavestateError: JSON cannot express the slot's type, or the value is of another type.
+    The type of the current value, `holds`, stands in if the slot declares none.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")
@@ -42,14 +35,7 @@ def check_value(slot: Slot[Any], value: object, holds: object) -> None:
 def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, holds: object = None) -> None:
     """Refuse a payload that is missing, superfluous, or of the wrong type.
 
-    Args:
-        signal: The signal to raise.
-        command: The user's command.
-        slot: The slot that the signal belongs to; None if it belongs to none.
-        holds: The current value of that slot.
-
-    Raises:
-        RavestateError: The payload is refused; the message says what to do instead.
+    If the signal belongs to a slot, `slot` is that slot, and `holds` its current value.
     """
     if isinstance(slot, Collection):
         raise RavestateError(f"{signal.name} announces a change of the collection {slot.name}: write the slot instead")

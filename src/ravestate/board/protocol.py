@@ -352,10 +352,6 @@ def parse(text: str | bytes) -> ClientFrame:
 
     Raises:
         ValueError: The text is not a frame; the message says why.
-
-    Example:
-        >>> parse('{"type": "why", "rule": "demo:talk", "spike": 3}')
-        Why(type='why', rule='demo:talk', spike=3)
     """
     if not isinstance(text, str):
         raise ValueError("a frame is a text message, not a binary one")

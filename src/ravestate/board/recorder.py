@@ -18,60 +18,76 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
+from time import perf_counter, process_time
 from weakref import WeakKeyDictionary, ref
 
-from ravestate.board.idle_share import IdleShare
 from ravestate.board.rendering import render, traceback_of
 from ravestate.declare.core import RuleFailure
 from ravestate.engine.trace import Born, Record, Settled
 from ravestate.runtime.context import Context
 
-KEPT = 100_000
-"""The maximum number of records of one context."""
+KEPT = 100_000  # the maximum number of records of one context
 
 IN_ALL = 500_000
 """The maximum number of records of all contexts together. Each takes about 136 bytes plus its payload."""
 
-BATCH = 100
-"""The number of records between two calls of `grown`."""
-
-BURST = 20_000
-"""The maximum number of records in one burst."""
-
-RATE = 2_000
-"""The records per second that a recorder keeps after a burst, while the process is always busy."""
+BATCH = 100  # the number of records between two calls of `grown`
+BURST = 20_000  # the maximum number of records in one burst
+RATE = 2_000  # the records per second that a recorder keeps after a burst, while the process is always busy
 
 SPARE = 60_000
 """Additional records per second in an idle process; the idle share of the process multiplies this number."""
 
-PAUSE = 0.1
-"""Seconds for which a recorder stops listening after too many records."""
+PAUSE = 0.1  # seconds for which a recorder stops listening after too many records
 
 
 @dataclass(slots=True)
 class Gap:
-    """A gap in the records.
-
-    Attributes:
-        time: The start of the gap (seconds on the context's clock).
-        spikes: How many spikes the recorder missed; -1 while that is unknown.
-    """
+    """A gap in the records from `time` (seconds) on: the recorder missed so many spikes; -1 while that is unknown."""
 
     time: float
     spikes: int = -1
 
 
+SCHEDULE = "/proc/thread-self/schedstat"
+"""The file in which Linux counts a thread's nanoseconds on a processor and in the queue for one."""
+
+
+class IdleShare:
+    """Measures the share of time in which the process was idle since the last `share` call. Use it in one thread only.
+
+    The processor time of all threads counts as busy. Time in which this thread waited for a processor counts as busy,
+    too, where the system measures it (Linux).
+    """
+
+    def __init__(self) -> None:
+        self._since = perf_counter()
+        self._busy = process_time()
+        self._kept = _kept_waiting()
+
+    def share(self) -> float:
+        """Return the idle share since the last call, from 0 (always busy) to 1 (always idle)."""
+        since, busy, kept = perf_counter(), process_time(), _kept_waiting()
+        passed = since - self._since
+        used = busy - self._busy + kept - self._kept
+        self._since, self._busy, self._kept = since, busy, kept
+        return min(1.0, max(0.0, 1.0 - used / passed)) if passed > 0 else 0.0
+
+
+def _kept_waiting() -> float:
+    """Return the seconds for which this thread has waited for a processor so far; 0 if the system does not know."""
+    try:
+        with open(SCHEDULE, encoding="ascii") as file:
+            return int(file.read().split()[1]) / 1e9
+    except (OSError, ValueError, IndexError):
+        return 0.0
+
+
 class Recorder:
     """Keeps the records of a context from now on.
 
-    Args:
-        context: A context, running or not.
-        kept: The maximum number of records to keep.
-        burst: The maximum number of records in one burst.
-        rate: The number of records per second after a burst.
-        spare: Additional records per second in an idle process, as for `SPARE`.
-        whole: True if the context has not started: the records are then complete.
-        grown: A callback that runs after every `BATCH` records.
+    The limits are explained at `KEPT`, `BURST`, `RATE` and `SPARE`. The records are `whole` if the context has not
+    started yet. The callback `grown` runs after every `BATCH` records.
     """
 
     def __init__(
@@ -186,9 +202,7 @@ class Recorder:
 class Recorders:
     """The recorders of an agent's contexts. Each lives as long as its context.
 
-    Args:
-        in_all: The maximum number of records of all contexts together. The actual number may exceed it by a fiftieth,
-            plus one batch for each context.
+    All records together may exceed `in_all` by a fiftieth, plus one batch for each context.
     """
 
     def __init__(self, in_all: int = IN_ALL) -> None:
@@ -216,12 +230,7 @@ class Recorders:
 
 
 def _fair(lengths: list[int], in_all: int) -> int:
-    """Return the maximum length for each recorder, so that the total is at most `in_all`.
-
-    Example:
-        >>> _fair([10, 500, 700], 610)
-        300
-    """
+    """Return the maximum length for each recorder, so that the total is at most `in_all`."""
     left = in_all
     for number, length in enumerate(sorted(lengths)):
         share = left // (len(lengths) - number)

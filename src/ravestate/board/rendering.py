@@ -15,11 +15,8 @@ from typing import cast
 from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
-DEEPEST = 6
-"""The maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``."""
-
-TRACEBACK = 8000
-"""The maximum number of characters of a traceback; of a longer one, the end is kept."""
+DEEPEST = 6  # the maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``
+TRACEBACK = 8000  # the maximum number of characters of a traceback; of a longer one, the end is kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +73,7 @@ def render(value: object, most: int = 2000) -> Rendered:
 
 
 def not_json(value: object, most: int = 2000) -> bool:
-    """Return whether JSON cannot express a value, judging by its first `most` characters.
-
-    Example:
-        >>> not_json({"name": "Ada"}), not_json([1, object()])
-        (False, True)
-    """
+    """Return whether JSON cannot express a value, judging by its first `most` characters."""
     if isinstance(value, (int, float)):
         return False
     try:
@@ -141,12 +133,7 @@ def _repr(value: object, most: int) -> Rendered:
 
 
 def well_formed(text: str) -> str:
-    """Return a text without lone surrogates, which UTF-8 cannot encode.
-
-    Example:
-        >>> well_formed("\\ud800x")
-        '?x'
-    """
+    """Return a text without lone surrogates, which UTF-8 cannot encode."""
     return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
 
 

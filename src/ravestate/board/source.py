@@ -38,16 +38,7 @@ T = TypeVar("T")
 
 
 class LiveSource:
-    """A running conversation: its policy, and its records, numbered from 1.
-
-    Args:
-        session: The conversation.
-        recorder: The recorder of the conversation's context.
-
-    Attributes:
-        description: The description of the policy.
-        opens: A function that evaluates slot predicates (`gates_of`).
-    """
+    """A running conversation: its policy, and its records, numbered from 1."""
 
     live = True
 
@@ -55,6 +46,9 @@ class LiveSource:
         self._session = session
         self._context = session.context
         self._recorder = recorder
+        self._describe()
+
+    def _describe(self) -> None:
         self._policy = self._context.policy
         self.description = describe(self._policy)
         self.opens = gates_of(self._policy)
@@ -83,9 +77,7 @@ class LiveSource:
         """Describe the policy again if a rule was added since the last call; return whether one was."""
         if self._context.policy is self._policy:
             return False
-        self._policy = self._context.policy
-        self.description = describe(self._policy)
-        self.opens = gates_of(self._policy)
+        self._describe()
         return True
 
     def clock(self) -> tuple[float, bool]:
@@ -106,21 +98,13 @@ class LiveSource:
         )
 
     def explain(self, rule: str) -> Explained:
-        """Return the current state of a rule: the spikes that it holds and lacks, and the rules that it waits for.
-
-        Raises:
-            DeclarationError: There is no such rule.
-        """
+        """Return the current state of a rule: the spikes that it holds and lacks, and the rules that it waits for."""
         found = self._context.explain(rule)
         clauses = [ExplainedClause(clause.effective, clause.gates) for clause in found.clauses]
         return Explained(rule, found.now, found.retired, clauses, list(found.activations))
 
     async def act(self, command: ClientFrame) -> None:
-        """Carry out a command from the page.
-
-        Raises:
-            RavestateError: The command is refused.
-        """
+        """Carry out a command from the page, or refuse it with a `RavestateError`."""
         context = self._context
         if isinstance(command, Say | Put | Emit) and (self._session.leaving or self._session.ended is not None):
             about = "is ending" if self._session.ended is None else "has ended"
@@ -150,7 +134,11 @@ class LiveSource:
                 check_payload(signal, command, slot, None if slot is None else context.read(slot))
                 context.emit(signal, command.payload)
             case Say():
-                self._say(command.text)
+                try:
+                    heard = heard_text(command.text)
+                except ProtocolError as error:  # this refuses the command, not the connection
+                    raise RavestateError(str(error)) from None
+                self._session.hear(f"board-{secrets.token_hex(8)}", heard)
             case _:
                 raise RavestateError(f"an agent takes no {command.type!r}")
 
@@ -159,13 +147,6 @@ class LiveSource:
         if self._session.ended is None and self._context.paused:
             self._context.resume()
             self._session.notify()
-
-    def _say(self, text: str) -> None:
-        try:
-            heard = heard_text(text)
-        except ProtocolError as error:  # this refuses the command, not the connection
-            raise RavestateError(str(error)) from None
-        self._session.hear(f"board-{secrets.token_hex(8)}", heard)
 
     def _named(self, things: Any, what: str, name: str) -> Any:
         if name not in things:

@@ -8,8 +8,10 @@ import json
 import os
 import pickle
 import re
+import secrets
 import subprocess
 import sys
+from collections import OrderedDict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,29 +33,45 @@ MOST_VALUES = 6_000_000
 """The maximum number of commas and opening brackets in a file: more would fill the memory. 64 MB of records have some
 four million."""
 
-LONGEST = 120
-"""The maximum number of seconds that reading a file may take."""
+LONGEST = 120  # the maximum number of seconds that reading a file may take
 
 CHUNK = 1000
 """The number of records in a message between processes. No other thread runs while a message is unpacked."""
 
-SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
-"""A pattern for one half of a surrogate pair, as JSON writes it."""
+SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")  # a pattern for one half of a surrogate pair, as JSON writes it
 
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A recorded trace and its policy.
-
-    Attributes:
-        title: The agent's name.
-        whole: Whether the trace begins with the start of the context.
-    """
+    """A recorded trace and its policy; it is `whole` if the trace begins with the start of the context."""
 
     title: str
     description: Description
     records: tuple[Record | Gap, ...]
     whole: bool
+
+
+KEPT = 4  # the maximum number of uploaded recordings that a server keeps: the newest ones
+
+
+class Recordings:
+    """A table of uploaded recordings by their names, which nobody can guess. The `first` recording needs no name."""
+
+    def __init__(self, first: Recording | None = None) -> None:
+        self._first = first
+        self._uploaded: OrderedDict[str, Recording] = OrderedDict()
+
+    def get(self, name: str | None) -> Recording | None:
+        """Return the recording with this name, or the first one if the name is None; None if there is none."""
+        return self._first if name is None else self._uploaded.get(name)
+
+    def put(self, recording: Recording) -> str:
+        """Keep an uploaded recording, and return its new name."""
+        name = secrets.token_urlsafe(12)
+        self._uploaded[name] = recording
+        while len(self._uploaded) > KEPT:
+            self._uploaded.popitem(last=False)
+        return name
 
 
 class _File(pydantic.BaseModel):
@@ -66,18 +84,9 @@ class _File(pydantic.BaseModel):
 
 
 def save_trace(
-    path: Path,
-    policy: Policy,
-    records: Iterable[Record | Gap],
-    *,
-    title: str = "Ravestate",
-    whole: bool = True,
+    path: Path, policy: Policy, records: Iterable[Record | Gap], *, title: str = "Ravestate", whole: bool = True
 ) -> None:
-    """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
+    """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``."""
     data = {
         "format": FORMAT,
         "v": VERSION,
@@ -90,11 +99,7 @@ def save_trace(
 
 
 def open_trace(path: Path) -> Recording:
-    """Return the trace in a file.
-
-    Raises:
-        PlatformError: The file cannot be read, or is not a trace.
-    """
+    """Return the trace in a file, or raise a `PlatformError`."""
     try:
         return read_trace(path.read_bytes())
     except OSError as error:
@@ -126,11 +131,7 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """Return the trace that `data` describes, read in a separate process: so this process's other threads keep running.
-
-    Raises:
-        ValueError: The data is not a trace, or reading takes too long.
-    """
+    """As `read_trace`, in a separate process with a time limit: this process's other threads keep running."""
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:

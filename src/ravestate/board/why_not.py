@@ -11,14 +11,12 @@ from typing import Any
 
 from ravestate.board.answer import Missing, Moment, Raiser, WhyNot
 from ravestate.board.description import ClauseView, Description, RuleView
-from ravestate.board.history import Attempt, History
-from ravestate.board.rivals import Rivals
+from ravestate.board.history import Attempt, History, Rivals
 from ravestate.engine.explain import join, latest, seconds, why_given_up, without, words_of
 from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason, Verdict
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
-DEEPEST = 3
-"""The maximum number of causes behind each other in an answer."""
+DEEPEST = 3  # the maximum number of causes behind each other in an answer
 
 MOST = 200
 """The maximum number of moments in an answer. If there are more, the middle is left out."""
@@ -38,13 +36,7 @@ def why_not(
 ) -> WhyNot:
     """Return an explanation of why a rule did not fire for the cause of a spike, or how it did.
 
-    Args:
-        records: The records of the trace.
-        description: The description of the policy.
-        rule: The rule's name.
-        spike: The number of a spike in the trace, for example one of an input.
-        opens: A function that evaluates the slot predicates of a live policy; None for a recording.
-        whole: Whether the trace reaches back to the start of the context.
+    For a live policy, `opens` evaluates its slot predicates. The answer may be incomplete unless the trace is `whole`.
 
     Raises:
         LookupError: The policy has no such rule, or the trace no such spike.
@@ -110,8 +102,7 @@ class _Inquiry:
                 reason += ", and a rule never causes itself"
             return Verdict.PASSED, f"it did not take {first.signal}: {reason}", first.time
         if retired is not None:
-            words = f"it retired at {seconds(retired)} without a spike of this cause"
-            return Verdict.RETIRED, words, retired
+            return Verdict.RETIRED, f"it retired at {seconds(retired)} without a spike of this cause", retired
         return Verdict.UNTOUCHED, "none of the signals that it hears occurred for this cause", None
 
     def _judge(self, rule: RuleView, attempt: Attempt) -> Reached:
@@ -159,13 +150,15 @@ class _Inquiry:
         reason = f": {settled.reason}" if settled.reason else ""
         at = settled.time
         if settled.outcome == Outcome.FAILED and settled.fired:
-            words = f"it fired at {seconds(began)}, and failed after its write at {seconds(at)}{reason}"
-            return Verdict.FIRED, words, at
+            return (
+                Verdict.FIRED,
+                f"it fired at {seconds(began)}, and failed after its write at {seconds(at)}{reason}",
+                at,
+            )
         if settled.outcome == Outcome.FAILED:
             return Verdict.FAILED, f"it ran at {seconds(began)} and failed{reason}", at
         if not settled.fired:
-            words = f"it ran at {seconds(began)} and resigned{reason or ' without a reason'}"
-            return Verdict.RESIGNED, words, at
+            return Verdict.RESIGNED, f"it ran at {seconds(began)} and resigned{reason or ' without a reason'}", at
         parts = [f"it fired at {seconds(began)}"]
         slots = dict.fromkeys(write.slot for write in self.history.writes.get(attempt.id, ()))
         if slots:

@@ -21,11 +21,8 @@ from ravestate.engine.trace import Record
 VERSION = 1
 """The version of the protocol and of trace files. Additions keep the number; any other change increases it."""
 
-PAYLOAD = 400
-"""The maximum number of characters of a payload in a record."""
-
-VALUE = 2000
-"""The maximum number of characters of a slot's value in a record or a `State`."""
+PAYLOAD = 400  # the maximum number of characters of a payload in a record
+VALUE = 2000  # the maximum number of characters of a slot's value in a record or a `State`
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Name of a kind of record → its class."""
@@ -58,27 +55,10 @@ else:
         ],
     )
 
-_RECORD: pydantic.TypeAdapter[dict[str, Any]] = pydantic.TypeAdapter(TraceRecord)
-
 
 def data_of(record: Record | Gap) -> TraceRecord:
-    """Return a record as plain data for JSON.
-
-    Example:
-        >>> from ravestate.engine.trace import Merged
-        >>> data_of(Merged(1.5, 3, 2))
-        {'kind': 'merged', 'time': 1.5, 'group': 3, 'into': 2}
-    """
+    """Return a record as plain data for JSON."""
     return _WRITERS[type(record)](record)
-
-
-def record_of(data: Any) -> Record | Gap:
-    """Return the record that `data` describes. Its values stay `Rendered`.
-
-    Raises:
-        ValueError: The data is not a record.
-    """
-    return checked_record(_RECORD.validate_python(data))
 
 
 def checked_record(data: TraceRecord) -> Record | Gap:
@@ -89,26 +69,15 @@ def checked_record(data: TraceRecord) -> Record | Gap:
 
 def rendered_data(rendered: Rendered) -> dict[str, Any]:
     """Return a rendered value as plain data, without the fields that have their default values."""
-    data: dict[str, Any] = {"text": rendered.text}
-    if not rendered.json:
-        data["json"] = False
-    if rendered.cut:
-        data["cut"] = True
-    return data
-
-
-_FREQUENT: dict[Any, dict[str, Any]] = {
-    None: {"text": "null"},
-    True: {"text": "true"},
-    False: {"text": "false"},
-}
+    return (
+        {"text": rendered.text} | ({} if rendered.json else {"json": False}) | ({"cut": True} if rendered.cut else {})
+    )
 
 
 def _quickly(value: Any) -> dict[str, Any] | None:
     """Return the data of a frequent kind of value, as `render` would make it; None for any other value."""
-    if value is None or value is True or value is False:
-        return _FREQUENT[value]
-    if type(value) is str and len(value) < 60 and value.isascii():
+    frequent = value is None or value is True or value is False
+    if frequent or (type(value) is str and len(value) < 60 and value.isascii()):
         return {"text": json.dumps(value)}
     return None
 

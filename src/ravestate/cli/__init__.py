@@ -32,14 +32,7 @@ COMMANDS = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line.
-
-    Args:
-        argv: The arguments of the command; by default those of the process.
-
-    Returns:
-        The exit code.
-    """
+    """Run the command line (by default with the arguments of the process), and return the exit code."""
     from ravestate import __version__
 
     parser = argparse.ArgumentParser(
@@ -53,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)
     if not {"-h", "--help"}.isdisjoint(arguments):
-        from ravestate.cli.built_in import listing
+        from ravestate.cli.agent import listing
 
         parser.epilog = listing()
     for name, summary in COMMANDS.items():

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import ast
+import shutil
 import sys
+import textwrap
 from collections.abc import Iterable
+from importlib.resources import files
 from pathlib import Path
 
 from ravestate.errors import UsageError
@@ -34,12 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
-    """Return the agent that parsed arguments name.
+    """Return the agent that parsed arguments name, together with the modules `first`.
 
-    Args:
-        options: The parsed arguments.
-        first: The names of modules that the agent has in any case.
-        announce: Whether to print first which Python code the agent files run. Commands that only inspect it do so.
+    With `announce`, print which Python code the agent files run. Commands that only inspect the agent do so.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.
@@ -63,3 +64,14 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
     if options.seed is not None:
         agent.seed = options.seed
     return agent
+
+
+def listing() -> str:
+    """Return a list of the built-in modules, each with the first line of its docstring, without importing any."""
+    width = min(shutil.get_terminal_size().columns, 120) - 2
+    lines = ["built-in modules:"]
+    for name, folder in sorted(BUILT_IN.items()):
+        source = (files("ravestate.modules") / folder / name / "__init__.py").read_text(encoding="utf-8")
+        summary = (ast.get_docstring(ast.parse(source)) or "").partition("\n")[0]
+        lines.append(textwrap.fill(summary, width, initial_indent=f"  {name:<13}", subsequent_indent=" " * 15))
+    return "\n".join(lines)

@@ -26,10 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     complete.add_arguments(parser)
     complete.explain_memory(parser)
     parser.add_argument(
-        "--open",
-        dest="recording",
-        metavar="TRACE.json",
-        help="look at a recorded trace instead of an agent",
+        "--open", dest="recording", metavar="TRACE.json", help="look at a recorded trace instead of an agent"
     )
     parser.add_argument(
         "--browser",

@@ -14,20 +14,9 @@ from ravestate.loading.spec import AgentSpec, with_required
 from ravestate.settings import variable_of
 
 COMPLETE = (
-    "idle",
-    "verbaliser",
-    "interloc",
-    "nlp",
-    "ontology",
-    "emotion",
-    "hibye",
-    "fillers",
-    "agenda",
-    "persqa",
-    "agentqa",
-    "genqa",
-    "wildtalk",
-)
+    "idle", "verbaliser", "interloc", "nlp", "ontology", "emotion", "hibye", "fillers", "agenda", "persqa", "agentqa",
+    "genqa", "wildtalk",
+)  # fmt: skip
 """The names of the modules of the complete text agent, without a platform."""
 
 PACKAGES = {
@@ -64,11 +53,7 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
 
 
 def names(options: argparse.Namespace) -> list[str]:
-    """Return the names of the complete agent's modules, except those that the options leave out.
-
-    Raises:
-        UsageError: The complete agent has no such module.
-    """
+    """Return the names of the complete agent's modules, except those that the options leave out."""
     for name in options.without:
         if name not in COMPLETE:
             raise UsageError(f"--without {name}: the agent has no such module{nearest(name, COMPLETE)}")
@@ -84,11 +69,8 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
         return
     if "conio" in absent:
         agent.settings.setdefault("conio", {})["plain"] = True
-    chosen = {
-        *agent.settings,
-        *(name for name in absent if any(v.startswith(variable_of(name, "")) for v in os.environ)),
-    }
-    out = absent - chosen
+    in_environment = (name for name in absent if any(v.startswith(variable_of(name, "")) for v in os.environ))
+    out = absent - {*agent.settings, *in_environment}
     for module in agent.modules:  # each module comes after those that it requires
         if module.name in COMPLETE and any(required.name in out for required in module.requires):
             out.add(module.name)
@@ -105,8 +87,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
 def choose_small_talk(agent: AgentSpec, command: str) -> str:
     """Choose the language model of `wildtalk` now, say which in one line, and set it in the agent's settings.
 
-    Returns:
-        How to get a language model, if there is none.
+    If there is none, return how to get one.
     """
     if all(module.name != "wildtalk" for module in agent.modules):
         return ""

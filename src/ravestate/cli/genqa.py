@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ravestate.cli import UsageError
 from ravestate.errors import PlatformError
 
 if TYPE_CHECKING:
     from ravestate.modules.skill.genqa import Settings
-    from ravestate.modules.skill.genqa.collecting import Found, Outcome
     from ravestate.modules.skill.genqa.index import Index
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    _add_index(parser)
+    _add_index(parser, default=None)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     indexing = actions.add_parser(
         "index",
@@ -31,19 +30,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     listing = actions.add_parser("list", help="list what has been read")
     forgetting = actions.add_parser("forget", help="forget files and folders")
     for action in (indexing, forgetting):
-        action.add_argument("paths", nargs="+", metavar="PATH", help="a file, or a folder with all that is in it")
+        action.add_argument(
+            "paths", nargs="+", type=Path, metavar="PATH", help="a file, or a folder with all that is in it"
+        )
     asking = actions.add_parser("ask", help="ask a question, and see what is found")
     asking.add_argument("question", nargs="+", metavar="QUESTION")
     for action in (indexing, listing, forgetting, asking):
-        _add_index(action, later=True)
+        _add_index(action, default=argparse.SUPPRESS)  # an option before the action counts as well
 
 
-def _add_index(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the option ``--index``. With `later`, the option follows an action, and does not reset an earlier value."""
+def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:
     parser.add_argument(
         "--index",
         metavar="FILE",
-        default=argparse.SUPPRESS if later else None,
+        default=default,
         help="the index file; by default RAVESTATE_GENQA_INDEX of the environment, or else a file in your data folder",
     )
 
@@ -57,12 +57,15 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    settings = _settings(options.index)
-    if options.action == "ask":
-        return _ask(settings, " ".join(options.question))
+    from ravestate.modules.skill import genqa
     from ravestate.modules.skill.genqa.index import Index
     from ravestate.modules.skill.genqa.places import path_of
+    from ravestate.settings import load_settings
 
+    given = {} if options.index is None else {"index": options.index}
+    settings = load_settings([genqa.module], {"genqa": given})["genqa"]
+    if options.action == "ask":
+        return _ask(settings, " ".join(options.question))
     path = path_of(settings)
     if options.action != "index" and not path.exists():
         print(f"nothing has been read yet: ravestate genqa index PATH (into {path})")
@@ -70,78 +73,44 @@ def _run(options: argparse.Namespace) -> int:
     with Index(path) as index:
         if options.action == "index":
             return _index(index, options.paths)
-        if options.action == "forget":
-            return _forget(index, options.paths)
-        return _list(index)
+        return _forget(index, options.paths) if options.action == "forget" else _list(index)
 
 
-def _settings(index: str | None) -> Settings:
-    """Return the settings of the module genqa, as for an agent without an agent file."""
-    from ravestate.modules.skill import genqa
-    from ravestate.settings import load_settings
-
-    given: dict[str, Any] = {} if index is None else {"index": index}
-    return load_settings([genqa.module], {"genqa": given})["genqa"]
-
-
-def _index(index: Index, paths: Iterable[str]) -> int:
-    from ravestate.modules.skill.genqa.collecting import find
-
-    found = find((Path(path) for path in paths), index)
-    counts: Counter[str] = Counter()
-    passages = 0
-    try:
-        for outcome in _collected(found, index):
-            counts[outcome.kind] += 1
-            if outcome.kind in ("added", "replaced"):
-                passages += outcome.passages
-            if outcome.kind == "unreadable":
-                _warn(f"{outcome.path}: {outcome.why}")
-    except KeyboardInterrupt:
-        _warn("interrupted; what was read so far is kept, and the same command continues")
-        return 130
-    told = ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "nothing to read"
-    print(f"{told}; {passages} new passages in {index.path}")
-    return 1 if counts["unreadable"] else 0
-
-
-def _collected(found: Found, index: Index) -> Iterator[Outcome]:
-    """Yield the outcome of reading each file, with a progress bar in bytes on a terminal."""
-    from ravestate.modules.skill.genqa.collecting import collect
+def _index(index: Index, paths: list[Path]) -> int:
+    """Read files, with a progress bar on a terminal."""
+    from ravestate.modules.skill.genqa.collecting import collect, find
 
     try:
         from tqdm import tqdm
     except ImportError as error:
         raise PlatformError("genqa needs tqdm to index: pip install 'ravestate[genqa]'") from error
-    sizes: dict[Path, int] = {}
-    for path, _ in found.files:
-        try:
-            sizes[path] = path.stat().st_size
-        except OSError:
-            sizes[path] = 0  # `collect` reports the error
-    with tqdm(
-        total=sum(sizes.values()), unit="B", unit_scale=True, disable=not sys.stderr.isatty(), leave=False
-    ) as bar:
+    counts: Counter[str] = Counter()
+    passages = 0
+    with tqdm(unit=" documents", disable=not sys.stderr.isatty(), leave=False) as bar:
 
         def reading(path: Path, number: int) -> None:
             bar.set_postfix_str(f"{path.name[-40:]}, part {number + 1}", refresh=False)
-            bar.update(0)  # this redraws the bar now and then
+            bar.update()
 
-        for outcome in collect(found, index, reading):
-            bar.update(sizes.get(outcome.path, 0))
-            yield outcome
+        try:
+            for outcome in collect(find(paths, index), index, reading):
+                counts[outcome.kind] += 1
+                passages += outcome.passages if outcome.kind in ("added", "replaced") else 0
+                if outcome.kind == "unreadable":
+                    bar.clear()
+                    _warn(f"{outcome.path}: {outcome.why}")
+        except KeyboardInterrupt:
+            _warn("interrupted; what was read so far is kept, and the same command continues")
+            return 130
+    told = ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "nothing to read"
+    print(f"{told}; {passages} new passages in {index.path}")
+    return 1 if counts["unreadable"] else 0
 
 
 def _warn(text: str) -> None:
     from ravestate.modules._text import printable
 
-    line = f"ravestate genqa: {printable(text)}"
-    if sys.stderr.isatty():
-        from tqdm import tqdm
-
-        tqdm.write(line, file=sys.stderr)  # above the progress bar
-    else:
-        print(line, file=sys.stderr)
+    print(f"ravestate genqa: {printable(text)}", file=sys.stderr)
 
 
 def _list(index: Index) -> int:
@@ -155,14 +124,12 @@ def _list(index: Index) -> int:
     return 0
 
 
-def _forget(index: Index, paths: Iterable[str]) -> int:
-    import os
-
+def _forget(index: Index, paths: list[Path]) -> int:
     from ravestate.modules.skill.genqa.collecting import within
 
     code = 0
     for path in paths:
-        root = Path(os.path.abspath(Path(path).expanduser()))
+        root = Path(os.path.abspath(path.expanduser()))
         known = [file.path for file in index.files() if within(file.path, root)]
         for name in known:
             index.forget(name)
@@ -184,15 +151,13 @@ def _ask(settings: Settings, question: str) -> int:
     if not answer.text:
         print(f"no answer: {answer.reason}")
         return 0
-    how = (
-        "sure" if answer.confidence >= settings.sure else "unsure" if answer.confidence >= settings.unsure else "silent"
-    )
+    sure, unsure = settings.sure, settings.unsure
+    how = "sure" if answer.confidence >= sure else "unsure" if answer.confidence >= unsure else "silent"
     print(f"{printable(answer.text)}\n  source      {printable(answer.source)}")
-    print(f"  confidence  {answer.confidence:.2f} ({how}: sure from {settings.sure}, unsure from {settings.unsure})")
+    print(f"  confidence  {answer.confidence:.2f} ({how}: sure from {sure}, unsure from {unsure})")
     print("  read        score  covers")
     for candidate in answer.candidates:
         text = printable(candidate.text)
-        print(
-            f"            {candidate.score:7.1f}  {candidate.covered:5.0%}  {text[:100]}{'…' if len(text) > 100 else ''}"
-        )
+        shown = f"{text[:100]}{'…' if len(text) > 100 else ''}"
+        print(f"            {candidate.score:7.1f}  {candidate.covered:5.0%}  {shown}")
     return 0

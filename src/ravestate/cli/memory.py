@@ -41,10 +41,7 @@ def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
     """Add the options that choose a memory. With `later`, the options follow an action, and keep earlier values."""
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
-        "--path",
-        metavar="FILE",
-        default=default,
-        help="the memory file; by default the file in the settings",
+        "--path", metavar="FILE", default=default, help="the memory file; by default the file in the settings"
     )
     parser.add_argument(
         "-f", "--file", metavar="FILE", default=default, help="an agent file with the settings of ontology"
@@ -233,11 +230,7 @@ def _everything(memory: Memory) -> list[Node]:
 
 
 def _chosen(memory: Memory, which: str) -> Node:
-    """Return the only node with this id or this name; upper and lower case do not matter in names.
-
-    Raises:
-        UsageError: No node matches, or several nodes do.
-    """
+    """Return the only node with this id or this name; upper and lower case do not matter in names."""
     node = memory.get(which).result()
     if node is not None:
         return node

@@ -87,13 +87,11 @@ def _status(model: CatalogueModel) -> str:
 def _get(model: CatalogueModel) -> int:
     from ravestate.modules.skill.wildtalk import model_store
     from ravestate.modules.skill.wildtalk.download import download, interrupted, size_of
-    from ravestate.modules.skill.wildtalk.progress import ProgressBar
 
     if not model.installed:
         print(f"{model.name}: {size_of(model.size)}, {model.licence}, from {model.repository}", file=sys.stderr)
         try:
-            with ProgressBar(f"Fetching {model.name}", delay=0.0, size=model.size) as bar:
-                download(model, bar)
+            download(model)
         except KeyboardInterrupt:
             print(f"ravestate model: {interrupted(model)}", file=sys.stderr)
             return 130

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ravestate.cli import agent
-from ravestate.cli.built_in import listing
+from ravestate.cli.agent import listing
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -23,8 +23,7 @@ R = TypeVar("R")
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that makes a method refuse an unknown keyword; the message names the nearest known keyword.
 
-    Args:
-        options: Keywords that the method takes besides those in its signature.
+    The method takes `options` besides the keywords in its signature.
     """
 
     def decorate(method: Callable[P, R]) -> Callable[P, R]:
@@ -64,14 +63,9 @@ def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None
 
 
 def check_function(function: object, title: str, *, named: bool, where: str, decorator: str) -> None:
-    """Refuse a value that cannot be a rule's function.
+    """Refuse a value that cannot be a rule's function. The rule is `named` if the declaration itself gives the `title`.
 
-    Args:
-        function: The value to check.
-        title: The rule's name within its module: the name in the declaration, or else the function's own.
-        named: Whether the declaration gives a name.
-        where: The rule and the place of its declaration, for messages.
-        decorator: The decorator as the user types it, for messages.
+    For messages, `where` is the place of the declaration, and `decorator` the decorator as the user types it.
     """
     if isinstance(function, Rule):
         raise DeclarationError(
@@ -95,11 +89,7 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 def condition(value: object, what: str, where: str, home: str) -> Condition:
     """Return `value` if it is a condition; refuse any other value.
 
-    Args:
-        value: The value to check.
-        what: The name of the argument, e.g. ``when``.
-        where: The rule and the place of its declaration, for messages.
-        home: The name of the rule's module; in messages, the module's own names appear without it.
+    The message names the argument `what` and the place `where`; names of the module `home` appear without it.
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)

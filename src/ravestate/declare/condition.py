@@ -19,9 +19,7 @@ if TYPE_CHECKING:
     from ravestate.declare.signal import Signal
     from ravestate.declare.slot import Slot
 
-DEFAULT_MAX_AGE = 5.0
-"""The default `max_age` of a constraint, in seconds (L4)."""
-
+DEFAULT_MAX_AGE = 5.0  # the default `max_age` of a constraint, in seconds (L4)
 Predicate = Callable[[Any], object]  # a function of a payload or of a slot's value
 
 LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
@@ -136,9 +134,6 @@ def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
     """Return `predicate` if it is a plain function; refuse any other value. `what` and `of` are for the message.
 
     A call of an asynchronous function or a generator only creates an object, and that object always counts as true.
-
-    Raises:
-        DeclarationError: The predicate is not a function, or it is an asynchronous function or a generator.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")

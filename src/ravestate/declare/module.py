@@ -6,15 +6,8 @@ from collections.abc import Callable, Coroutine, Iterable
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar, Unpack, cast, overload
 
-from ravestate.declare.arguments import (
-    check_function,
-    check_name,
-    check_options,
-    condition,
-    keywords,
-    number,
-    several,
-)
+from ravestate.declare import arguments
+from ravestate.declare.arguments import check_name, check_options, condition, keywords, number, several
 from ravestate.declare.condition import Condition
 from ravestate.declare.rule import Rule
 from ravestate.declare.settings import Number
@@ -191,7 +184,9 @@ class Module:
         def decorate(function: Callable[P, R]) -> Rule[P, R]:
             title = name or getattr(function, "__name__", "")
             where = f"rule {self.name}:{title} ({origin})"
-            check_function(function, title, named=bool(name), where=where, decorator=f"@{self.name}.rule(...)")
+            arguments.check_function(
+                function, title, named=bool(name), where=where, decorator=f"@{self.name}.rule(...)"
+            )
             rule: Rule[P, R] = Rule(
                 f"{self.name}:{title}",
                 function,

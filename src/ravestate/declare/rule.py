@@ -26,18 +26,9 @@ class Rule(Generic[P, R]):
         function: The function that runs when the rule fires.
         is_async: Whether the function is a coroutine function. Coroutine functions run on the loop, plain functions in
             a worker thread.
-        when: The condition that triggers the rule.
-        reads: The slots whose values the function may read.
-        writes: The slots that the function may write and read. Rules that write the same slot exclude each other (L10).
-        emits: The signals that the function may emit.
-        weight: Factor that multiplies the utility (L9), above 0.
-        cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-        patience: Seconds that the rule has to become ready while others wait (L16); with ``None``, the context's.
-        until: A condition that interrupts a run (L21).
-        timeout: Seconds that a run may take (L18); ``None`` for no limit.
-        detached: Whether the rule's effects begin new causal groups (L19).
-        background: Whether the rule never makes ``rs.activity`` true (L22).
         origin: The place of the declaration, ``file:line``.
+
+    The other attributes are the arguments of `Module.rule`.
     """
 
     name: str

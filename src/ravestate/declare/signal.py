@@ -14,8 +14,7 @@ Keep = Literal["all", "latest"]
 """The effect of a new spike on its signal's older live spikes: ``"all"`` keeps them up to a limit, ``"latest"``
 withdraws them (L20, L23)."""
 
-DEFAULT_LIMIT = 100_000
-"""The default of a signal's `limit`: its maximum number of live spikes."""
+DEFAULT_LIMIT = 100_000  # the default of a signal's `limit`: its maximum number of live spikes
 
 
 class SignalOptions(TypedDict, total=False):
@@ -41,9 +40,7 @@ class Signal(Condition, Generic[T]):
         name: The qualified name, ``module:name``.
         payload: The payload's type. It is None if there is no payload; it is also None for a slot's signal, whose
             payload has the slot's type.
-        input: Whether code outside the rules may raise the signal even if a rule raises it too (L8).
-        keep: ``"all"`` or ``"latest"``, as for `SignalOptions`.
-        limit: The signal's maximum number of live spikes.
+        input, keep, limit: As for `SignalOptions`.
         origin: The place of the declaration, ``file:line``.
     """
 

@@ -75,15 +75,7 @@ class Slot(Generic[T]):
             setattr(self, what, signal)
 
     def check(self, value: object, writer: str) -> None:
-        """Refuse a value that is not of the slot's type.
-
-        Args:
-            value: The value to write.
-            writer: The name of the rule or code that writes the value, for the message.
-
-        Raises:
-            RuleError: The value is of another type.
-        """
+        """Refuse a value that is not of the slot's type with a `RuleError` that names the `writer`."""
         if self.type is None or isinstance(value, self.type) or (value is None and self.default is None):
             return
         takes = getattr(self.type, "__name__", str(self.type))

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 
-LENGTH = 60
-"""The maximum number of characters that a value takes up in a message."""
+LENGTH = 60  # the maximum number of characters that a value takes up in a message
 
 HERE = __file__.removesuffix("wording.py")
 CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as Python code in the file of the module `home`, whose own names are plain variables.
-
-    Example:
-        >>> spelt("rawio:input:changed", "guide"), spelt("guide:face", "guide"), spelt("core:error", "guide")
-        ('rawio.input.changed', 'face', 'rs.error')
-    """
+    """Return a qualified name as Python code in the file of the module `home`, whose own names are plain variables."""
     parts = name.split(":")
     if parts[0] == "core":
         parts[0] = "rs"
@@ -51,15 +46,22 @@ def said(exception: BaseException) -> str:
 
 
 def cut(text: str, length: int = LENGTH) -> str:
-    """Return the text, shortened to `length` characters if it is longer; a shortened text ends in three dots.
-
-    Example:
-        >>> cut("a long story", 9), cut("short", 9)
-        ('a long...', 'short')
-    """
+    """Return the text, shortened to `length` characters if it is longer; a shortened text ends in three dots."""
     return text if len(text) <= length else text[: length - 3] + "..."
 
 
 def short(value: object, length: int = LENGTH) -> str:
     """Return the `repr` of a value, cut to `length` characters."""
     return cut(shown(value), length)
+
+
+SHOWN = 8  # the maximum number of names that a list shows
+
+
+def few(names: Iterable[str]) -> str:
+    """Join names with commas, each name once; after the first eight, add how many more there are."""
+    found = list(dict.fromkeys(names))
+    more = len(found) - SHOWN
+    if more <= 1:  # one more name is as short as "and 1 more"
+        return ", ".join(found)
+    return f"{', '.join(found[:SHOWN])} and {more} more"

@@ -25,25 +25,7 @@ FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid
 
 
 def draw(policy: Policy, format: str = "svg") -> str:
-    """Return the Signal-Rule-Slot diagram of a policy as text.
-
-    Args:
-        policy: The compiled policy.
-        format: ``"svg"``, ``"dot"`` or ``"mermaid"``.
-
-    Raises:
-        ValueError: The format is unknown.
-
-    Example:
-        >>> from ravestate.declare.module import Module
-        >>> lamp = Module("lamp")
-        >>> lit = lamp.flag("lit")
-        >>> @lamp.rule(when=lit.true, emits=lamp.signal("bright"))
-        ... def shine(ctx): ...
-        >>> from ravestate.policy.compile import compile_policy
-        >>> print(draw(compile_policy(lamp), "mermaid").splitlines()[0])
-        flowchart LR
-    """
+    """Return the diagram of a policy in one of `FORMATS`; for any other format, raise a ValueError."""
     writer = FORMATS.get(format)
     if writer is None:
         raise ValueError(f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}")

@@ -32,15 +32,7 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
 
 
 def topological(after: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices of a graph in topological order, without the vertices on a cycle or behind a cycle.
-
-    Args:
-        after: Vertex → the vertices to which its arcs lead.
-
-    Example:
-        >>> topological([[2], [0], []])
-        [1, 0, 2]
-    """
+    """Return the vertices in topological order, without those on or behind a cycle, given the successors of each."""
     waiting = Counter(v for ahead in after for v in ahead)
     order = [v for v in range(len(after)) if not waiting[v]]
     for u in order:

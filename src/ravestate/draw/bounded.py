@@ -25,10 +25,7 @@ _SPLITS = 16  # the maximum number of parts into which the largest layer is spli
 def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]) -> list[int]:
     """Return layers that suit a landscape screen: `ranks`, or bounded layers if the picture would be too tall.
 
-    Args:
-        ranks: The layer of each vertex, from 0.
-        arcs: The constraints on the layers: each arc spans at least its length.
-        extent: A function that estimates the size of the picture for given layers.
+    The function `extent` estimates the size of the picture for given layers.
     """
     best, (width, height) = list(ranks), extent(ranks)
     if height <= _SCREEN or width >= _TALLEST * height:
@@ -47,12 +44,7 @@ def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[S
 
 
 def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list[int]:
-    """Return layers of at most `most` vertices; no vertex moves to an earlier layer than in `ranks`.
-
-    Example:
-        >>> bounded_layers([0, 1, 1, 1, 2], [(0, 1, 1, 1), (0, 2, 1, 1), (0, 3, 1, 1), (3, 4, 1, 1)], most=2)
-        [0, 1, 2, 1, 2]
-    """
+    """Return layers of at most `most` vertices; no vertex moves to an earlier layer than in `ranks`."""
     count = len(ranks)
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     waiting = [0] * count

@@ -18,11 +18,7 @@ from ravestate.policy.clauses import normal_form
 
 
 def build(rules: Iterable[Rule[Any, Any]]) -> Diagram:
-    """Return the diagram of the given rules, with nodes in the order of the rules.
-
-    Raises:
-        DeclarationError: A condition has too many alternatives.
-    """
+    """Return the diagram of the given rules, with nodes in the order of the rules."""
     builder = _Builder()
     for rule in rules:
         builder.rule(rule)
@@ -105,10 +101,7 @@ def _note(rule: Rule[Any, Any]) -> str:
 def _label(term: Constraint | Holds) -> str:
     if isinstance(term, Holds):
         return _predicate("holds", term.predicate)
-    words = [
-        _ages(term.min_age_, term.max_age_),
-        *(_predicate("where", predicate) for predicate in term.predicates),
-    ]
+    words = [_ages(term.min_age_, term.max_age_), *(_predicate("where", predicate) for predicate in term.predicates)]
     return ", ".join(word for word in words if word)
 
 

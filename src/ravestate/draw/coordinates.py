@@ -1,42 +1,80 @@
-"""Coordinate assignment: the best of several methods.
+"""Coordinate assignment: short lines first, then straight ones.
 
-Brandes and Köpf's alignment suits small pictures, and relaxation (`relax`) suits crowded ones. Each candidate is
-straightened. The candidate with the shortest lines and the fewest steps wins; among equal candidates, the first wins.
+Each layer in turn moves as near as possible to its neighbours. Within one layer, the best coordinates under minimum
+distances are a weighted isotonic regression, solved by pooling adjacent violators. Forward and backward sweeps repeat this
+for all layers. In the end, `straighten` removes small steps.
 """
 
 from __future__ import annotations
 
-from ravestate.draw.brandes_koepf import brandes_koepf
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf
+
 from ravestate.draw.layered import LayeredGraph
-from ravestate.draw.relax import relax
 from ravestate.draw.straighten import straighten
 
-_STEP = 70.0  # the cost of a step in a line, in pixels of length
-_SPREADS = (1.0, 1.15)  # factors on the minimum distances: one candidate of `relax` for each
-_LEVEL = 0.01  # pixels: a smaller step counts as none
+_SWEEPS = 24  # sweeps over all layers, forwards and backwards in turn
+_AHEAD = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
 
 
 def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:
-    """Return the vertical middle of each vertex in pixels.
+    """Return the vertical middle of each vertex in pixels, for a graph with ordered layers and placed ports.
 
-    Args:
-        graph: A graph with ordered layers and placed ports.
-        room: The maximum height of the picture in pixels, unless its largest layer needs more; ``None`` for any height.
+    The picture is at most `room` pixels high, unless its largest layer needs more.
     """
-    candidates = [relax(graph, spread, room) for spread in _SPREADS]
-    if room is None:
-        candidates.insert(0, brandes_koepf(graph))
-    for candidate in candidates:
-        straighten(graph, candidate)
-    costs = [round(_cost(graph, candidate), 3) for candidate in candidates]
-    return candidates[costs.index(min(costs))]
-
-
-def _cost(graph: LayeredGraph, middle: list[float]) -> float:
-    total = 0.0
+    gaps: list[list[float]] = []
+    middle = [0.0] * len(graph.layer)
+    for layer in graph.order:
+        gaps.append([graph.separation(u, v) for u, v in pairwise(layer)])
+        y = -sum(gaps[-1]) / 2
+        for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
+            middle[v] = y
+            y += gap
+    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # vertex → (neighbour, port's offset, weight)
+    after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
-        step = abs(middle[p.vertex] + p.offset - middle[q.vertex] - q.offset)
-        if step > _LEVEL:
-            total += step + _STEP
-    return total
+        weight = (1.0, 2.0, 8.0)[(graph.kind[p.vertex] == "dummy") + (graph.kind[q.vertex] == "dummy")]
+        after[p.vertex].append((q.vertex, q.offset - p.offset, weight))
+        before[q.vertex].append((p.vertex, p.offset - q.offset, weight))
+    half = inf if room is None else max(room, *(sum(apart) for apart in gaps)) / 2
+    for sweep in range(_SWEEPS):
+        forward = sweep % 2 == 0
+        ahead = 1.0 if sweep >= _SWEEPS // 2 else _AHEAD
+        for at in range(len(graph.order)) if forward else range(len(graph.order) - 1, -1, -1):
+            layer = graph.order[at]
+            wishes: list[float] = []
+            weights: list[float] = []
+            for v in layer:
+                pulls = [(w, offset, weight * (1.0 if forward else ahead)) for w, offset, weight in before[v]]
+                pulls += [(w, offset, weight * (ahead if forward else 1.0)) for w, offset, weight in after[v]]
+                total = sum(weight for _, _, weight in pulls)
+                wishes.append(
+                    sum((middle[w] + offset) * weight for w, offset, weight in pulls) / total if pulls else middle[v]
+                )
+                weights.append(total if pulls else 0.01)
+            for v, y in zip(layer, _isotonic(wishes, weights, gaps[at], half), strict=True):
+                middle[v] = y
+    straighten(graph, middle)
+    return middle
+
+
+def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float) -> list[float]:
+    """Return the places from -half to half that keep the gaps and are nearest to the wishes (by weighted squares)."""
+    pools: list[tuple[float, float, int]] = []  # (mean, weight, number of members)
+    offsets: list[float] = []
+    offset = 0.0
+    for i, (wish, weight) in enumerate(zip(wishes, weights, strict=True)):
+        offsets.append(offset)
+        mean, heavy, many = wish - offset, weight, 1
+        while pools and pools[-1][0] >= mean:
+            other, weigh, more = pools.pop()
+            mean = (mean * heavy + other * weigh) / (heavy + weigh)
+            heavy += weigh
+            many += more
+        pools.append((mean, heavy, many))
+        offset += gaps[i] if i < len(gaps) else 0.0
+    highest = half - sum(gaps)
+    means = [max(-half, min(highest, mean)) for mean, _, many in pools for _ in range(many)]
+    return [mean + offset for mean, offset in zip(means, offsets, strict=True)]

@@ -7,6 +7,7 @@ initial orders come from a depth-first search in declaration order, which keeps 
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right, insort
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -19,10 +20,8 @@ _PATIENCE = 4  # sweeps without improvement before the search ends
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
-    Args:
-        graph: Any layered graph.
-        centred: Whether the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of creation.
-            A hyperedge through many layers then runs straight, with branches to both sides.
+    If `centred`, the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of
+    creation. A hyperedge through many layers then runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:
@@ -41,32 +40,16 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
 
 
 def count_crossings(order: Sequence[Sequence[int]], after: Sequence[Sequence[int]]) -> int:
-    """Return the number of crossing pairs of segments.
-
-    Args:
-        order: The vertices of each layer.
-        after: Vertex → its neighbours in the next layer.
-    """
+    """Return the number of crossing pairs of segments; `after` has each vertex's neighbours in the next layer."""
     total = 0
     for layer, following in pairwise(order):
         place = {v: i for i, v in enumerate(following)}
-        size = len(following) + 1
-        tree = [0] * size  # a Fenwick tree: how many segments so far end at or before a place
-        seen = 0
+        seen: list[int] = []  # the sorted places where the segments so far end
         for v in layer:
             ends = [place[w] for w in after[v]]
+            total += sum(len(seen) - bisect_right(seen, end) for end in ends)
             for end in ends:
-                total += seen
-                i = end + 1
-                while i > 0:
-                    total -= tree[i]
-                    i -= i & -i
-            for end in ends:
-                i = end + 1
-                while i < size:
-                    tree[i] += 1
-                    i += i & -i
-            seen += len(ends)
+                insort(seen, end)
     return total
 
 
@@ -160,11 +143,5 @@ def _transpose(
 
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
     """Return how many crossings a swap of two vertices saves, given the sorted places of their neighbours."""
-    gain = before = upto = 0
-    for end in upper:  # the ends in `lower` before `end` cross now; those after it would cross after the swap
-        while before < len(lower) and lower[before] < end:
-            before += 1
-        while upto < len(lower) and lower[upto] <= end:
-            upto += 1
-        gain += before - (len(lower) - upto)
-    return gain
+    # The ends in `lower` before `end` cross now; those after it would cross after the swap.
+    return sum(bisect_left(lower, end) - len(lower) + bisect_right(lower, end) for end in upper)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ravestate.draw.graph import Diagram, EdgeKind, Node, NodeKind
-from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, describe, used
+from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, EdgeKind, Node, NodeKind, describe, used
 from ravestate.draw.style import EDGE_STYLES, NODE_COLOURS, TEXT
 from ravestate.draw.text import clean
 

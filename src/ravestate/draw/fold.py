@@ -18,18 +18,9 @@ _STRONGEST_FIRST: tuple[EdgeKind, ...] = (
 
 
 def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
-    """Return the diagram with one node for each folded module.
+    """Return the diagram with one node for each module that is not `unfolded`.
 
     Edges inside a folded module disappear. Several edges with the same ends become one arrow of the strongest kind.
-
-    Args:
-        diagram: The diagram without folds.
-        unfolded: Names of the modules that keep their own nodes.
-
-    Example:
-        >>> whole = Diagram((Node("s", "slot", "s", "m"), Node("r", "rule", "r", "n")), (Edge("s", "r", "reads"),))
-        >>> [node.id for node in fold(whole, {"n"}).nodes]
-        ['module m', 'r']
     """
     home = _modules(diagram)
     rules = Counter(home[node.id] for node in diagram.nodes if node.kind == "rule")

@@ -16,7 +16,12 @@ from ravestate.draw.graph import EdgeKind
 
 VertexKind = Literal["node", "label", "dummy"]
 
+_GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
+"""(upper, lower neighbour in a layer) → the minimum pixels between them; `False` stands for a dummy vertex."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; overlapping dashes would not match
+_PITCH = 10.0  # pixels between ports of one side, where there is room
+_MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
+_LEAST = 3.0  # minimum pixels between ports; with less room they coincide, but entering and leaving lines stay apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +71,11 @@ class LayeredGraph:
         """Return the two vertices that a segment joins."""
         low, high = self.segments[segment]
         return self.ports[low].vertex, self.ports[high].vertex
+
+    def separation(self, upper: int, lower: int) -> float:
+        """Return the minimum distance in pixels between the middles of two adjacent vertices of a layer."""
+        solid = (self.kind[upper] != "dummy", self.kind[lower] != "dummy")
+        return (self.height[upper] + self.height[lower]) / 2 + _GAPS[solid]
 
     def neighbours(self) -> tuple[list[list[int]], list[list[int]]]:
         """Return vertex → its neighbours in the layer before, and those in the layer after, once for each segment."""
@@ -167,3 +177,27 @@ class _Builder:
             found = self.known[key] = len(self.graph.segments)
             self.graph.segments.append(key)
         return found
+
+
+def place_ports(graph: LayeredGraph) -> None:
+    """Place the ports of each side in the order of the vertices to which they lead. The layers must be in order."""
+    place = places(graph.order)
+    leads: list[list[int]] = [[] for _ in graph.ports]
+    for low, high in graph.segments:
+        leads[low].append(place[graph.ports[high].vertex])
+        leads[high].append(place[graph.ports[low].vertex])
+    sides: dict[tuple[int, bool], list[int]] = {}
+    for number, port in enumerate(graph.ports):
+        sides.setdefault((port.vertex, port.right), []).append(number)
+    for (vertex, _), numbers in sides.items():
+        if len(numbers) == 1 or graph.kind[vertex] != "node":
+            continue
+        numbers.sort(key=lambda number: (sum(leads[number]) / len(leads[number]), number))
+        pitch = min(_PITCH, (graph.height[vertex] - 2 * _MARGIN) / (len(numbers) - 1))
+        if pitch >= _LEAST:
+            for i, number in enumerate(numbers):
+                graph.ports[number].offset = round(pitch * (i - (len(numbers) - 1) / 2), 2)
+        elif len({graph.ports[number].enters for number in numbers}) > 1:
+            first = graph.ports[numbers[0]].enters
+            for number in numbers:
+                graph.ports[number].offset = -_LEAST if graph.ports[number].enters == first else _LEAST

@@ -3,7 +3,7 @@
 1. Cycle removal reverses some edges (`acyclic`): preferably detached edges and reads.
 2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
 3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
-4. Coordinate assignment places ports and vertices (`ports`, `coordinates`).
+4. Coordinate assignment places ports (`layered`) and vertices (`coordinates`).
 5. Edge routing sets the distances of the layers and the turns of the lines (`tracks`, `routing`).
 
 Connected components are laid out one by one and packed in rows. The result depends on the diagram and its order alone.
@@ -17,13 +17,10 @@ from itertools import pairwise
 
 from ravestate.draw.acyclic import STRONG, feedback_arcs
 from ravestate.draw.bounded import fit_to_screen
-from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.coordinates import assign_coordinates
 from ravestate.draw.crossings import minimise_crossings
-from ravestate.draw.graph import Diagram, Edge, EdgeKind, NodeKind
-from ravestate.draw.layered import LayeredGraph, Link, proper_layering
-from ravestate.draw.notation import JUNCTIONS
-from ravestate.draw.ports import place_ports
+from ravestate.draw.graph import JUNCTIONS, Diagram, Edge, EdgeKind, NodeKind
+from ravestate.draw.layered import LayeredGraph, Link, place_ports, proper_layering
 from ravestate.draw.routing import Point, route
 from ravestate.draw.simplex import network_simplex
 from ravestate.policy.components import components
@@ -35,7 +32,6 @@ _GAP = 32.0  # pixels between layers with straight lines
 _TURN = 2.0  # average pixels that each port adds to a gap, for the turns of its lines
 _BETWEEN = 36.0  # pixels between components
 _ASPECT = 1.6  # desired width : height of packed components
-
 _STRENGTH: dict[EdgeKind, int] = {  # kind → the cost of reversing such an edge
     "writes": 3 * STRONG,
     "emits": 4 * STRONG,
@@ -80,13 +76,7 @@ class Layout:
 
 
 def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size | None]) -> Layout:
-    """Return the layout of a diagram.
-
-    Args:
-        diagram: The diagram.
-        nodes: Node's id → the node's size.
-        labels: The size of each edge's label; None if the edge has no label.
-    """
+    """Return the layout of a diagram, given the sizes of the nodes by their ids, and of each edge's label if any."""
     boxes: dict[str, Box] = {}
     lines: list[tuple[Point, ...]] = [()] * len(diagram.edges)
     places: list[Box | None] = [None] * len(diagram.edges)
@@ -178,7 +168,7 @@ def _extent(graph: LayeredGraph) -> Size:
     """Return an estimate of a graph's size in pixels, before its coordinates are known."""
     width = sum(max(graph.width[v] for v in layer) + _GAP for layer in graph.order)
     width += _TURN * len({low for low, _ in graph.segments})
-    height = max(sum(separation(graph, u, v) for u, v in pairwise(layer)) for layer in graph.order)
+    height = max(sum(graph.separation(u, v) for u, v in pairwise(layer)) for layer in graph.order)
     return width, height
 
 

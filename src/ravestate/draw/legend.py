@@ -6,16 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ravestate.draw.graph import Diagram, EdgeKind, NodeKind
+from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, EdgeKind, NodeKind, used
 from ravestate.draw.layout import Box
-from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, used
 from ravestate.draw.shapes import line, number, outline
 from ravestate.draw.sizes import SMALL
 from ravestate.draw.text import width
 
-NARROWEST = 560.0
-"""The width in pixels that a legend may use even if the picture is narrower."""
-
+NARROWEST = 560.0  # the width in pixels that a legend may use even if the picture is narrower
 _ROW = 26.0  # pixels: height of a row
 _GAP = 20.0  # pixels between entries
 _SAMPLE: dict[NodeKind, float] = {kind: 18.0 if kind in JUNCTIONS else 30.0 for kind in NODES}

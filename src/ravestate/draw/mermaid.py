@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from ravestate.draw.graph import Diagram, Edge, EdgeKind, Node, NodeKind
-from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, used
+from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, Edge, EdgeKind, Node, NodeKind, used
 from ravestate.draw.style import EDGE_STYLES, NODE_COLOURS, TEXT
 from ravestate.draw.text import clean
 
@@ -23,11 +22,7 @@ _ARROWS: dict[EdgeKind, str] = {
     "condition": "-->",
     "condition_detached": "-.->",
 }
-_WORDS: dict[EdgeKind, str] = {
-    "reads": "reads",
-    "emits_detached": "detached",
-    "condition_detached": "detached",
-}
+_WORDS: dict[EdgeKind, str] = {"reads": "reads", "emits_detached": "detached", "condition_detached": "detached"}
 """Kind of edge → words on its line: Mermaid has too few arrows to tell these kinds apart without colour."""
 
 _MOST_EDGES = 500  # Mermaid's default limit

@@ -59,23 +59,14 @@ def _segment(graph: LayeredGraph, middle: Sequence[float], number: int) -> Segme
 
 
 def _line(
-    graph: LayeredGraph,
-    chain: Chain,
-    across: Sequence[float],
-    middle: Sequence[float],
-    turns: Sequence[Point],
+    graph: LayeredGraph, chain: Chain, across: Sequence[float], middle: Sequence[float], turns: Sequence[Point]
 ) -> list[Point]:
     points: list[Point] = []
     for number in chain:
         low, high, y, z = _segment(graph, middle, number)
         u, v = graph.ports[low].vertex, graph.ports[high].vertex
         leaves, reaches = turns[number]
-        points += [
-            (across[u] + graph.width[u] / 2, y),
-            (leaves, y),
-            (reaches, z),
-            (across[v] - graph.width[v] / 2, z),
-        ]
+        points += [(across[u] + graph.width[u] / 2, y), (leaves, y), (reaches, z), (across[v] - graph.width[v] / 2, z)]
     return _simple(points)
 
 

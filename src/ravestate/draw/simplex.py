@@ -7,7 +7,6 @@ the sum of (weight out - weight in) over the vertices on the side of its tail. A
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Sequence
 
 from ravestate.draw.acyclic import topological
@@ -15,7 +14,6 @@ from ravestate.draw.acyclic import topological
 Arc = tuple[int, int, int, int]
 """An arc: its tail, its head, its weight, and its minimum length in layers."""
 
-_SAMPLE = 30  # candidates for the leaving arc to compare before one is chosen
 _WORK = 2_000_000  # the maximum of exchanges x vertices
 
 
@@ -30,187 +28,28 @@ def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
     """
     if count == 0:
         return []
-    simplex = _Simplex(count, arcs)
-    simplex.exchange_all(limit=min(50 + 4 * count, _WORK // count))
-    return simplex.balance()
-
-
-class _Simplex:
-    def __init__(self, count: int, arcs: Sequence[Arc]) -> None:
-        self.count = count
-        self.arcs = arcs
-        self.incident: list[list[int]] = [[] for _ in range(count)]
-        self.surplus = [0] * count  # vertex → weight out - weight in
-        for i, (u, v, weight, _) in enumerate(arcs):
-            self.incident[u].append(i)
-            self.incident[v].append(i)
-            self.surplus[u] += weight
-            self.surplus[v] -= weight
-        self.rank = _longest_paths(count, arcs)
-        self.tree_arcs: list[list[int]] = [[] for _ in range(count)]  # vertex → its tree arcs
-        self.parent = [-1] * count  # vertex → its tree arc towards the root
-        self.low = [0] * count  # vertex → the least postorder number in its subtree
-        self.number = [0] * count
-        self.vertex = [0] * count  # postorder number → vertex
-        self.total = [0] * count  # vertex → the surplus of its subtree
-        self.tree: list[int] = []
-        self.tight_tree()
-        self.number_subtree(0, 0)
-
-    def slack(self, arc: int) -> int:
-        u, v, _, length = self.arcs[arc]
-        return self.rank[v] - self.rank[u] - length
-
-    def tight_tree(self) -> None:
-        """Find a spanning tree of tight arcs: for each new arc, shift the whole tree until the arc is tight."""
-        moved = 0  # the shift of the tree so far; ranks in the tree are stored without it
-        inside = [False] * self.count
-        ahead: list[tuple[int, int]] = []  # (slack + moved, arc) for arcs out of the tree
-        behind: list[tuple[int, int]] = []  # (slack - moved, arc) for arcs into the tree
-
-        def join(v: int) -> None:
-            inside[v] = True
-            for arc in self.incident[v]:
-                u, w, _, _ = self.arcs[arc]
-                if u == v and not inside[w]:
-                    heapq.heappush(ahead, (self.slack(arc), arc))
-                elif w == v and not inside[u]:
-                    heapq.heappush(behind, (self.slack(arc), arc))
-
-        join(0)
-        while len(self.tree) < self.count - 1:
-            while ahead and inside[self.arcs[ahead[0][1]][1]]:
-                heapq.heappop(ahead)
-            while behind and inside[self.arcs[behind[0][1]][0]]:
-                heapq.heappop(behind)
-            if not ahead and not behind:
-                raise ValueError("the graph is not connected: lay out its components one by one")
-            forward = ahead[0][0] - moved if ahead else None
-            backward = behind[0][0] + moved if behind else None
-            if backward is None or (forward is not None and forward <= backward):
-                key, arc = heapq.heappop(ahead)
-                moved += key - moved
-                new = self.arcs[arc][1]
-            else:
-                key, arc = heapq.heappop(behind)
-                moved -= key + moved
-                new = self.arcs[arc][0]
-            self.tree.append(arc)
-            self.tree_arcs[self.arcs[arc][0]].append(arc)
-            self.tree_arcs[self.arcs[arc][1]].append(arc)
-            self.rank[new] -= moved
-            join(new)
-
-    def number_subtree(self, root: int, start: int) -> None:
-        """Number the subtree of `root` in postorder from `start`, and sum up its surplus."""
-        self.low[root] = start
-        counter = start
-        path = [(root, iter(self.tree_arcs[root]))]
-        self.total[root] = self.surplus[root]
-        while path:
-            v, rest = path[-1]
-            for arc in rest:
-                if arc == self.parent[v]:
-                    continue
-                u, w, _, _ = self.arcs[arc]
-                child = w if u == v else u
-                self.parent[child] = arc
-                self.low[child] = counter
-                self.total[child] = self.surplus[child]
-                path.append((child, iter(self.tree_arcs[child])))
-                break
-            else:
-                path.pop()
-                self.number[v] = counter
-                self.vertex[counter] = v
-                counter += 1
-                if path:
-                    self.total[path[-1][0]] += self.total[v]
-
-    def child(self, arc: int) -> int:
-        u, v, _, _ = self.arcs[arc]
-        return u if self.parent[u] == arc else v
-
-    def cut_value(self, arc: int) -> int:
-        child = self.child(arc)
-        return self.total[child] if child == self.arcs[arc][0] else -self.total[child]
-
-    def exchange_all(self, limit: int) -> None:
-        at = 0
-        for _ in range(limit):
-            best, found, worst = -1, 0, 0
-            for step in range(len(self.tree)):
-                place = (at + step) % len(self.tree)
-                value = self.cut_value(self.tree[place])
-                if value < 0:
-                    found += 1
-                    if value < worst:
-                        best, worst = place, value
-                    if found == _SAMPLE:
-                        break
-            if best < 0 or not self.exchange(best):
-                return
-            at = best
-
-    def exchange(self, place: int) -> bool:
-        leaving = self.tree[place]
-        child = self.child(leaving)
-        tail_side = child == self.arcs[leaving][0]
-        low, high = self.low[child], self.number[child]
-        entering, least = -1, 0
-        for number in range(low, high + 1):
-            v = self.vertex[number]
-            for arc in self.incident[v]:
-                u, w, _, _ = self.arcs[arc]
-                if (w if tail_side else u) != v or low <= self.number[u if tail_side else w] <= high:
-                    continue
-                slack = self.slack(arc)
-                if entering < 0 or slack < least:
-                    entering, least = arc, slack
-        if entering < 0:
-            return False
-        move = -least if tail_side else least
-        for number in range(low, high + 1):
-            self.rank[self.vertex[number]] += move
-        for arc, keep in ((leaving, False), (entering, True)):
-            for end in self.arcs[arc][:2]:
-                if keep:
-                    self.tree_arcs[end].append(arc)
-                else:
-                    self.tree_arcs[end].remove(arc)
-        self.tree[place] = entering
-        top = child  # the lowest common ancestor of both arcs
-        u, v, _, _ = self.arcs[entering]
-        while not (
-            self.low[top] <= self.number[u] <= self.number[top] and self.low[top] <= self.number[v] <= self.number[top]
-        ):
-            a, b, _, _ = self.arcs[self.parent[top]]
-            top = b if a == top else a
-        self.number_subtree(top, self.low[top])
-        return True
-
-    def balance(self) -> list[int]:
-        """Return the ranks after each vertex with several equally good ranks moved to the smallest of these layers."""
-        least = min(self.rank)
-        rank = [r - least for r in self.rank]
-        size = [0] * (max(rank) + 1)
-        for r in rank:
-            size[r] += 1
-        for v in range(self.count):
-            if self.surplus[v] or not self.incident[v]:
-                continue
-            first, last = 0, len(size) - 1
-            for arc in self.incident[v]:
-                u, w, _, length = self.arcs[arc]
-                if w == v:
-                    first = max(first, rank[u] + length)
-                else:
-                    last = min(last, rank[w] - length)
-            best = min(range(first, last + 1), key=lambda r: (size[r] - (r == rank[v]), abs(r - rank[v]), r))
-            size[rank[v]] -= 1
-            size[best] += 1
-            rank[v] = best
-        return rank
+    surplus = [0] * count  # vertex → weight out - weight in
+    for u, v, weight, _ in arcs:
+        surplus[u] += weight
+        surplus[v] -= weight
+    rank = _longest_paths(count, arcs)
+    tree = _tight_tree(rank, arcs)
+    for _ in range(min(50 + 4 * count, _WORK // count)):
+        leaving, side = _worst_cut(arcs, tree, surplus)
+        if not side:
+            break
+        back = (
+            arcs[leaving][0] in side
+        )  # the arc grows if its tail moves to an earlier layer, or its head to a later one
+        slack, entering = min(
+            (rank[v] - rank[u] - length, i)
+            for i, (u, v, _, length) in enumerate(arcs)
+            if (u in side) != back and (v in side) == back
+        )
+        for v in side:
+            rank[v] += -slack if back else slack
+        tree[tree.index(leaving)] = entering
+    return _balanced(rank, arcs, surplus)
 
 
 def _longest_paths(count: int, arcs: Sequence[Arc]) -> list[int]:
@@ -224,4 +63,64 @@ def _longest_paths(count: int, arcs: Sequence[Arc]) -> list[int]:
             rank[v] = max(rank[v], rank[u] + length)
     if len(order) < count:
         raise ValueError("the graph has a cycle")
+    return rank
+
+
+def _tight_tree(rank: list[int], arcs: Sequence[Arc]) -> list[int]:
+    """Return a spanning tree of tight arcs. For each new arc, the tree shifts in `rank` until the arc is tight."""
+    tree: list[int] = []
+    inside = {0}
+    while len(inside) < len(rank):
+        crossing = [i for i, (u, v, _, _) in enumerate(arcs) if (u in inside) != (v in inside)]
+        if not crossing:
+            raise ValueError("the graph is not connected: lay out its components one by one")
+        slack, i = min((rank[arcs[i][1]] - rank[arcs[i][0]] - arcs[i][3], i) for i in crossing)
+        shift = slack if arcs[i][0] in inside else -slack
+        for v in inside if shift else ():
+            rank[v] += shift
+        tree.append(i)
+        inside.update(arcs[i][:2])
+    return tree
+
+
+def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int]) -> tuple[int, set[int]]:
+    """Return the tree arc with the least cut value, and one of its sides, which is empty if no value is negative."""
+    near: list[list[int]] = [[] for _ in surplus]
+    for arc in tree:
+        for end in arcs[arc][:2]:
+            near[end].append(arc)
+    order: list[tuple[int, int]] = []  # in preorder: a vertex, and its tree arc towards the root
+    ahead = [(0, -1)]
+    while ahead:
+        v, above = ahead.pop()
+        order.append((v, above))
+        ahead += [(sum(arcs[arc][:2]) - v, arc) for arc in near[v] if arc != above]
+    total, size = list(surplus), [1] * len(surplus)  # of each vertex's subtree
+    worst = (0, 0)
+    for place in range(len(order) - 1, 0, -1):
+        v, above = order[place]
+        worst = min(worst, (total[v] if arcs[above][0] == v else -total[v], place))
+        parent = sum(arcs[above][:2]) - v
+        total[parent] += total[v]
+        size[parent] += size[v]
+    if worst[0] == 0:
+        return -1, set()
+    top, leaving = order[worst[1]]
+    return leaving, {v for v, _ in order[worst[1] : worst[1] + size[top]]}
+
+
+def _balanced(rank: list[int], arcs: Sequence[Arc], surplus: Sequence[int]) -> list[int]:
+    """Return the ranks from 0 on; a vertex with several equally good ranks moves to the smallest of these layers."""
+    least = min(rank)
+    rank = [r - least for r in rank]
+    size = [rank.count(r) for r in range(max(rank) + 1)]
+    for v in range(len(rank)):
+        if surplus[v]:
+            continue
+        first = max((rank[u] + length for u, w, _, length in arcs if w == v), default=0)
+        last = min((rank[w] - length for u, w, _, length in arcs if u == v), default=len(size) - 1)
+        best = min(range(first, last + 1), key=lambda r: (size[r] - (r == rank[v]), abs(r - rank[v]), r))
+        size[rank[v]] -= 1
+        size[best] += 1
+        rank[v] = best
     return rank

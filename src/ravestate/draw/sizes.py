@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from ravestate.draw.graph import Node
-from ravestate.draw.notation import JUNCTIONS
+from ravestate.draw.graph import JUNCTIONS, Node
 from ravestate.draw.text import clean, shorten, width
 
-NAME = 13.0
-"""The font size of a node's name, in pixels."""
-
-SMALL = 10.5
-"""The font size of a node's module and note, in pixels."""
-
-LABEL = 10.5
-"""The font size of an edge's label, in pixels."""
-
-LONGEST = 250.0
-"""The maximum width of a text in pixels; a wider text is cut, and the tooltip shows the whole text."""
-
+NAME = 13.0  # the font size of a node's name, in pixels
+SMALL = 10.5  # the font size of a node's module and note, in pixels
+LABEL = 10.5  # the font size of an edge's label, in pixels
+LONGEST = 250.0  # the maximum width of a text in pixels; a wider text is cut, and the tooltip shows the whole text
 _JUNCTION = 22.0  # pixels: width and height of a junction
 
 

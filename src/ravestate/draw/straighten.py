@@ -1,14 +1,13 @@
 """Remove small steps from lines that are almost straight.
 
-The average of four alignments is rarely aligned itself. Here, aligned vertices move together, and only into free space.
-They move if this straightens a line and makes no other line much longer.
+Aligned vertices move together, and only into free space. They move if this straightens a line and makes no other line
+much longer.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
 
-from ravestate.draw.brandes_koepf import separation
 from ravestate.draw.layered import LayeredGraph
 
 _BEND = 60.0  # the cost of a step in a line, in pixels of length
@@ -78,7 +77,7 @@ class _Straightener:
             other = self.below[v] if by > 0 else self.above[v]
             if other >= 0 and self.block[other] != block:
                 upper, lower = (v, other) if by > 0 else (other, v)
-                room = abs(self.middle[other] - self.middle[v]) - separation(self.graph, upper, lower)
+                room = abs(self.middle[other] - self.middle[v]) - self.graph.separation(upper, lower)
                 if room < abs(by) - 1e-6:
                     return -1.0
             for w, offset in self.lines[v]:

@@ -69,12 +69,7 @@ def stylesheet() -> str:
         (".srs .srs-small", "fill", _FAINT, "font-size:10.5px"),
         (".srs .srs-label", "fill", TEXT, "font-size:10.5px"),
         (".srs .srs-line", "stroke", Paint("#d5dae0", "#39424c"), "fill:none"),
-        (
-            ".srs .srs-sign",
-            "stroke",
-            TEXT,
-            "fill:none;stroke-width:1.8;stroke-linecap:round;stroke-linejoin:round",
-        ),
+        (".srs .srs-sign", "stroke", TEXT, "fill:none;stroke-width:1.8;stroke-linecap:round;stroke-linejoin:round"),
     ]
     for node, (fill, stroke) in NODE_COLOURS.items():
         rules.append((f".srs .srs-{node}", "fill", fill, ""))

@@ -6,10 +6,9 @@ import hashlib
 import html
 from collections import Counter
 
-from ravestate.draw.graph import Diagram, Edge, Node, NodeKind
+from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, Edge, Node, NodeKind, describe
 from ravestate.draw.layout import Box, lay_out
 from ravestate.draw.legend import NARROWEST, legend
-from ravestate.draw.notation import EDGES, JUNCTIONS, NODES, describe
 from ravestate.draw.shapes import heads, line, number, outline
 from ravestate.draw.sizes import LABEL, NAME, SMALL, label_size, node_size, shown
 from ravestate.draw.style import stylesheet
@@ -20,11 +19,9 @@ _SENTENCES = 60  # the maximum number of edges in the description
 
 
 def svg(diagram: Diagram) -> str:
-    """Return a diagram as SVG. The same diagram gives the same bytes.
+    """Return a diagram as SVG, to be encoded as UTF-8. The same diagram gives the same bytes.
 
-    Returns:
-        An XML document, to be encoded as UTF-8. It has a title and a description for screen readers, and a title for each
-        node and edge.
+    The document has a title and a description for screen readers, and a title for each node and edge.
     """
     layout = lay_out(diagram, {n.id: node_size(n) for n in diagram.nodes}, [label_size(e.label) for e in diagram.edges])
     prefix = "srs-" + hashlib.sha256(repr(diagram).encode("utf-8", "backslashreplace")).hexdigest()[:8]

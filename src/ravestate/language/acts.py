@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 
+from .contractions import word_set
 from .matcher import Match, Matcher, bundled_matcher
 from .normal import normalise, plain
 from .sentences import sentences as sentences_of
@@ -23,11 +24,9 @@ ADDRESS_WORDS = 3
 """The number of other words that make no more of a greeting: "hello my dear robot"."""
 
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
-_SUBJECTS = frozenset(["i", "you", "he", "she", "it", "we", "they"])
-_LINKS = frozenset(["and", "then", "now", "so", "but"])
-_GOES_ON = frozenset(
-    ["is", "was", "are", "were", "be", "means", "of", "for", "to", "that", "which", "by", "in", "on", "at", "s"]
-)
+_SUBJECTS = word_set("i you he she it we they")
+_LINKS = word_set("and then now so but")
+_GOES_ON = word_set("is was are were be means of for to that which by in on at s")
 """Words that make a formula the beginning of a sentence: "thanks to the rain", "hello is a song"."""
 
 

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import calendar
 import logging
+import re
 import threading
 from functools import lru_cache
 from importlib.util import find_spec
-from itertools import groupby, pairwise
+from itertools import islice, pairwise, product
 from pathlib import Path
 from typing import Any
+
+from .contractions import word_set
 
 FREQUENT = 5000
 """The occurrences of a word in the subtitles (1.6 billion words) from which it may replace an unknown word."""
@@ -26,41 +29,17 @@ DOUBLED = 20
 SHORTEST = 4
 """The letters of an unknown word from which it may be a slip."""
 
-_BRITISH = (
-    ("our", "or"),
-    ("tre", "ter"),
-    ("ll", "l"),
-    ("is", "iz"),
-    ("ys", "yz"),
-    ("gue", "g"),
-    ("ce", "se"),
-    ("que", "ck"),
-)
+_BRITISH = [pair.split("/") for pair in ["our/or", "tre/ter", "ll/l", "is/iz", "ys/yz", "gue/g", "ce/se", "que/ck"]]
 """Endings of British spelling, which is no slip, with the American ones."""
-_NO_NAMES = frozenset(
-    [
-        "grey",
-        "armour",
-        "tyre",
-        "honorable",
-        "mister",
-        "independence",
-        "reunion",
-        "reconstruction",
-        "que",
-        "les",
-        "del",
-        "mon",
-        "dem",
-        "herr",
-        "san",
-    ]
+_BRITISH_WORDS = word_set("maths programme programmes dreamt")
+"""Words of British English that neither package has."""
+_NO_NAMES = word_set(
+    "grey armour tyre honorable mister independence reunion reconstruction que les del mon dem herr san"
 )
 """Entries of the dictionary with a capital that are more often ordinary words."""
 
-_BRITISH_WORDS = frozenset(["maths", "programme", "programmes", "dreamt"])
-"""Words of British English that neither package has."""
-
+_RUN = re.compile(r"(.)\1*")
+_STRETCHED = re.compile(r"(.)\1\1")
 _log = logging.getLogger("ravestate.language")
 _lock = threading.Lock()
 _loaded: list[Lexicon | None] = []
@@ -75,7 +54,7 @@ def load_lexicon() -> Lexicon | None:
             except ImportError as error:
                 _log.info("slips of the pen stay as they are: pip install 'ravestate[nlp]' (%s)", error)
                 _loaded.append(None)
-    return _loaded[0]
+    return loaded_lexicon()
 
 
 def loaded_lexicon() -> Lexicon | None:
@@ -122,14 +101,11 @@ class Lexicon:
 
     def unstretched(self, word: str) -> str:
         """Return `word` without letters that were repeated for emphasis: *sooo*, *yesss*."""
-        runs = [(letter, len(list(run))) for letter, run in groupby(word)]
-        if all(length < 3 for _, length in runs):
+        if not _STRETCHED.search(word):
             return word
-        shapes = [""]
-        for letter, length in runs[:24]:
-            shapes = [shape + letter * times for shape in shapes for times in ((1, 2) if length > 2 else (length,))][
-                :64
-            ]
+        runs = [run[0] for run in _RUN.finditer(word[:24])]
+        choices = [(run[0], run[:2]) if len(run) > 2 else (run,) for run in runs]
+        shapes = ["".join(parts) for parts in islice(product(*choices), 64)]
         return max(shapes, key=self.count) if any(map(self.count, shapes)) else word
 
     def _correction(self, word: str) -> str:

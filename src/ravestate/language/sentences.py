@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import re
 
-_SENTENCE = re.compile(r"[^.!?…\n]+(?:[.](?=\w)[^.!?…\n]+)*[.!?…]*")
-"""A dot inside a word or a number ends no sentence."""
+_ABBREVIATION = r"\b(?:mr|mrs|ms|dr|prof|st|mt|jr|vs|approx|no(?= ?\d)|[a-z](?:\.[a-z])+)\."
+_SENTENCE = re.compile(rf"(?:{_ABBREVIATION}(?=\s+\w)|[^.!?…\n]|[.](?=\w))+[.!?…]*", re.IGNORECASE)
+"""A dot inside a word or a number, or after an abbreviation, ends no sentence."""
 
 
 def sentences(text: str) -> tuple[str, ...]:
     """Return the sentences of a text, with their punctuation; parts without a letter or digit are left out.
 
     Example:
-        >>> sentences("Hi! How are you? I paid 3.50 today.")
-        ('Hi!', 'How are you?', 'I paid 3.50 today.')
+        >>> sentences("Hi! I am Dr. Sun. I paid 3.50 today.")
+        ('Hi!', 'I am Dr. Sun.', 'I paid 3.50 today.')
     """
     found = (sentence.strip() for sentence in _SENTENCE.findall(text))
     return tuple(sentence for sentence in found if any(letter.isalnum() for letter in sentence))

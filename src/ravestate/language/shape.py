@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .contractions import word_set
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -15,34 +17,11 @@ if TYPE_CHECKING:
 WEIGHTS = (0.4, 0.4, 0.1, 0.1)
 """The weights of the features, which add up to 1: the agent, the user, others, the order of the words."""
 
-_AGENT = frozenset(["you", "your", "yours", "yourself"])
-_USER = frozenset(["i", "me", "my", "mine", "myself", "we", "us", "our", "ours"])
-_OTHERS = frozenset(["he", "him", "his", "she", "her", "hers", "it", "its", "they", "them", "their", "theirs"])
-_QUESTION_WORDS = frozenset(["who", "whom", "whose", "what", "which", "where", "when", "why", "how"])
-_AUXILIARIES = frozenset(
-    [
-        "do",
-        "does",
-        "did",
-        "am",
-        "is",
-        "are",
-        "was",
-        "were",
-        "have",
-        "has",
-        "had",
-        "can",
-        "could",
-        "will",
-        "would",
-        "may",
-        "might",
-        "shall",
-        "should",
-        "must",
-    ]
-)
+_AGENT = word_set("you your yours yourself")
+_USER = word_set("i me my mine myself we us our ours")
+_OTHERS = word_set("he him his she her hers it its they them their theirs")
+_QUESTION_WORDS = word_set("who whom whose what which where when why how")
+_AUXILIARIES = word_set("do does did am is are was were have has had can could will would may might shall should must")
 
 
 def shape(text: str) -> tuple[bool, bool, bool, int]:

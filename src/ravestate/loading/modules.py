@@ -17,14 +17,10 @@ from ravestate.modules import BUILT_IN
 
 
 def load_module(name: str, folder: Path = Path()) -> Module:
-    """Return a module by its built-in name, entry point, dotted path or file.
+    """Return a module by its built-in name, entry point, dotted path or file; paths are relative to `folder`.
 
-    Args:
-        name: ``rawio``, the entry point of an installed package, ``pkg.mod``, ``pkg.mod:module`` or ``./hello.py``.
-        folder: The folder against which a relative path is resolved.
-
-    Raises:
-        UsageError: There is no such module, or importing it fails.
+    The name is ``rawio``, the entry point of an installed package, ``pkg.mod``, ``pkg.mod:module`` or ``./hello.py``.
+    If there is no such module, or importing it fails, raise a `UsageError`.
     """
     if name.endswith(".py"):
         return _from_file(name, (folder / name).resolve())

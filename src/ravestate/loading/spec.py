@@ -47,11 +47,7 @@ class AgentSpec:
 
     @classmethod
     def from_file(cls, path: Path) -> AgentSpec:
-        """Read an agent file and load its modules.
-
-        Raises:
-            UsageError: The file or something in it is wrong. The message lists all mistakes.
-        """
+        """Read an agent file and load its modules, or raise a `UsageError` that lists all mistakes."""
         spec = cls()
         spec.load(spec.read(path))
         spec.check()
@@ -64,11 +60,8 @@ class AgentSpec:
     def read(self, path: Path) -> list[tuple[str, Path]]:
         """Take the settings and numbers of an agent file, and add its mistakes to `faults`.
 
-        Returns:
-            The names of the file's modules, each with the folder of the file.
-
-        Raises:
-            UsageError: The file cannot be read at all.
+        Return the names of the file's modules, each with the folder of the file. Raise a `UsageError` if it cannot be
+        read at all.
         """
         try:
             content: Any = load_yaml(path.read_text(encoding="utf-8"), str(path))
@@ -97,11 +90,7 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load the modules with these names; a relative path is resolved against the folder beside the name.
-
-        Raises:
-            UsageError: A module cannot be loaded, and `faults` is empty.
-        """
+        """Load the modules with these names; a relative path is resolved against the folder beside the name."""
         for name, folder in names:
             try:
                 module = load_module(name, folder)
@@ -136,12 +125,9 @@ class AgentSpec:
             self.settings.setdefault(module, {})[key] = value
 
     def check(self) -> None:
-        """Raise one error with all `faults`, and with those of the settings.
+        """Raise a `UsageError` with all `faults`, and with those of the settings.
 
         If `faults` is empty, this does not check the settings either: compiling the modules finds their faults.
-
-        Raises:
-            UsageError: There are faults.
         """
         if not self.faults:
             return

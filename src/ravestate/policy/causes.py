@@ -94,18 +94,16 @@ class Causes:
     def ancestors(self, signal: int) -> frozenset[int]:
         """Return the numbers of the rules from which a chain of non-detached effects leads to the signal."""
         component = self.components.of[signal]  # all signals of a component have the same ancestors
-        found = self._ancestors.get(component)
-        if found is None:
-            found = self._ancestors[component] = self._climb(signal, self.causes, wide=False)
-        return found
+        if component not in self._ancestors:
+            self._ancestors[component] = self._climb(signal, self.causes, wide=False)
+        return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
         """Return the numbers of the rules from which any chain of effects leads to the signal. A chain does not pass
         through an input, because an input may occur at any time anyway."""
-        found = self._wide.get(signal)
-        if found is None:
-            found = self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
-        return found
+        if signal not in self._wide:
+            self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
+        return self._wide[signal]
 
     def _climb(self, signal: int, causes: Sequence[Sequence[RulePlan]], *, wide: bool) -> frozenset[int]:
         rules: set[int] = set()

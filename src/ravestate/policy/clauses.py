@@ -11,8 +11,7 @@ from ravestate.declare.condition import AllOf, AnyOf, Compound, Condition, Const
 from ravestate.declare.signal import Signal
 from ravestate.errors import DeclarationError
 
-MAX_CLAUSES = 256
-"""The maximum number of conjunctions in a condition; a condition with more must be a mistake."""
+MAX_CLAUSES = 256  # the maximum number of conjunctions in a condition; a condition with more must be a mistake
 
 Atoms = tuple[Constraint | Holds, ...]
 
@@ -28,15 +27,7 @@ class Conjunction:
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
     """Bring a condition of any depth into disjunctive normal form, in declaration order, without duplicates.
 
-    Raises:
-        DeclarationError: The condition has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition.
-
-    Example:
-        >>> import ravestate as rs
-        >>> demo = rs.Module("demo")
-        >>> a, b, c = (demo.signal(name) for name in "abc")
-        >>> [conjunction.constraints for conjunction in normal_form(a & (b | c))]
-        [(demo:a, demo:b), (demo:a, demo:c)]
+    If it has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition, raise a `DeclarationError`.
     """
     parts = list(_inner_first(condition))
     _check(condition, parts)

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
+from ravestate.declare.core import core
 from ravestate.declare.module import Module, as_module
 from ravestate.declare.rule import Rule
+from ravestate.declare.wording import few
 from ravestate.errors import DeclarationError, DeclarationErrors
 from ravestate.policy.causes import Causes
+from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.connect import connect, find_contests, find_kin
+from ravestate.policy.least import Least
+from ravestate.policy.model import RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
-from ravestate.policy.order import in_order
 from ravestate.policy.policy import Policy
-from ravestate.policy.reachable import check_reachable
 from ravestate.policy.rules import Rules
-from ravestate.policy.utility import assign_utilities
 
 
 def compile_policy(*modules: Module | ModuleType) -> Policy:
@@ -51,21 +54,12 @@ def compile_policy(*modules: Module | ModuleType) -> Policy:
 
 
 def build(
-    modules: Sequence[Module],
-    rules: Sequence[Rule[Any, Any]],
-    settings: Mapping[str, Any],
-    faults: Sequence[str] = (),
+    modules: Sequence[Module], rules: Sequence[Rule[Any, Any]], settings: Mapping[str, Any], faults: Sequence[str] = ()
 ) -> Policy:
     """Number all signals, slots and rules, and make the policy.
 
-    Args:
-        modules: All modules of the policy, in order.
-        rules: All rules of the policy, in order. A rule that a context added is in none of the modules.
-        settings: A module's name → its settings; a module that is missing here uses its default settings.
-        faults: The faults that the caller has found already.
-
-    Raises:
-        DeclarationErrors: There is a fault, found here or by the caller.
+    A rule that a context added is in none of the modules. Without an entry in `settings`, a module has its default
+    settings. If there are `faults`, found here or by the caller, they are raised together.
     """
     found = list(faults)
     names = Names(modules, found)
@@ -92,3 +86,92 @@ def build(
         refers=numbers.refers,
         settings=settings,
     )
+
+
+def check_reachable(causes: Causes, faults: list[str]) -> None:
+    """Add a fault for each rule that waits for its own effects, directly or not, and that no input can start.
+
+    A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
+    may write slots, and detached effects make loops on purpose.
+    """
+    given = {s.index for s in causes.signals if s.input or s.slot is not None}
+    given |= {signal for rule in causes.rules if rule.detached for signal in rule.raises}
+    grounded = causes.grounded(given)
+    for rule in causes.rules:
+        if any(all(n.signal.index in grounded for n in clause.needs) for clause in rule.clauses):
+            continue
+        lacking = [n.signal for clause in rule.clauses for n in clause.needs if n.signal.index not in grounded]
+        if not lacking:
+            continue
+        raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
+        faults.append(
+            f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
+            f"only {raisers} may raise it, and they wait for each other; if it comes from outside, declare it "
+            "with input=True"
+        )
+
+
+def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
+    """Return the given modules and all that they require, in order.
+
+    Cycles of `requires`, and names that two modules share, go to `faults`.
+    """
+    ordered: dict[Module, None] = {core: None}
+    names = {core.name: core}
+    for wanted in given:
+        way = {wanted: iter(wanted.requires)}  # a chain of modules, each of which requires the next
+        while way:
+            module, ahead = next(reversed(way.items()))
+            required = next(ahead, None)
+            if required is not None and required in way:
+                members = list(way)
+                cycle = [*members[members.index(required) :], required]
+                faults.append(
+                    f"modules require each other in a cycle: {' -> '.join(m.name for m in cycle)}; remove one `requires`, "
+                    "or move the common names to a module of their own"
+                )
+            elif required is not None:
+                if required not in ordered:
+                    way[required] = iter(required.requires)
+            else:
+                del way[module]
+                if module in ordered:
+                    continue
+                other = names.setdefault(module.name, module)
+                if other is not module:
+                    faults.append(
+                        f"two modules are named {module.name!r}: {other.origin} and {module.origin}; rename one"
+                    )
+                ordered[module] = None
+    return list(ordered)
+
+
+PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)
+
+NO_INFORMATION = 1e-9
+"""The nats with which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
+
+
+def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
+    """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
+
+    Return the graph in which clauses are completed; `Pathways` lists their other pathways with it.
+    """
+    completion = Completion(signals, rules, causes)
+    least = Least(completion)
+    of = causes.components.of
+    for rule in rules:
+        # A clause is cyclic if a signal that its rule raises leads to one of its needs.
+        raised = set[int]() if rule.detached else {of[signal] for signal in rule.raises}
+        for clause in rule.clauses:
+            firm = [need.signal.index for need in clause.needs if not need.detached]
+            looked_at = [need.signal.index for need in clause.needs if need.detached]
+            clause.cyclic = any(of[signal] in raised for signal in firm)
+            predicates = len(clause.guards) + sum(len(need.predicates) for need in clause.needs)
+            places = [completion.place[s] for s in firm]
+            looked_places = [completion.place[s] for s in looked_at]
+            cost, clause.least = least.pathway(places, looked_places)
+            # The sum is rounded because the information of a predicate is not a multiple of the unit.
+            clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
+            clause.base = (clause.utility or NO_INFORMATION) * rule.weight
+    return completion

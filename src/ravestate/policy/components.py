@@ -20,12 +20,7 @@ class Components:
 
 
 def components(edges: Sequence[Sequence[int]]) -> Components:
-    """Return the components of the graph in which an edge leads from node `n` to each of ``edges[n]``.
-
-    Example:
-        >>> components([[1], [2], [1], [0]]).members
-        [[2, 1], [0], [3]]
-    """
+    """Return the components of the graph in which an edge leads from node `n` to each of ``edges[n]``."""
     members: list[list[int]] = []
     of = [-1] * len(edges)
     number = [-1] * len(edges)  # node → its number in the order of discovery

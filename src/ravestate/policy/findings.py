@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from itertools import islice
 
 from ravestate.declare.core import startup
+from ravestate.declare.wording import few
 from ravestate.policy.completion import each
 from ravestate.policy.conflicts import Conflicts, writers
 from ravestate.policy.loops import endless_loops
 from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 from ravestate.policy.source import Source, acts_of, undeclared
-from ravestate.policy.wording import few
 
-BREAKING = frozenset({"undeclared", "unknown", "await"})
-"""The kinds of findings that make a rule fail at run time."""
+BREAKING = frozenset({"undeclared", "unknown", "await"})  # the kinds of findings that make a rule fail at run time
 
 MAX_PEERS = 64
 """The search for ties compares each rule with at most this many other rules, those declared first.
@@ -49,10 +48,7 @@ class Finding:
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
     """Return all findings, those that make a rule fail at run time first. A rule has at most one finding of each kind.
 
-    Args:
-        policy: The policy.
-        source: A function that returns the source of a rule's function, such as ``inspect.getsource``. Without it, the
-            findings that need source code are left out.
+    Without `source`, which returns the source of a function, the findings that need source code are left out.
     """
     return (
         *(_in_source(policy, source) if source else ()),

@@ -24,8 +24,7 @@ EFFORT = 100_000
 One search may use a tenth of what the earlier searches left, divided among its steps.
 """
 
-FREE = 100
-"""The number of sets that each search may always examine."""
+FREE = 100  # the number of sets that each search may always examine
 
 
 class Least:
@@ -51,11 +50,9 @@ class Least:
             self._settle([place for place in members if not completion.bare[place]])
 
     def pathway(self, firm: Iterable[int], looked_at: Iterable[int]) -> tuple[int, int]:
-        """Return the information of the clause's least pathway, and the pathway as a set.
+        """Return the information of a clause's least pathway, and the pathway as a set.
 
-        Args:
-            firm: The places of the clause's non-detached signals.
-            looked_at: The places of the clause's detached signals, which need no completion.
+        The places `firm` are those of its non-detached signals; those `looked_at`, detached, need no completion.
         """
         free = _set(looked_at)
         cost, found = self._search(firm, free)

@@ -15,12 +15,9 @@ from ravestate.policy.model import SignalPlan, SlotPlan
 
 
 class Names:
-    """The signals and slots that modules declare, in declaration order.
+    """The signals, including those of slots, and the slots that modules declare, in declaration order.
 
-    Attributes:
-        signals: The numbered signals, including those of slots.
-        slots: The numbered slots.
-        faults: The list to which this class adds faults: names that occur twice, and unknown names.
+    Names that occur twice, and unknown names, go to `faults`.
     """
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:

@@ -16,9 +16,7 @@ from ravestate.errors import nearest
 class Numbers:
     """Checks the numbers in rules, and replaces a setting by its value.
 
-    Attributes:
-        refers: Whether any number that was checked so far is a setting.
-        faults: The list to which this class adds faults: numbers out of range, and missing settings.
+    It adds numbers out of range, and missing settings, to `faults`. If it has met a setting, `refers` is true.
     """
 
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:
@@ -31,15 +29,7 @@ class Numbers:
     def number(
         self, rule: Rule[Any, Any], number: Number, what: str, valid: Callable[[float], bool], wanted: str
     ) -> float:
-        """Return the value of a number; if the number has a fault, add the fault and return 1.
-
-        Args:
-            rule: The rule that has the number.
-            number: The number, or a reference to a setting.
-            what: The name of the rule's argument, for the message.
-            valid: A function that returns whether a number is in range.
-            wanted: The range in words, for the message.
-        """
+        """Return the value of the argument `what` of a rule; if it is not `valid`, add a fault and return 1."""
         where = f"rule {rule.name} ({rule.origin}): {what}"
         source = repr(number)
         if isinstance(number, SettingRef):

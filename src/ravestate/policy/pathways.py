@@ -16,8 +16,7 @@ from ravestate.declare.signal import Signal
 from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
-MAX_PATHWAYS = 256
-"""The maximum number of pathways listed for a clause or a signal: those with the least information."""
+MAX_PATHWAYS = 256  # the maximum number of pathways listed for a clause or a signal: those with the least information
 
 MAX_UNIONS = 200_000
 """The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""

@@ -8,6 +8,7 @@ from typing import Any
 from ravestate.declare.condition import Condition, Constraint
 from ravestate.declare.core import activity, pressure
 from ravestate.declare.rule import Rule
+from ravestate.declare.settings import Number
 from ravestate.errors import DeclarationError
 from ravestate.policy.clauses import Conjunction, normal_form
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
@@ -23,12 +24,7 @@ the flag, thereby lose its spike, clear the flag again, and so on, all in one in
 
 
 class Rules:
-    """The rules of a policy, in the order in which they were added.
-
-    Attributes:
-        plans: The records of the rules.
-        faults: The list to which this class adds the faults of rules.
-    """
+    """The records of a policy's rules, in the order in which they were added. Their faults go to `faults`."""
 
     def __init__(self, names: Names, numbers: Numbers, faults: list[str]) -> None:
         self.names = names
@@ -110,23 +106,13 @@ class Rules:
         return clause
 
     def _need(
-        self,
-        clause: Clause,
-        index: int,
-        constraint: Constraint,
-        signal: SignalPlan,
-        rule: Rule[Any, Any],
-        where: str,
+        self, clause: Clause, index: int, constraint: Constraint, signal: SignalPlan, rule: Rule[Any, Any], where: str
     ) -> Need:
-        def positive(n: float) -> bool:
-            return n >= 0
+        def age(number: Number, what: str) -> float:
+            return self.numbers.number(rule, number, f"{constraint.signal}.{what}", lambda n: n >= 0, "0 s or more")
 
-        low = self.numbers.number(rule, constraint.min_age_, f"{constraint.signal}.min_age", positive, "0 s or more")
-        high = math.inf
-        if constraint.max_age_ is not None:
-            high = self.numbers.number(
-                rule, constraint.max_age_, f"{constraint.signal}.max_age", positive, "0 s or more"
-            )
+        low = age(constraint.min_age_, "min_age")
+        high = math.inf if constraint.max_age_ is None else age(constraint.max_age_, "max_age")
         if low > high:
             self.faults.append(
                 f"{where}: {constraint.signal} can never be at least {low:g} s and at most {high:g} s old: write "

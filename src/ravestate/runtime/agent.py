@@ -15,12 +15,7 @@ from ravestate.settings import Settings
 class Agent:
     """A policy and its settings, read and checked once, and shared by all contexts of the agent.
 
-    Args:
-        modules: As for `Context`.
-        options: The other arguments, as for `Context`.
-
-    Raises:
-        DeclarationErrors: The modules or the settings have faults.
+    The arguments, and the exceptions, are those of `Context`.
     """
 
     def __init__(self, *modules: Module | ModuleType | Policy, **options: Any) -> None:
@@ -30,10 +25,6 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context of this agent, which can be started once.
-
-        Args:
-            options: Arguments of `Context`, except ``settings``; they override those of the agent.
-        """
+        """Return a new context of this agent, which can be started once; `options` override those of the agent."""
         merged: Any = self._options | options
         return Context(self.policy, **merged)

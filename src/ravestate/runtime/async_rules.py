@@ -13,8 +13,7 @@ from ravestate.runtime.blocking import StepTimer
 from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
 
-GRACE = 5.0
-"""The seconds that a cancelled rule has to clean up before its run counts as ended."""
+GRACE = 5.0  # the seconds that a cancelled rule has to clean up before its run counts as ended
 
 CLEANING = 10
 """The turns of the event loop that a cancelled rule has for its last writes before any other rule continues."""
@@ -25,11 +24,9 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    Args:
-        loop: The context's event loop.
-        finish: Called with a run, its result and its exception when the run's function has ended.
-        give_up: Called with a run and the reason, if the run does not end within `GRACE` seconds of its cancellation.
-        proceed: Called when the tasks in `cleaning` have ended, or when their turns are over.
+    It calls `finish` with a run, its result and its exception when the run's function has ended. If the run does not end
+    within `GRACE` seconds of its cancellation, it calls `give_up` with the run and the reason. It calls `proceed` when the
+    tasks in `cleaning` have ended, or when their turns are over.
     """
 
     def __init__(
@@ -84,9 +81,7 @@ class AsyncRules:
     async def close(self, reason: str, *, at_once: bool) -> None:
         """Cancel all runs and wait for them for at most `GRACE` seconds; then end the runs that have not ended.
 
-        Args:
-            reason: The reason for which the runs end, for messages.
-            at_once: Whether to return without waiting.
+        With `at_once`, do not wait.
         """
         for ctx, task in self._tasks.items():
             ctx.cancelled = reason

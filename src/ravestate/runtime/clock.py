@@ -6,11 +6,7 @@ import asyncio
 
 
 class Clock:
-    """A clock that counts the seconds since a context started, without the time in which the clock was halted.
-
-    Args:
-        loop: The loop whose time the clock follows.
-    """
+    """A clock that counts the seconds since a context started, without the time in which the clock was halted."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
@@ -32,11 +28,7 @@ class Clock:
         return self._halted is not None
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until `seconds` have passed on this clock; with 0 or less, only give other tasks a turn.
-
-        Raises:
-            ValueError: The number of seconds is NaN.
-        """
+        """Wait until `seconds` (not NaN) have passed on this clock; with 0 or less, only give other tasks a turn."""
         if seconds != seconds:
             raise ValueError("cannot sleep for nan seconds")
         if seconds <= 0:

@@ -30,8 +30,7 @@ from ravestate.settings import load_settings
 
 T = TypeVar("T")
 
-TRACE_LIMIT = 100_000
-"""The maximum number of records in a context's trace."""
+TRACE_LIMIT = 100_000  # the maximum number of records in a context's trace
 
 
 class Context:

@@ -19,12 +19,7 @@ from ravestate.runtime.blocking import StepTimer
 
 
 class EagerTask:
-    """A spare task; once it has adopted the coroutine of a rule, it is the rule's task.
-
-    Args:
-        loop: The loop of the task.
-        timer: The timer that measures each step of the coroutine.
-    """
+    """A spare task. Once it has adopted the coroutine of a rule, it is the rule's task; the timer measures each step."""
 
     __slots__ = (
         "_abandoned", "_clean", "_context", "_coroutine", "_first", "_loop", "_rule", "_timer", "_wake", "task",

@@ -14,14 +14,7 @@ from ravestate.errors import RuleError
 
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
-    """Return the event that reports the end of a run to the engine.
-
-    Args:
-        run: The number of the run.
-        rule: The rule of the run.
-        outcome: The value that the function returned, or the exception that it raised.
-        raised: Whether `outcome` is an exception that the function raised.
-    """
+    """Return the event that reports the end of a run: its function returned, or `raised`, the `outcome`."""
     if outcome is None:
         return Finish(run, "done")
     if isinstance(outcome, Resign):

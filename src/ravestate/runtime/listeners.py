@@ -12,9 +12,7 @@ from ravestate.engine.effects import Spiked
 class Listeners:
     """The listeners of one context: functions and waiting tasks, each for one signal.
 
-    Args:
-        watched: The engine's table of the signals whose spikes it reports; this class fills it.
-        functions: Signal's name → a function that is called with the payload of every spike of the signal.
+    This class fills `watched`, the engine's table of the signals whose spikes it reports.
     """
 
     def __init__(self, watched: dict[str, int], functions: Mapping[str, Callable[[Any], None]]) -> None:

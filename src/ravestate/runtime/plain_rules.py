@@ -22,15 +22,11 @@ log = logging.getLogger("ravestate")
 class PlainRules:
     """Starts and abandons the runs of one context's rules that are plain functions.
 
-    Args:
-        loop: The context's event loop.
-        finish: Called on the loop with a run, its result and its exception when the run's function has ended.
+    It calls `finish` on the loop with a run, its result and its exception when the run's function has ended.
     """
 
     def __init__(
-        self,
-        loop: asyncio.AbstractEventLoop,
-        finish: Callable[[RuleContext, Any, BaseException | None], None],
+        self, loop: asyncio.AbstractEventLoop, finish: Callable[[RuleContext, Any, BaseException | None], None]
     ) -> None:
         self.runs: dict[RuleContext, Job] = {}
         """Run whose function has not ended → its job in the pool of threads."""

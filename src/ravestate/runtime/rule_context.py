@@ -23,38 +23,18 @@ V = TypeVar("V")
 
 
 class Host(Protocol):
-    """The part of a running context that its rule contexts use.
-
-    Attributes:
-        settings: Module's name → the module's settings.
-        random: The source of random numbers for rules.
-        clock: The context's clock.
-    """
+    """The part of a running context (`Runner`) that its rule contexts use."""
 
     settings: Mapping[str, Any]
     random: random.Random
     clock: Clock
 
     @property
-    def policy(self) -> Policy:
-        """The context's policy, with the rules that were added to it."""
-        ...
-
-    def receive(self, event: Event) -> None:
-        """Give the engine an event. Any thread may call this."""
-        ...
-
-    def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to the policy. Any thread may call this."""
-        ...
-
-    def stop(self, failure: RavestateError | None) -> None:
-        """Ask the context to end, because of `failure` unless that is None."""
-        ...
-
-    async def quiet(self) -> None:
-        """Wait until no foreground rule runs or waits for consent."""
-        ...
+    def policy(self) -> Policy: ...
+    def receive(self, event: Event) -> None: ...
+    def add_rule(self, rule: Rule[Any, Any]) -> None: ...
+    def stop(self, failure: RavestateError | None) -> None: ...
+    async def quiet(self) -> None: ...
 
 
 class RuleContext:

@@ -30,14 +30,12 @@ from ravestate.runtime.plain_rules import PlainRules
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.waits import Waits
 
-ENDLESS = 200_000
-"""The number of rounds of effects after which an instant of virtual time counts as endless."""
+ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
 
 BATCH = 512
 """The number of rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
 
-TURN = 0.02
-"""The real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`."""
+TURN = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
 ENDED = "the context has ended"
 
@@ -47,16 +45,9 @@ log = logging.getLogger("ravestate")
 class Runner:
     """Gives events to an engine, and performs the effects that the engine returns.
 
-    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`).
-
-    Args:
-        engine: The engine to run.
-        loop: The event loop on which everything happens.
-        settings: Module's name → the module's settings.
-        seed: The seed of the random numbers that rules use.
-        stop: Called when a rule asks the context to end, or when the engine fails.
-        hooks: Functions that observe the context.
-        journal: Called with each event before the engine takes it, and with `Taken` before effects are taken.
+    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`). The runner calls
+    `stop` when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the
+    engine takes it, and with `Taken` before effects are taken.
     """
 
     def __init__(
@@ -135,12 +126,7 @@ class Runner:
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy.
-
-        Raises:
-            DeclarationErrors: The rule does not fit the policy.
-            RunEnded: The context has ended.
-        """
+        """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy."""
         if threading.get_ident() == self._thread:
             self.receive(AddRule(self.policy.with_rule(rule, self.settings)))
             return

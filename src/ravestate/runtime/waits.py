@@ -13,10 +13,8 @@ from ravestate.engine.engine import Engine
 class Waits:
     """The tasks that wait until one engine reaches a certain state.
 
-    Args:
-        engine: The engine.
-        is_busy: A function that returns whether some effects have not been performed yet.
-        schedule: A function that makes the loop perform effects, and call `check` afterwards.
+    While `is_busy` returns true, some effects have not been performed yet; `schedule` makes the loop perform effects,
+    and call `check` afterwards.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
@@ -72,10 +70,7 @@ class Waits:
         """Wait until only `known` activations run or wait, and no rule waits until an ``rs.shutdown`` is old enough.
 
         A background rule among `known` may restart endlessly. Its new run counts only if it handles ``rs.shutdown``.
-
-        Args:
-            known: The activations to ignore, by their numbers.
-            seconds: The maximum number of seconds to wait.
+        Wait for at most `seconds`.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index

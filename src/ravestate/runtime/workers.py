@@ -17,31 +17,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
 
-LAST_GRACE = 5.0
-"""The seconds for which the process waits, at its end, for running functions."""
+LAST_GRACE = 5.0  # the seconds for which the process waits, at its end, for running functions
 
 SHARE = 32
 """The maximum number of functions of one context that run at once; further functions wait until one of them ends."""
 
-THREADS = 256
-"""The maximum number of worker threads in the process; if all are busy, further jobs wait."""
-
-IDLE = 30.0
-"""The seconds after which a worker thread without a job ends."""
+THREADS = 256  # the maximum number of worker threads in the process; if all are busy, further jobs wait
+IDLE = 30.0  # the seconds after which a worker thread without a job ends
 
 
 @dataclass(slots=True, eq=False)
 class Job:
-    """A function to call in a worker thread; the function must not raise.
+    """A function to call in a worker thread, for the rule `name`; the function must not raise.
 
-    Args:
-        queue: The queue that submits the job.
-        call: The function.
-        name: The name of the function's rule, for warnings.
-
-    Attributes:
-        made: The time at which the job was submitted (seconds on the monotonic clock).
-        began: The time at which a thread took the job (seconds on the same clock); None before.
+    It was `made` when it was submitted, and `began` when a thread took it (seconds on the monotonic clock).
     """
 
     queue: JobQueue
@@ -136,11 +125,7 @@ def _wait_for_work() -> None:
 
 
 class JobQueue:
-    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait in this queue.
-
-    Args:
-        pool: The pool of threads that does the jobs.
-    """
+    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait in this queue."""
 
     def __init__(self, pool: ThreadPool = POOL) -> None:
         self._pool = pool

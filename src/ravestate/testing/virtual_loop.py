@@ -11,8 +11,7 @@ from typing import Any
 
 from ravestate.errors import EngineError
 
-REAL_LIMIT = 30.0
-"""The maximum number of real seconds for which plain functions may hold up virtual time."""
+REAL_LIMIT = 30.0  # the maximum number of real seconds for which plain functions may hold up virtual time
 
 
 class _Timer(asyncio.TimerHandle):

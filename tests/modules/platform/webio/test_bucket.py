@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.modules.platform.webio.bucket import Bucket
+from ravestate.modules.platform.webio.channel import Bucket
 
 
 @given(st.lists(st.floats(0, 10), min_size=1, max_size=60))

@@ -8,7 +8,8 @@ import pytest
 import ravestate as rs
 from modules.platform.webio.visit import Visit, in_virtual_time, page, past
 from ravestate.modules import rawio, webio
-from ravestate.modules.platform.webio import channel, connection, history
+from ravestate.modules.platform.webio import channel, connection
+from ravestate.modules.platform.webio.session import MESSAGES
 from ravestate.runtime.agent import Agent
 
 TOKEN = "open sesame, please"
@@ -18,7 +19,7 @@ flood = rs.Module("flood", requires=(rawio,))
 
 @flood.rule(when=rawio.input.changed, writes=rawio.output)
 async def talk_without_end(ctx: rs.RuleContext) -> None:
-    for number in range(history.MESSAGES + 10):
+    for number in range(MESSAGES + 10):
         ctx[rawio.output] = f"{number}"
 
 
@@ -194,7 +195,7 @@ async def test_who_reads_slowly_misses_nothing_that_is_kept_and_is_told_of_what_
         slow.reading.clear()
         slow.say("go")
         (session,) = app.state.sessions
-        while session.history.last < history.MESSAGES + 11:  # several turns of the loop
+        while session.history.last < MESSAGES + 11:  # several turns of the loop
             await past(0.0)
         slow.reading.set()
         frames = await slow.frames("error")
@@ -206,8 +207,8 @@ async def test_who_reads_slowly_misses_nothing_that_is_kept_and_is_told_of_what_
             welcome = await again.hello(session=slow.session, last=last)
             assert welcome["resumed"]
             assert welcome["first"] == 12
-            frames = [await again.next() for _ in range(history.MESSAGES)]
-            assert [frame["n"] for frame in frames] == list(range(12, history.MESSAGES + 12))
+            frames = [await again.next() for _ in range(MESSAGES)]
+            assert [frame["n"] for frame in frames] == list(range(12, MESSAGES + 12))
 
 
 @in_virtual_time

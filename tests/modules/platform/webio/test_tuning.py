@@ -8,8 +8,7 @@ import pytest
 
 from modules.platform.webio.visit import parrot
 from ravestate.modules import webio
-from ravestate.modules.platform.webio.server import Server
-from ravestate.modules.platform.webio.tuning import COLLECT, SWITCH, low_latency
+from ravestate.modules.platform.webio.server import COLLECT, SWITCH, Server, low_latency
 from ravestate.runtime.agent import Agent
 from runtime.on_loop import on_loop
 

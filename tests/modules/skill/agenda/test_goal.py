@@ -6,7 +6,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.modules import agenda, rawio
-from ravestate.modules.skill.agenda.conditions import negated, watching
+from ravestate.modules.skill.agenda.goal import negated, watching
 
 guide = rs.Module("guide", requires=[agenda])
 asked = guide.signal("asked")

@@ -90,7 +90,7 @@ def test_numbers_with_units_and_dates_are_compared(answerer: Answerer, said: lis
 @pytest.mark.parametrize(
     ("said", "answer"),
     [
-        (["How long is the Halcyon?", "how much is that in feet?"], "That is 393.701 feet."),
+        (["How long is the Halcyon?", "how much is that in feet?"], "That is 394 feet."),
         (["what is 12 times 12", "plus 6", "and half of that"], "That is 75."),
         (["what is 15 percent of 80", "and of 200?"], "That is 30."),
         (["when was Ida Falk born", "and when did she die", "how many years is that"], "it is 85 years."),

@@ -21,6 +21,7 @@ def test_sentences_are_passages() -> None:
 
 def test_a_dependent_sentence_stays_with_the_one_before() -> None:
     assert texts("The shed is green. It has a key. The key is old enough.") == [
+        "The shed is green.",
         "The shed is green. It has a key.",
         "The key is old enough.",
     ]

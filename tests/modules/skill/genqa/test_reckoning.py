@@ -4,7 +4,7 @@ from datetime import date
 
 import pytest
 
-from ravestate.modules.skill.genqa.reckoning import LONGEST, Unanswerable, dates_in, measured, reckon
+from ravestate.modules.skill.genqa.reckoning import LONGEST, Unanswerable, dates_in, focused, measured, reckon
 
 TODAY = date(2026, 6, 1)
 
@@ -26,7 +26,7 @@ TODAY = date(2026, 6, 1)
         ("5 feet 10 inches in cm", "177.8 cm"),
         ("how many seconds are in an hour", "3,600 seconds"),
         ("what is 20 degrees celsius in fahrenheit", "68 fahrenheit"),
-        ("60 mph in km/h", "96.561 km/h"),
+        ("60 mph in km/h", "96.6 km/h"),
         ("what date is 90 days after 1 March 2024", "30 May 2024"),
     ],
 )
@@ -85,13 +85,16 @@ def test_other_texts_are_no_sums(text: str) -> None:
     ("text", "told", "result"),
     [
         ("18 plus that", ["144."], "That is 162."),
-        ("how much is that in feet", ["Mount Kesh is 4,210 metres high."], "That is 13,812.336 feet."),
-        ("in pounds?", ["The lamp weighs 3 kilograms."], "That is 6.614 pounds."),
+        ("how much is that in feet", ["Mount Kesh is 4,210 metres high."], "That is 13,812 feet."),
+        ("in pounds?", ["The lamp weighs 3 kilograms."], "That is 6.61 pounds."),
         ("what weekday was that", ["She sank on 14 June 1891."], "14 June 1891 was a Sunday."),
         ("how many years is that", ["born on 12 March 1856", "died on 2 October 1929"],
          "From 12 March 1856 to 2 October 1929 it is 73 years."),
         ("how old was he", ["born in 1849", "died in 1903"], "From 1849 to 1903 it is 54 years."),
         ("what is that", ["The Elve is 412 kilometres long."], ""),
+        ("and for 5 people?", ["A ticket costs 6 euros."], "That is 30 euros."),
+        ("what's that in mph?", ["It runs at 50 kilometres per hour."], "That is 31.1 mph."),
+        ("how old is it?", ["It was opened in 1874."], "From 1874 to 2026 it is 152 years."),
         ("in what year?", ["The lamp weighs 3 kilograms."], ""),
     ],
 )  # fmt: skip
@@ -118,6 +121,12 @@ def test_dates_know_their_precision() -> None:
     assert [(each.exact, each.has_year, str(each)) for each in dates_in("from 3 May to June 2024, or 1989")] == [
         (True, False, "3 May 2000"), (False, True, "2024"), (False, True, "1989"),
     ]  # fmt: skip
+
+
+def test_the_number_that_was_asked_for_is_meant() -> None:
+    answer = "The bridge is 512 metres long and 63 metres high."
+    assert measured(focused("How high is the bridge?", answer))[0].value == 63
+    assert measured(focused("How long is the bridge?", answer))[0].value == 512
 
 
 def test_a_long_text_is_no_sum() -> None:

@@ -21,7 +21,7 @@ class Machine:
     def __init__(self, patch: pytest.MonkeyPatch, folder: Path) -> None:
         self.servers: list[LocalServer] = []
         self.models: list[FoundModel] = []
-        self.packages = {"xllamacpp", "httpx"}
+        self.packages = {"xllamacpp", "httpx2"}
         self.asked: list[str] = []
         self.listed: tuple[str, ...] = ()
         patch.setattr(choosing, "_servers", self._servers)

@@ -46,17 +46,15 @@ def test_other_files_and_nested_arrays_and_endless_headers_are_refused(
 ) -> None:
     file = tmp_path / "a.gguf"
     file.write_bytes(b"GGML" + bytes(100))
-    with pytest.raises(ValueError, match="not a GGUF file"):
-        read_header(file)
-    whole = write_gguf(file).read_bytes()
-    file.write_bytes(whole.replace(b"token_type" + b"\x09\0\0\0\x05", b"token_type" + b"\x09\0\0\0\x09"))
-    with pytest.raises(ValueError, match="nested"):
-        read_header(file)
-    write_gguf(file)
+    whole = write_gguf(tmp_path / "b.gguf").read_bytes()
+    nested = tmp_path / "c.gguf"
+    nested.write_bytes(whole.replace(b"token_type" + b"\x09\0\0\0\x05", b"token_type" + b"\x09\0\0\0\x09"))
+    for refused in (file, nested):
+        with pytest.raises(ValueError, match="not a complete GGUF file"):
+            read_header(refused)
     monkeypatch.setattr(gguf_header, "LARGEST", 100)
-    gguf_header._read.cache_clear()
-    with pytest.raises(ValueError, match="too large"):
-        read_header(file)
+    with pytest.raises(ValueError, match="not a complete GGUF file"):
+        read_header(tmp_path / "b.gguf")
 
 
 @pytest.mark.model

@@ -224,7 +224,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
         checked_model(wanted)  # fmt: skip
     with pytest.raises(PlatformError, match=r"is a folder: name the file in it: tiny-q4.gguf"):
         checked_model(tmp_path)
-    with pytest.raises(PlatformError, match="nor does the folder"):
+    with pytest.raises(PlatformError, match="does not exist: --set"):
         checked_model(tmp_path / "no" / "where.gguf")
     (tmp_path / "empty").mkdir()
     with pytest.raises(PlatformError, match="is a folder: no GGUF file is in it"):

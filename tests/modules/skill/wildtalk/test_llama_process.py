@@ -2,6 +2,7 @@
 
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,8 +13,7 @@ from ravestate.modules.skill.wildtalk.llama_process import LlamaProcess, ModelKe
 READY = """
 import sys, json
 config = json.loads(sys.stdin.readline())
-print(json.dumps({"progress": 0.5}))
-print(json.dumps({"ready": "http://here/" + config["path"]}), flush=True)
+print("http://here/" + config["path"], flush=True)
 sys.stdin.read()
 """
 
@@ -32,7 +32,7 @@ def test_it_starts_once_and_ends(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     pid = process.pid
     assert process.start(heard.append) == "http://here/model.gguf"
     assert process.pid == pid is not None
-    assert heard == [0.5, 1.0, 1.0]
+    assert heard == [1.0, 1.0]
     assert process.obituary() == ""
     process.close()
     process.close()
@@ -65,7 +65,7 @@ def test_a_second_caller_waits_for_the_first(monkeypatch: pytest.MonkeyPatch, tm
         ("import sys; sys.exit(3)", "exit code 3"),
         ("import os; os.abort()", "killed by signal 6"),
         ("import no_such_thing", "No module named 'no_such_thing'. Install it: pip install 'ravestate"),
-        ('print(\'{"error": "OSError: no"}\')', "OSError: no"),
+        ("raise OSError('no')", "OSError: no"),
         ("import sys; sys.stderr.write('0.1 E load: failed to allocate\\n')", "failed to allocate. Take a smaller"),
         (
             "import sys; sys.stderr.write('0.1 E a: b\\n0.2 E c: error loading model: unknown model architecture: x\\n')",
@@ -81,12 +81,21 @@ def test_how_it_failed_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
 
 
 def test_closing_ends_a_start_that_is_under_way(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    process = child(monkeypatch, tmp_path, "print('{\"progress\": 0.1}', flush=True)\nimport sys; sys.stdin.read()")
+    process = child(monkeypatch, tmp_path, "import sys; sys.stdin.read()")
     begun, failures = threading.Event(), list[Exception]()
+    spawn = process._spawn
+
+    def spawned() -> Any:
+        try:
+            return spawn()
+        finally:
+            begun.set()
+
+    monkeypatch.setattr(process, "_spawn", spawned)
 
     def start() -> None:
         try:
-            process.start(lambda _: begun.set())
+            process.start()
         except PlatformError as error:
             failures.append(error)
 
@@ -125,4 +134,4 @@ def test_leaving_python_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     process.start()
     llama_process._close_all()
     assert not process.alive
-    assert not llama_process._processes
+    llama_process.drop(process)

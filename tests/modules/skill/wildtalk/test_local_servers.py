@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from modules.skill.wildtalk.stand_ins import Quiet, serving
-from ravestate.modules.skill.wildtalk import local_servers
+from ravestate.modules.skill.wildtalk import local_servers, openai
 from ravestate.modules.skill.wildtalk.local_servers import LocalServer, chat_models, find_servers
 
 
@@ -64,7 +64,7 @@ def test_the_number_of_parameters_that_llama_cpp_states_counts() -> None:
         b"<html>It works!</html>", b"", b"[]", b"{", {"models": ["a"]}, {"data": "a"}, {"object": "list", "data": []},
         {"data": [{"id": "fiesta", "name": "Ford Fiesta"}, "focus", 3]}, {"data": [{"id": 7, "object": "model"}]},
         listing("text-embedding-3-small", "bge-m3", "whisper-1"), {"data": [{"id": "a\x1b[2J", "object": "model"}]},
-        b'{"data": "' + b"x" * (local_servers.LIMIT + 10) + b'"}', b"[" * 100_000,
+        b'{"data": "' + b"x" * (openai.LIMIT + 10) + b'"}', b"[" * 100_000,
     ],
 )  # fmt: skip
 def test_another_web_server_is_not_mistaken_for_one(document: Any) -> None:
@@ -102,7 +102,7 @@ def test_a_server_that_stalls_is_left_out(monkeypatch: pytest.MonkeyPatch) -> No
         left.set()
 
 
-def test_without_a_listener_or_without_httpx_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_listener_or_without_the_web_client_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found() == []
     with serving(Quiet) as port:
         pass

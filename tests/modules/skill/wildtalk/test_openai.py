@@ -187,7 +187,7 @@ def test_events_in_any_shape_are_understood(converse: Conversation) -> None:
         event = b'data:{"choices":[{"delta":{"content":"\xc3\xa4","reasoning":"hm"}}]}\r\n\r\n'
         await talk.raw(b": ping\r\n\r\n" + event[:40])
         await talk.raw(event[40:] + b'event: x\ndata: {"choices": [],\ndata: "usage": {}}\n\n')
-        await talk.raw(b'data: {"choices":[{"delta":{"content":null},"finish_reason":"length"}]}')
+        await talk.raw(b'data: {"choices":[{"delta":{"content":null},"finish_reason":"length"}]}\n\n')
 
     assert converse(answer) == ["ä"]
 
@@ -238,8 +238,8 @@ PIECE = 'data: {"choices":[{"delta":{"content":"Hi"}}]}\n\n'
 @pytest.mark.parametrize(
     ("answer", "message"),
     [
-        (refusing("401 Unauthorized", '{"error": {"message": "bad key"}}'), r"answers 401 \(bad key\): it wants a key"),
-        (refusing("403 Forbidden", ""), r"answers 403 \(without a reason\): it wants a key"),
+        (refusing("401 Unauthorized", '{"error": {"message": "bad key"}}'), r"answers 401 \(bad key\): set wildtalk.api_key"),
+        (refusing("403 Forbidden", ""), r"answers 403 \(no reason\): set wildtalk.api_key"),
         (refusing("404 Not Found", '{"error": "model not found"}'), r"404 \(model not found\): does it know the model 'tiny'.*/v1"),
         (refusing("404 Not Found", "<h1>Nothing</h1>", "text/html"), r"404 \(<h1>Nothing</h1>\)"),
         (refusing("307 Moved", "", Location="http://there/v1"), r"moved: set wildtalk.base_url to where 'http://there/v1'"),
@@ -248,16 +248,16 @@ PIECE = 'data: {"choices":[{"delta":{"content":"Hi"}}]}\n\n'
         (refusing("429 Too Many", "{}"), "quota"),
         (refusing("500 Oops", '["odd"]'), "500.*look into its log"),
         (refusing("503 Busy", "x" * (2 << 20)), "503 .*…"),
-        (refusing("200 OK", "<html>", "text/html"), "'text/html', not with a stream of events.*ends in /v1"),
-        (refusing("200 OK", "[1]"), r"no JSON object: \[1\]"),
+        (refusing("200 OK", "<html>", "text/html"), "sends no stream of events .*ends in /v1"),
+        (refusing("200 OK", "[1]"), r"another form than OpenAI's: \[1\]"),
         (refusing("200 OK", '{"choices": [{"message": {"content": ["x"]}}]}'), "another form than OpenAI's"),
-        (sending(PIECE, "data: {oops\n\n"), "no JSON object: {oops"),
+        (sending(PIECE, "data: {oops\n\n"), "another form than OpenAI's: {oops"),
         (sending(PIECE, 'data: {"error": {"message": "out of memory"}}\n\n'), "failed: out of memory"),
         (sending('data: {"choices": "x"}\n\n'), "another form than OpenAI's"),
         (sending('data: {"choices": [{"delta": "x"}]}\n\n'), "another form than OpenAI's"),
         (sending(PIECE), "broke off before its end"),
         (sending(), "broke off before its end"),
-        (sending("x" * (3 << 20)), "a line of more than"),
+        (sending("x" * (3 << 20)), "sends no stream of events"),
     ],
 )  # fmt: skip
 def test_each_fault_says_what_to_check(converse: Conversation, answer: Any, message: str) -> None:
@@ -304,7 +304,7 @@ def test_a_server_that_only_keeps_the_connection_open_has_stalled(converse: Conv
 
 
 def test_a_server_that_is_not_there(converse: Conversation) -> None:
-    with pytest.raises(PlatformError, match=r"no server at http://127.0.0.1:1/v1 .*ollama serve"):
+    with pytest.raises(PlatformError, match=r"no server answers at http://127.0.0.1:1/v1 .*ollama serve"):
         converse(hello, base_url="http://127.0.0.1:1/v1")
 
 
@@ -324,8 +324,8 @@ def test_secrets_are_not_told(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match=r"no such key: \*\*\*\): check wildtalk.api_key") as failure:
         converse(refusal, api_key=SecretStr("s3cret"))
     assert "s3cret" not in str(failure.value)
-    backend = OpenAIBackend("https://me:s3cret@example.org/v1", "tiny", api_key=SecretStr("s3cret"))
-    assert repr(backend) == "OpenAIBackend('https://example.org/v1', 'tiny')"
+    with pytest.raises(PlatformError, match=r"no server answers at http://127\.0\.0\.1:1/v1"):
+        converse(refusal, base_url="http://me:s3cret@127.0.0.1:1/v1")
 
 
 def test_a_key_that_is_none(converse: Conversation) -> None:
@@ -333,8 +333,7 @@ def test_a_key_that_is_none(converse: Conversation) -> None:
         converse(hello, api_key=SecretStr("a\nb"))
 
 
-@pytest.mark.parametrize("library", ["httpx", "httpx_sse"])
-def test_without_its_libraries_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch, library: str) -> None:
-    monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(PlatformError, match=r"needs httpx and httpx-sse: pip install 'ravestate\[wildtalk\]'"):
+def test_without_its_library_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "httpx2", None)
+    with pytest.raises(PlatformError, match=r"needs httpx2: pip install 'ravestate\[wildtalk\]'"):
         asyncio.run(OpenAIBackend("http://localhost/v1", "tiny").load())

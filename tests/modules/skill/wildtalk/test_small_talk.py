@@ -8,7 +8,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.language.matcher import bundled_matcher
-from ravestate.modules import idle, interloc, rawio, wildtalk
+from ravestate.modules import interloc, rawio, wildtalk
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.modules.skill.wildtalk.listening import ListeningBackend
 from ravestate.modules.skill.wildtalk.listening.state import Game
@@ -56,7 +56,7 @@ def _models() -> None:
 
 @pytest.fixture
 def sim() -> Iterator[Simulation]:
-    with simulate(wildtalk, other, settings={"idle": {"bored_after": 5.0, "answer_time": 8.0}}, seed=1) as running:
+    with simulate(wildtalk, other, seed=1) as running:
         running.put(wildtalk.model, ListeningBackend())
         yield running
         assert not running.failures
@@ -73,29 +73,6 @@ def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation
         sim.say(text)
         sim.advance(1.0)
     assert len(sim.said) == 3
-
-
-def test_in_a_silence_it_comes_back_to_what_was_said_and_then_is_quiet(sim: Simulation) -> None:
-    sim.say("I painted a dragon")
-    sim.advance(120.0)
-    assert len(sim.said) == 2
-    assert "you painted a dragon" in sim.said[1]
-
-
-def test_it_does_not_come_back_to_what_another_module_answered(sim: Simulation) -> None:
-    sim.say("I painted a dragon")
-    sim.say("what about the weather")
-    sim.advance(60.0)
-    assert sim.said[1:] == ["Sunny. Do you like the sun?"]
-
-
-def test_it_asks_about_an_unfinished_matter_after_a_while(sim: Simulation) -> None:
-    sim.say("my mother is ill")
-    sim.say("what about the weather")
-    sim.advance(20.0)
-    assert len(sim.said) == 2
-    sim.advance(700.0)
-    assert sim.said[2:] == ["How is your mother today?"]
 
 
 def test_a_move_in_a_game_is_no_matter_for_other_modules(sim: Simulation) -> None:
@@ -183,9 +160,3 @@ def test_the_prompt_knows_the_user(sim: Simulation) -> None:
     assert system.startswith("You are Ravestate")
     assert "home: Hannover" in system
     assert "It is " in system
-
-
-def test_bored_without_anything_said_it_stays_silent(sim: Simulation) -> None:
-    sim.emit(idle.bored)
-    sim.advance(60.0)
-    assert sim.said == []

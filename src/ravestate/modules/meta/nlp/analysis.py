@@ -103,7 +103,7 @@ def analyse(
         tree=tree,
         entities=entities,
         triples=tuple(statement.triple for statement in statements),
-        yesno=yesno_of(tree.text),
+        yesno=yesno_of(normal.text if "?" in text else normal.text.replace("?", ".")),  # an added mark is a guess
         question=question_of(tree),
         about_agent=_is_about_agent(tree, names),
         sentences=sentences,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from ravestate.errors import PlatformError
 from ravestate.language.loading import LOADING
 
-from .store import FORMAT, RawNode, RawRelation, check_format
+from .store import FORMAT, Raw, check_format
 from .types import Types
 
 if TYPE_CHECKING:
@@ -203,9 +203,9 @@ def _decoded(value: Any) -> Any:
     if isinstance(value, Node):
         values = dict(value.items())
         label = str(values.get("id", "")).partition(":")[0]  # a node may have further labels
-        return RawNode(label if label in value.labels else min(value.labels, default=""), values)
+        return Raw(label if label in value.labels else min(value.labels, default=""), values)
     if isinstance(value, Relationship):
-        return RawRelation(value.type, dict(value.items()))
+        return Raw(value.type, dict(value.items()))
     return value
 
 

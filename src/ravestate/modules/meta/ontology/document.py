@@ -19,13 +19,8 @@ def write_document(nodes: Iterable[Node], relations: Iterable[Relation]) -> dict
         "format": FORMAT,
         "nodes": [{"id": node.id, "type": node.type, "properties": _plain(node.properties)} for node in nodes],
         "relations": [
-            {
-                "from": relation.source.id,
-                "relation": relation.name,
-                "to": relation.target.id,
-                "properties": _plain(relation.properties),
-            }
-            for relation in relations
+            {"from": one.source.id, "relation": one.name, "to": one.target.id, "properties": _plain(one.properties)}
+            for one in relations
         ],
     }
 
@@ -54,13 +49,13 @@ def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node]
 
 
 def _entries(document: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
-    entries = document.get(key)
+    entries: list[Any] | None = document.get(key)
     if not isinstance(entries, list):
         raise RuleError(f"the document's {key!r} must be a list, not {entries!r}")
-    for entry in cast("list[Any]", entries):
+    for entry in entries:
         if not isinstance(entry, Mapping):
             raise RuleError(f"an entry of the document's {key!r} is {entry!r}, which has no keys and values")
-    return cast("list[Mapping[str, Any]]", entries)
+    return entries
 
 
 def _text(entry: Mapping[str, Any], key: str) -> str:

@@ -27,9 +27,10 @@ from .faults import (
     said_by,
     why_broken,
     why_not_opened,
+    why_not_written,
 )
 from .files import AT_CHECKPOINT, MemoryFiles
-from .store import RawNode, RawRelation
+from .store import Raw
 from .tables import missing_tables, undeclared_types
 from .types import Types
 
@@ -134,10 +135,7 @@ class EmbeddedStore:
             said = said_by(error)
             if is_failed_write(said):
                 self._get_stuck(said)
-                raise PlatformError(
-                    f"memory {self._path} cannot be written: {reason(said)}. Make room on the disk; saved data is safe, "
-                    "and memory works again once there is room"
-                ) from error
+                raise PlatformError(why_not_written(self._path, self._stuck)) from error
             if "Cannot open file" in said:  # for example the log, in a read-only folder
                 raise PlatformError(why_not_opened(self._path, said, self._files.present())) from error
             if is_damage(error):
@@ -208,11 +206,8 @@ class EmbeddedStore:
             raise PlatformError(
                 f"memory {self._path} has a damaged log, which cannot be copied before its repair: {error.strerror}"
             ) from error
-        log.warning(
-            "memory %s has a damaged log: the part before the damage was read, and the log as it was is kept as %s",
-            self._path,
-            copy,
-        )
+        what = "the part before the damage was read, and the log as it was is kept as"
+        log.warning("memory %s has a damaged log: %s %s", self._path, what, copy)
         return ""
 
     def _set_orphans_aside(self, orphans: list[Path]) -> None:
@@ -268,18 +263,13 @@ class EmbeddedStore:
                 self._open()
         except Exception as error:  # copying a damaged page may raise any exception
             log.warning(
-                "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s",
-                self._path,
-                error,
+                "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s", self._path, error
             )
             with contextlib.suppress(OSError):
                 self._files.remove_rewrite()
-        if kept := self._files.kept():
-            log.warning(
-                "memory %s: logs that were set aside may still have data of the forgotten nodes; remove them: %s",
-                self._path,
-                ", ".join(map(str, kept)),
-            )
+        if kept := ", ".join(map(str, self._files.kept())):
+            what = "logs that were set aside may still have data of the forgotten nodes; remove them"
+            log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def tidy(self) -> None:
         """Move the log's content into the file. Until then, ladybug holds a few megabytes for each written table."""
@@ -318,10 +308,8 @@ class EmbeddedStore:
         except OSError:
             return  # the write itself will report the problem
         if free < RESERVE + needed:
-            raise PlatformError(
-                f"memory {self._path} cannot be written: the disk is full ({free // 2**20} MB free, "
-                f"{(RESERVE + needed) // 2**20 + 1} MB needed). Make room; saved data is safe, and memory works again then"
-            )
+            why = f"the disk is full ({free // 2**20} MB free, {(RESERVE + needed) // 2**20 + 1} MB needed)"
+            raise PlatformError(why_not_written(self._path, why))
 
     def _be_writable(self, size: int) -> None:
         self._check_space(4 * size)
@@ -329,10 +317,7 @@ class EmbeddedStore:
             self._files.make_private(".wal")
             return
         if not self._can_write():
-            raise PlatformError(
-                f"memory {self._path} cannot be written: {self._stuck}. Make room on the disk; saved data is safe, "
-                "and memory works again once there is room"
-            )
+            raise PlatformError(why_not_written(self._path, self._stuck))
         self._connection.close()
         self._database.close()
         self._stuck = ""
@@ -365,5 +350,5 @@ class EmbeddedStore:
 def _decoded(value: Any) -> Any:
     if isinstance(value, dict) and "_LABEL" in value:
         found = cast("dict[str, Any]", value)
-        return (RawRelation if "_SRC" in found else RawNode)(found["_LABEL"], found)
+        return Raw(found["_LABEL"], found)
     return cast("Any", value)

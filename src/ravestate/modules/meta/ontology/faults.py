@@ -47,6 +47,12 @@ def reason(said: str) -> str:
     return found if found not in ("", "Success", "No such file or directory") else "the disk is full"
 
 
+def why_not_written(path: Path, why: str) -> str:
+    """Return the message for users about a failed write."""
+    room = "Make room on the disk; saved data is safe, and memory works again once there is room"
+    return f"memory {path} cannot be written: {why}. {room}"
+
+
 def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
     """Return the message for users about a damaged memory; it names all files of the memory."""
     first = (said.splitlines() or [""])[0][:200]

@@ -9,7 +9,7 @@ from ravestate.errors import RuleError
 
 from .document import read_document, write_document
 from .node import Node, Relation, Value
-from .store import RawNode, RawRelation, Store
+from .store import Raw, Store
 from .types import Types
 
 T = TypeVar("T")
@@ -84,7 +84,7 @@ class Graph:
     def relate(self, node: Node, relation: str, other: Node, properties: Mapping[str, Value]) -> None:
         """Relate two nodes that memory has, and set properties of the relation."""
         self._types.check_relation(node.type, relation, other.type)
-        values = self._types.stored_of(relation, properties)
+        values = self._types.stored(relation, properties)
         with self._store.transaction():
             self._must_know(node)
             self._must_know(other)
@@ -129,11 +129,11 @@ class Graph:
         found: list[tuple[str, dict[str, Value], Node]] = []
         for relation, raw in self._edges(node, back=back):
             other = self._node(raw)
-            if other is not None and relation.name in self._types.relations:
-                found.append((relation.name, self._types.loaded_of(relation.name, relation.values), other))
+            if other is not None and relation.label in self._types.relations:
+                found.append((relation.label, self._types.loaded(relation.label, relation.values), other))
         return sorted(found, key=lambda end: (end[0], _age(end[2])))
 
-    def _edges(self, node: Node, *, back: bool) -> list[tuple[RawRelation, RawNode]]:
+    def _edges(self, node: Node, *, back: bool) -> list[tuple[Raw, Raw]]:
         self._types.properties(node.type)  # raises if there is no such type
         pattern = "<-[r]-" if back else "-[r]->"
         rows = self._store.read(
@@ -148,11 +148,9 @@ class Graph:
         if keep.id == duplicate.id:
             raise RuleError(f"{keep.id} cannot be merged with itself")
         if not self._types.is_a(keep.type, duplicate.type):
-            hint = " the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
-            raise RuleError(
-                f"{keep.id} cannot take over what {duplicate.id} has: a {keep.type} is not a {duplicate.type}"
-                + (f"; merge them{hint}" if hint else "")
-            )
+            hint = "; merge them the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
+            problem = f"a {keep.type} is not a {duplicate.type}{hint}"
+            raise RuleError(f"{keep.id} cannot take over what {duplicate.id} has: {problem}")
         with self._store.transaction():
             kept, other = self._must_know(keep), self._must_know(duplicate)
             self._must_declare(other)
@@ -168,11 +166,9 @@ class Graph:
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
         """Copy a relation to other nodes. If these have the relation already, its properties have priority."""
-        present: Mapping[str, Value] = {}
-        for known, had, end in self._ends(source, back=False):
-            if known == name and end.id == target.id:
-                present = had
-        self._relate(source, name, target, self._types.stored_of(name, {**values, **present}))
+        ends = self._ends(source, back=False)
+        present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
+        self._relate(source, name, target, self._types.stored(name, {**values, **present}))
 
     def only_about(self, node: Node) -> list[Node]:
         """Return a node and the nodes that only this node needs; an empty list if memory does not have the node."""
@@ -216,7 +212,7 @@ class Graph:
     def _must_declare(self, node: Node) -> None:
         """Refuse a node with undeclared relations: they would be lost if the node were removed."""
         edges = self._edges(node, back=False) + self._edges(node, back=True)
-        unknown = {relation.name for relation, _ in edges} - self._types.relations.keys()
+        unknown = {relation.label for relation, _ in edges} - self._types.relations.keys()
         unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
         if unknown:
             raise RuleError(
@@ -235,10 +231,8 @@ class Graph:
 
     def export(self) -> dict[str, Any]:
         """Return all declared nodes and relations as a document."""
-        nodes = sorted(
-            (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {})),
-            key=_age,
-        )
+        every = (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {}))
+        nodes = sorted(every, key=_age)
         known = {node.id for node in nodes}
         relations = [
             Relation(node, name, other, values)
@@ -254,12 +248,8 @@ class Graph:
         with self._store.transaction():
             for node in nodes:
                 self.save(node)
-            for relation in relations:
-                self._types.check_relation(relation.source.type, relation.name, relation.target.type)
-                self._must_know(relation.source)
-                self._must_know(relation.target)
-                values = self._types.stored_of(relation.name, relation.properties)
-                self._relate(relation.source, relation.name, relation.target, values)
+            for one in relations:
+                self.relate(one.source, one.name, one.target, one.properties)
         return len(nodes)
 
     def undeclared(self) -> list[str]:
@@ -277,7 +267,7 @@ class Graph:
         found = {node.id: node for row in rows if (node := self._node(row[0])) is not None}
         return sorted(found.values(), key=_age)
 
-    def _node(self, raw: RawNode) -> Node | None:
+    def _node(self, raw: Raw) -> Node | None:
         """Return the node that a raw node stands for, with its declared properties; None if its type is undeclared."""
         id = raw.values.get("id")
         if raw.label not in self._types or not isinstance(id, str):

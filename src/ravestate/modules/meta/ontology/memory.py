@@ -41,9 +41,14 @@ class Memory:
         self._worker = worker
         self._lock = threading.Lock()  # so that no job is queued after the release
         self._closed: Reply[None] | None = None
-        self._types: Types | None = None
-        self._failure: BaseException | None = None
-        self._opened = Reply(worker.submit(lambda store: self._open(store, read_types)), "Memory.open")
+
+        def prepared(store: Store) -> Types:
+            types = read_types()
+            Graph(store, types).prepare()
+            return types
+
+        self._prepared = worker.submit(prepared)
+        self._opened = Reply(self._prepared, "Memory.open")
 
     @property
     def place(self) -> str:
@@ -52,17 +57,13 @@ class Memory:
 
     @property
     def types(self) -> Types:
-        """The declared types of nodes and relations.
-
-        Raises:
-            RuleError: Memory is not open: ``await memory.opened()`` first.
-        """
-        if self._types is None:
+        """The declared types of nodes and relations."""
+        if not self._prepared.done() or self._prepared.exception() is not None:
             raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() first")
-        return self._types
+        return self._prepared.result()
 
-    def opened(self) -> Reply[None]:
-        """Wait until memory is open.
+    def opened(self) -> Reply[Types]:
+        """Wait until memory is open; return its types.
 
         Raises:
             PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server
@@ -106,11 +107,7 @@ class Memory:
         return self._do("get", lambda graph: graph.get(id))
 
     def update(self, node: Node, /, **properties: Value) -> Reply[Node]:
-        """Set properties of a node that memory has, and remove those that are None.
-
-        Raises:
-            RuleError: Memory does not have the node. For other causes, see the class.
-        """
+        """Set properties of a node that memory has, and remove those that are None."""
         return self._do("update", lambda graph: graph.update(node, properties))
 
     def relate(self, node: Node, relation: str, other: Node, /, **properties: Value) -> Reply[None]:
@@ -197,11 +194,7 @@ class Memory:
         return self._do("export", lambda graph: graph.export())
 
     def load(self, document: Mapping[str, Any], /) -> Reply[int]:
-        """Save all nodes and relations of a document from `export`, or none; return the number of nodes.
-
-        Raises:
-            RuleError: The document is invalid. For other causes, see the class.
-        """
+        """Save all nodes and relations of a document from `export`, or none; return the number of nodes."""
         return self._do("load", lambda graph: graph.load(document))
 
     def undeclared(self) -> Reply[list[str]]:
@@ -222,23 +215,9 @@ class Memory:
     def __repr__(self) -> str:
         return f"<memory {self.place}>"
 
-    def _open(self, store: Store, read_types: Callable[[], Types]) -> None:
-        """Read the types, and create the tables that they need. This runs in the store's thread."""
-        try:
-            types = read_types()
-            Graph(store, types).prepare()
-            self._types = types
-        except BaseException as error:
-            self._failure = error
-            raise
-
     def _do(self, name: str, operation: Callable[[Graph], T]) -> Reply[T]:
-        def job(store: Store) -> T:
-            if self._failure is not None:
-                raise self._failure
-            return operation(Graph(store, self.types))
-
         with self._lock:
             if self._closed is not None:
                 raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")
-            return Reply(self._worker.submit(job), f"Memory.{name}")
+            job = self._worker.submit(lambda store: operation(Graph(store, self._prepared.result())))
+            return Reply(job, f"Memory.{name}")

@@ -15,20 +15,16 @@ Value = str | int | float | bool | date | datetime | None
 """A property's value. None stands for a property without a value."""
 
 
-class _Ids:
-    """A generator of ids that grow with time, so that sorting by id sorts nodes by age."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._last = 0
-
-    def next(self, type: str) -> str:
-        with self._lock:
-            self._last = max(self._last + 1, time.time_ns() // 1000)
-            return f"{type}:{self._last:014x}{secrets.token_hex(4)}"
+_lock = threading.Lock()
+_last = 0
 
 
-_ids = _Ids()
+def _next_id(type: str) -> str:
+    """Return an id that is greater than earlier ones, so that sorting by id sorts nodes by age."""
+    global _last
+    with _lock:
+        _last = max(_last + 1, time.time_ns() // 1000)
+        return f"{type}:{_last:014x}{secrets.token_hex(4)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +52,7 @@ class Node:
     def __post_init__(self) -> None:
         object.__setattr__(self, "properties", MappingProxyType(dict(self.properties)))
         if not self.id:
-            object.__setattr__(self, "id", _ids.next(self.type))
+            object.__setattr__(self, "id", _next_id(self.type))
 
     def with_properties(self, **properties: Value) -> Node:
         """Return a copy of the node with new values for some properties; saving it removes those that are None."""
@@ -68,11 +64,7 @@ class Node:
         return default if value is None else value
 
     def __getitem__(self, name: str) -> Any:
-        """Return the value of a property.
-
-        Raises:
-            KeyError: The property has no value.
-        """
+        """Return the value of a property."""
         value = self.properties.get(name)
         if value is None:
             raise KeyError(f"{self.id} has no {name}; it has {', '.join(self.properties) or 'nothing'}")

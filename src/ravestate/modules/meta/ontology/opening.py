@@ -38,13 +38,12 @@ def open_memory(settings: Settings) -> Memory:
     ``memory.opened()`` raises the errors of the opening.
     """
 
-    def read() -> Types:
-        return types_of(settings)
-
     path = path_of(settings)
     if path is None:
-        return Memory(StoreWorker(str(settings.url), lambda: _server(settings)), read)
-    return Memory(StoreWorker.shared(str(path), lambda: _file(path)), read)
+        worker = StoreWorker(str(settings.url), lambda: _server(settings))
+    else:
+        worker = StoreWorker.shared(str(path), lambda: _file(path))
+    return Memory(worker, lambda: types_of(settings))
 
 
 def _file(path: Path) -> Any:

@@ -16,18 +16,10 @@ FORMAT = 1
 
 
 @dataclass(frozen=True, slots=True)
-class RawNode:
-    """A node as a database returns it: its label and its properties, including ``id``."""
+class Raw:
+    """A node or a relation as a database returns it: its label, and its properties, including a node's ``id``."""
 
     label: str
-    values: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class RawRelation:
-    """A relation as a database returns it: its type and its properties."""
-
-    name: str
     values: Mapping[str, Any]
 
 
@@ -40,35 +32,19 @@ class Store(Protocol):
     """
 
     def prepare(self, types: Types) -> None:
-        """Create the missing tables, columns or indexes for the types, properties and relations.
-
-        Raises:
-            PlatformError: The database uses these names for something else, or its format is newer.
-        """
+        """Create the missing tables, columns or indexes for the types, properties and relations."""
         ...
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes nothing, and return its rows of `RawNode`, `RawRelation` and plain values.
-
-        Raises:
-            PlatformError: The database failed.
-        """
+        """Run a statement that writes nothing, and return its rows of `Raw` and plain values."""
         ...
 
     def write(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
-        """Run a statement that writes, and return its rows. Outside a transaction, this also commits the write.
-
-        Raises:
-            PlatformError: The database failed.
-        """
+        """Run a statement that writes, and return its rows. Outside a transaction, this also commits the write."""
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """Commit all statements in the ``with`` block together, or none. An inner transaction is part of the outer one.
-
-        Raises:
-            PlatformError: The database failed.
-        """
+        """Commit all statements in the ``with`` block together, or none. An inner transaction is part of the outer one."""
         ...
 
     def purge(self) -> None:

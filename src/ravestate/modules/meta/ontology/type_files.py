@@ -94,13 +94,7 @@ class _Reader:
             self._has.setdefault(name, {})
             if kind_of(body) == "scalar" and not body.value:
                 continue  # the type has neither parent, properties nor relations
-            for part_key, part, value in _entries(file, body, f"{name} has keys and values"):
-                if part not in OF_A_TYPE:
-                    raise fault(
-                        file,
-                        part_key,
-                        f"{name} has no {part!r}{nearest(part, OF_A_TYPE)} (a type has: {', '.join(OF_A_TYPE)})",
-                    )
+            for part, value in _parts(file, body, name, "type", OF_A_TYPE).items():
                 if part == "is":
                     self._set_parent(file, name, value)
                 elif part == "has":
@@ -109,29 +103,21 @@ class _Reader:
                     self._add_relations(file, name, value)
 
     def finish(self) -> Types:
-        for child, (parent, place) in self._parents.items():
-            if parent not in self._has:
-                raise DeclarationError(
-                    f"{place}: {child} is a {parent!r}, which is not a type{nearest(parent, self._has)}"
-                )
+        ends = [(child, "is a", parent, place) for child, (parent, place) in self._parents.items()]
+        ends += [(name, "goes to", end[1], place) for name, to in self._ends.items() for end, place in to.items()]
+        for name, verb, type, place in ends:
+            if type not in self._has:
+                problem = f"{name} {verb} {type!r}, which is not a type{nearest(type, self._has)}"
+                raise DeclarationError(f"{place}: {problem}")
         for child, (_, place) in self._parents.items():
             line = [child]
             while line[-1] in self._parents:
                 line.append(self._parents[line[-1]][0])
                 if line[-1] in line[:-1]:
                     raise DeclarationError(f"{place}: {' is a '.join(line)}: types must not form a cycle")
-        for name, ends in self._ends.items():
-            for (_, target), place in ends.items():
-                if target not in self._has:
-                    raise DeclarationError(
-                        f"{place}: {name} goes to {target!r}, which is not a type{nearest(target, self._has)}"
-                    )
         return Types(
-            {
-                name: Type(name, self._parents[name][0] if name in self._parents else None, has)
-                for name, has in self._has.items()
-            },
-            {name: Relating(name, frozenset(ends), self._relation_has[name]) for name, ends in self._ends.items()},
+            {name: Type(name, self._parents.get(name, (None, ""))[0], has) for name, has in self._has.items()},
+            {name: Relating(name, frozenset(to), self._relation_has[name]) for name, to in self._ends.items()},
         )
 
     # ------------------------------------------------------------------------------- parts
@@ -149,19 +135,12 @@ class _Reader:
             properties = self._relation_has.setdefault(name, {})
             targets = value
             if kind_of(value) == "mapping":
-                parts = {part: (part_key, body) for part_key, part, body in _entries(file, value, name)}
-                for part, (part_key, _) in parts.items():
-                    if part not in OF_A_RELATION:
-                        raise fault(
-                            file,
-                            part_key,
-                            f"{name} has no {part!r}{nearest(part, OF_A_RELATION)} (a relation has: to, has)",
-                        )
+                parts = _parts(file, value, name, "relation", OF_A_RELATION)
                 if "to" not in parts:
                     raise fault(file, key, f"{name} leads nowhere: write {name}: {{to: Thing}}")
-                targets = parts["to"][1]
+                targets = parts["to"]
                 if "has" in parts:
-                    self._add_properties(file, parts["has"][1], name, properties, relation=True)
+                    self._add_properties(file, parts["has"], name, properties, relation=True)
             ends = self._ends.setdefault(name, {})
             for item in targets.value if kind_of(targets) == "sequence" else [targets]:
                 ends.setdefault((source, _text(file, item, f"{name} goes to types")), line_of(file, item))
@@ -172,21 +151,14 @@ class _Reader:
             if name.lower() == "id":
                 raise fault(file, key, f"{owner}.{name}: every node has an id already; choose another name")
             kind = _text(file, value, f"{owner}.{name} has a kind")
-            found: Kind | None = next((known for known in KINDS if known == kind), None)
-            if found is None:
-                raise fault(
-                    file,
-                    value,
-                    f"{owner}.{name}: {kind!r} is not a kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})",
-                )
+            if kind not in KINDS:
+                problem = f"{kind!r} is not a kind{nearest(kind, KINDS)} (kinds: {', '.join(KINDS)})"
+                raise fault(file, value, f"{owner}.{name}: {problem}")
+            into[name] = found = KINDS[KINDS.index(kind)]
             spelt, known, where = self._kinds.setdefault((relation, name.lower()), (name, found, line_of(file, key)))
             if (spelt, known) != (name, found):
-                raise fault(
-                    file,
-                    key,
-                    f"{owner}.{name} is {found}, and {spelt} is {known} at {where}: choose another name",
-                )
-            into[name] = found
+                problem = f"{owner}.{name} is {found}, and {spelt} is {known} at {where}: choose another name"
+                raise fault(file, key, problem)
 
     def _name(
         self, file: str, node: yaml.Node, name: str, among: Mapping[str, object], others: Mapping[str, object]
@@ -195,12 +167,9 @@ class _Reader:
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):
-                raise fault(
-                    file,
-                    node,
-                    f"{name} and {other} ({self._places[other]}) are too much alike: a type and a relation, or names that differ "
-                    "by capitals alone",
-                )
+                place = self._places[other]
+                problem = "are too much alike: a type and a relation, or names that differ by capitals alone"
+                raise fault(file, node, f"{name} and {other} ({place}) {problem}")
         self._places.setdefault(name, line_of(file, node))
 
 
@@ -209,11 +178,8 @@ class _Reader:
 
 def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, str, yaml.Node]]:
     if kind_of(node) != "mapping":
-        raise fault(
-            file,
-            node,
-            f"{meaning}, and this is not a mapping: write for example\nBoat:\n  has: {{length: number}}",
-        )
+        example = "write for example\nBoat:\n  has: {length: number}"
+        raise fault(file, node, f"{meaning}, and this is not a mapping: {example}")
     seen: set[str] = set()
     for key, value in node.value:
         name = _text(file, key, "a name is a text")
@@ -221,6 +187,17 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
             raise fault(file, key, f"{name} is here twice: write it once, with all of its parts")
         seen.add(name)
         yield key, name, value
+
+
+def _parts(file: str, node: yaml.Node, owner: str, what: str, known: tuple[str, ...]) -> dict[str, yaml.Node]:
+    """Return the parts of the declaration of a type or relation, by their keys; refuse keys that are not `known`."""
+    parts: dict[str, yaml.Node] = {}
+    for key, part, body in _entries(file, node, f"{owner} has keys and values"):
+        if part not in known:
+            problem = f"{owner} has no {part!r}{nearest(part, known)} (a {what} has: {', '.join(known)})"
+            raise fault(file, key, problem)
+        parts[part] = body
+    return parts
 
 
 def _text(file: str, node: yaml.Node, meaning: str) -> str:
@@ -231,8 +208,5 @@ def _text(file: str, node: yaml.Node, meaning: str) -> str:
 
 def _check_name(file: str, node: yaml.Node, name: str, what: str) -> None:
     if not NAME.fullmatch(name):
-        raise fault(
-            file,
-            node,
-            f"{name!r} is not a name for a {what}: use at most 63 letters from A to Z, digits and '_', and begin with a letter",
-        )
+        rule = "use at most 63 letters from A to Z, digits and '_', and begin with a letter"
+        raise fault(file, node, f"{name!r} is not a name for a {what}: {rule}")

@@ -29,13 +29,7 @@ _EXAMPLES: dict[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type of nodes, with its own properties; `Types` has the inherited properties.
-
-    Args:
-        name: Letters, digits and ``_``.
-        parent: The name of its supertype; None if it has none.
-        properties: Name of one of its own properties → the property's kind.
-    """
+    """A type of nodes: its supertype, and the kinds of its own properties; `Types` has the inherited properties."""
 
     name: str
     parent: str | None = None
@@ -44,13 +38,7 @@ class Type:
 
 @dataclass(frozen=True, slots=True)
 class Relating:
-    """A kind of relation between nodes of certain types and their subtypes.
-
-    Args:
-        name: Letters, digits and ``_``.
-        ends: Pairs of a source type and a target type.
-        properties: Name of one of its properties → the property's kind.
-    """
+    """A kind of relation: its pairs of a source type and a target type, and the kinds of its properties."""
 
     name: str
     ends: frozenset[tuple[str, str]]
@@ -58,7 +46,10 @@ class Relating:
 
 
 class Types:
-    """All declared types and relations, with checks of values. ``read_types`` reads them from files."""
+    """All declared types and relations, with checks of values. ``read_types`` reads them from files.
+
+    Every method raises `RuleError` for an undeclared type, relation or property, and for a value of another kind.
+    """
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
         """Take valid types and relations: all parents and ends exist, and no type is its own ancestor."""
@@ -81,29 +72,17 @@ class Types:
         return self._relations
 
     def properties(self, type: str) -> Mapping[str, Kind]:
-        """Return name → kind for all properties of a type, inherited properties first.
-
-        Raises:
-            RuleError: There is no such type.
-        """
+        """Return name → kind for all properties of a type, inherited properties first."""
         self._check(type)
         return self._properties[type]
 
     def subtypes(self, type: str) -> tuple[str, ...]:
-        """Return the names of a type and of all its subtypes.
-
-        Raises:
-            RuleError: There is no such type.
-        """
+        """Return the names of a type and of all its subtypes."""
         self._check(type)
         return tuple(name for name in self if type in self._lines[name])
 
     def is_a(self, type: str, other: str) -> bool:
-        """Return whether a type is `other` or a subtype of it.
-
-        Raises:
-            RuleError: There is no such type.
-        """
+        """Return whether a type is `other` or a subtype of it."""
         self._check(type)
         self._check(other)
         return other in self._lines[type]
@@ -119,24 +98,30 @@ class Types:
             }
         )
 
-    def stored(self, type: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return a node's properties as memory stores them: dates and times become texts that sort by time.
+    def stored(self, owner: str, values: Mapping[str, Value]) -> dict[str, Any]:
+        """Return properties of a type or relation as memory stores them: dates and times are texts that sort by time."""
+        kinds = self._kinds(owner)
+        for name in values:
+            if name not in kinds:
+                raise RuleError(
+                    f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}; to add it, write "
+                    f"in a file of your own, setting ontology.types: {owner}: {{has: {{{name}: text}}}})"
+                )
+        return {
+            name: None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
+            for name, value in values.items()
+        }
 
-        Raises:
-            RuleError: There is no such type or property, or a value is not of its kind.
-        """
-        return _stored(type, self.properties(type), values)
-
-    def loaded(self, type: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """Return a node's stored properties as rules see them, without missing and undeclared ones."""
-        return _loaded(type, self._properties[type], values)
+    def loaded(self, owner: str, values: Mapping[str, Any]) -> dict[str, Value]:
+        """Return stored properties of a type or relation as rules see them, without missing and undeclared ones."""
+        return {
+            name: _as_loaded(f"{owner}.{name}", kind, values[name])
+            for name, kind in self._kinds(owner).items()
+            if values.get(name) is not None
+        }
 
     def check_relation(self, source: str, relation: str, target: str) -> None:
-        """Check that a relation may join nodes of two types.
-
-        Raises:
-            RuleError: There is no such relation between these types.
-        """
+        """Check that a relation may join nodes of two types."""
         self._check(source)
         self._check(target)
         ends = self.relating(relation).ends
@@ -145,24 +130,15 @@ class Types:
             raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
 
     def check_end(self, type: str, relation: str, *, back: bool = False) -> None:
-        """Check that nodes of a type may be the source of a relation; with `back`, its target.
-
-        Raises:
-            RuleError: There is no such type or relation, or the type has no such relation.
-        """
+        """Check that nodes of a type may be the source of a relation; with `back`, its target."""
         self._check(type)
         ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
         if not any(self.is_a(type, end) for end in ends):
-            raise RuleError(
-                f"{relation} goes {'to' if back else 'from'} {' or '.join(sorted(ends))}, not {'to' if back else 'from'} {type}"
-            )
+            way = "to" if back else "from"
+            raise RuleError(f"{relation} goes {way} {' or '.join(sorted(ends))}, not {way} {type}")
 
     def relating(self, relation: str) -> Relating:
-        """Return the relation with this name.
-
-        Raises:
-            RuleError: There is no such relation.
-        """
+        """Return the relation with this name."""
         found = self._relations.get(relation)
         if found is None:
             raise RuleError(
@@ -170,14 +146,6 @@ class Types:
                 f"a file of your own, setting ontology.types: relations: {{{relation}: Thing}})"
             )
         return found
-
-    def stored_of(self, relation: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return a relation's properties as memory stores them."""
-        return _stored(relation, self.relating(relation).properties, values)
-
-    def loaded_of(self, relation: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """Return a relation's stored properties as rules see them."""
-        return _loaded(relation, self.relating(relation).properties, values)
 
     # ------------------------------------------------------------------------------- internals
 
@@ -187,10 +155,11 @@ class Types:
             name = self._types[name].parent
 
     def _inherited(self, name: str) -> dict[str, Kind]:
-        found: dict[str, Kind] = {}
-        for ancestor in reversed(self._lines[name]):
-            found.update(self._types[ancestor].properties)
-        return found
+        return {key: kind for one in reversed(self._lines[name]) for key, kind in self._types[one].properties.items()}
+
+    def _kinds(self, owner: str) -> Mapping[str, Kind]:
+        relation = self._relations.get(owner)  # a type and a relation never have the same name
+        return self.properties(owner) if relation is None else relation.properties
 
     def _check(self, type: str) -> None:
         if type not in self._types:
@@ -198,18 +167,6 @@ class Types:
                 f"there is no type {type!r}{nearest(type, self._types)} (to add it, write in a file of your own, setting "
                 f"ontology.types: {type}: {{is: Thing}})"
             )
-
-
-def _stored(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Value]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, value in values.items():
-        if name not in kinds:
-            raise RuleError(
-                f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}; to add it, write "
-                f"in a file of your own, setting ontology.types: {owner}: {{has: {{{name}: text}}}})"
-            )
-        found[name] = None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
-    return found
 
 
 def _as_stored(what: str, kind: Kind, value: Value) -> Any:
@@ -236,14 +193,6 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
     shown = repr(value)
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
     raise RuleError(f"{what} is of kind {kind}, not {shown}: write for example {_EXAMPLES[kind]}")
-
-
-def _loaded(owner: str, kinds: Mapping[str, Kind], values: Mapping[str, Any]) -> dict[str, Value]:
-    return {
-        name: _as_loaded(f"{owner}.{name}", kind, values[name])
-        for name, kind in kinds.items()
-        if values.get(name) is not None
-    }
 
 
 def _as_loaded(what: str, kind: Kind, value: Any) -> Value:

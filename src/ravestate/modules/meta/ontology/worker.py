@@ -36,9 +36,8 @@ class StoreWorker:
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._users = 1
         self._key = ""
-        self._store: Store | None = None
-        self._failure: BaseException | None = None
-        self._jobs.put(lambda: self._open(make))
+        self._store: Future[Store] = Future()
+        self._jobs.put(lambda: _settle(self._store, make))
         threading.Thread(target=self._work, name="ravestate-memory", daemon=True).start()
 
     @classmethod
@@ -63,16 +62,7 @@ class StoreWorker:
     def submit(self, job: Callable[[Store], T]) -> Future[T]:
         """Queue a job for the thread; return its future result."""
         future: Future[T] = Future()
-
-        def do() -> None:
-            try:
-                if self._store is None:
-                    raise self._failure or RuntimeError("the store was not opened")
-                future.set_result(job(self._store))
-            except BaseException as error:  # the caller gets it
-                future.set_exception(error)
-
-        self._jobs.put(do)
+        self._jobs.put(lambda: _settle(future, lambda: job(self._store.result())))
         return future
 
     def release(self) -> Future[None]:
@@ -86,7 +76,7 @@ class StoreWorker:
             if self._key:
                 del _shared[self._key]
                 _closing[self._key] = done
-            self._jobs.put(lambda: self._close(done))
+            self._jobs.put(lambda: _settle(done, self._close))
             self._jobs.put(None)
         done.add_done_callback(self._closed)
         return done
@@ -96,22 +86,18 @@ class StoreWorker:
             if _closing.get(self._key) is done:
                 del _closing[self._key]
 
-    # ------------------------------------------------------------------------------- in the thread
-
     def _work(self) -> None:
         while (job := self._jobs.get()) is not None:
             job()
 
-    def _open(self, make: Callable[[], Store]) -> None:
-        try:
-            self._store = make()
-        except BaseException as error:  # every job will raise it
-            self._failure = error
+    def _close(self) -> None:
+        if self._store.exception() is None:
+            self._store.result().close()
 
-    def _close(self, done: Future[None]) -> None:
-        try:
-            if self._store is not None:
-                self._store.close()
-            done.set_result(None)
-        except BaseException as error:  # the caller gets it
-            done.set_exception(error)
+
+def _settle(future: Future[T], work: Callable[[], T]) -> None:
+    """Give the result of `work` to those who wait for the future, or its exception."""
+    try:
+        future.set_result(work())
+    except BaseException as error:
+        future.set_exception(error)

@@ -65,16 +65,12 @@ class PhraseBook:
     """
 
     def __init__(
-        self,
-        phrases: Mapping[str, Mapping[str, Sequence[str]]],
-        *,
-        language: str = "en",
-        default_language: str = "en",
+        self, phrases: Mapping[str, Mapping[str, Sequence[str]]], *, language: str = "en", default_language: str = "en"
     ) -> None:
-        """Make a book from texts.
+        """Make a book from texts: intent → language → texts.
 
         Args:
-            phrases: Intent → language → texts.
+            phrases: The texts.
             language: The language to speak. If ``de-AT`` has no phrase, ``de`` is next, then the default language.
             default_language: The language for intents without phrases in `language`.
 
@@ -89,19 +85,10 @@ class PhraseBook:
         }
 
     @classmethod
-    def load(
-        cls,
-        sources: Iterable[Source],
-        language: str = "en",
-        *,
-        default_language: str = "en",
-    ) -> PhraseBook:
+    def load(cls, sources: Iterable[Source], language: str = "en", *, default_language: str = "en") -> PhraseBook:
         """Return a book of the phrases in YAML files, read in the given order; for their format, see this file's start.
 
-        Args:
-            sources: Paths, or files in packages as ``importlib.resources`` gives them.
-            language: As for the class.
-            default_language: As for the class; also the language of phrases without a language in the files.
+        Phrases without a language in the files are in the default language.
 
         Raises:
             DeclarationError: A file is invalid; the message names file and line.
@@ -124,11 +111,7 @@ class PhraseBook:
         return tuple(sorted({tag for languages in self._phrases.values() for tag in languages}))
 
     def templates(self, intent: str, language: str | None = None) -> tuple[Template, ...]:
-        """Return the phrases for `intent` in `language` (the book's by default), or in the first fallback that has any.
-
-        Raises:
-            RuleError: There is no such intent, or it has no phrases in these languages.
-        """
+        """Return the phrases for `intent` in `language` (the book's by default), or in the first fallback with phrases."""
         languages = self._phrases.get(intent)
         if languages is None:
             known = ", ".join(self._phrases) or "none"
@@ -158,14 +141,8 @@ class PhraseBook:
     ) -> Phrase:
         """Choose a phrase at random, and fill in its parameters.
 
-        A phrase is eligible if all its parameters have values. If it begins with a parameter, it gets a capital letter.
-
-        Args:
-            intent: The intent's name.
-            parameters: Name of a parameter → its value; None counts as missing.
-            rng: A random number generator; with the same state, it gives the same phrase.
-            last: The text of the intent's last template; it is not chosen again if another is eligible.
-            language: The language to speak, instead of the book's.
+        A phrase is eligible if all its parameters have values; None counts as missing. If it begins with a parameter,
+        it gets a capital letter. The template `last` is not chosen again if another is eligible.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.
@@ -184,8 +161,6 @@ class PhraseBook:
         chosen = rng.choice(fresh)
         values = {name: str(given[name]) for name in chosen.parameters}
         return Phrase(_begun(chosen.text, chosen.text.format_map(values)), chosen.text)
-
-    # ------------------------------------------------------------------------------- internals
 
     def _merge(self, name: str, root: yaml.Node | None) -> None:
         if root is None:
@@ -257,9 +232,6 @@ def _template(text: str) -> Template:
     return Template(text, frozenset(names))
 
 
-# ------------------------------------------------------------------------------------- YAML
-
-
 def _added(name: str, node: yaml.Node) -> bool:
     tag = str(node.tag)
     if tag.startswith("!") and tag != "!add":
@@ -283,9 +255,6 @@ def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
 
 def _text_of(name: str, node: yaml.Node, meaning: str) -> str:
     if kind_of(node) != "scalar":
-        raise fault(
-            name,
-            node,
-            f"{meaning}, and this is a {kind_of(node)}; put quotes around a text that has : or begins with braces",
-        )
+        hint = "put quotes around a text that has : or begins with braces"
+        raise fault(name, node, f"{meaning}, and this is a {kind_of(node)}; {hint}")
     return str(node.value)

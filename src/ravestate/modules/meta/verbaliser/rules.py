@@ -34,11 +34,7 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return the slot's value as an `Intent`.
-
-    Raises:
-        RuleError: The value is neither an `Intent` nor the name of one.
-    """
+    """Return the slot's value as an `Intent`: it is one, or the name of one."""
     if isinstance(value, Intent):
         return value
     if isinstance(value, str) and value:

@@ -8,7 +8,6 @@ import importlib
 import sys
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
-from types import TracebackType
 from typing import Literal, Protocol, TextIO
 
 from ravestate.errors import PlatformError
@@ -81,16 +80,12 @@ class Console:
             prompt: The text before the line that the user types.
             history: The file that keeps typed lines; None keeps them for this session only.
             on_key: Called when the user presses a key; only a terminal notices that.
-            stdin: The stream to read instead of standard input.
-            stdout: The stream to write instead of standard output.
+            stdin, stdout: The streams instead of standard input and output.
 
         Raises:
             PlatformError: A terminal needs prompt_toolkit, which is not installed.
         """
-        if screen is None:
-            stdin, stdout = stdin or sys.stdin, stdout or sys.stdout
-            screen = _screen(prompt, history, on_key, stdin, stdout)
-        self._screen = screen
+        self._screen = screen or _screen(prompt, history, on_key, stdin or sys.stdin, stdout or sys.stdout)
         self._streamed = ""
         self._line_is_open = False
         self.ending: Ending | None = None
@@ -107,14 +102,9 @@ class Console:
         await self._screen.__aenter__()
         return self
 
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    async def __aexit__(self, *error: object) -> None:
         self.end()
-        await self._screen.__aexit__(kind, error, trace)
+        await self._screen.__aexit__(*error)
 
     def __aiter__(self) -> AsyncIterator[str]:
         return self
@@ -188,11 +178,7 @@ def is_terminal(stdin: TextIO | None, stdout: TextIO | None) -> bool:
 
 
 def _screen(
-    prompt: str,
-    history: Path | None,
-    on_key: Callable[[], None] | None,
-    stdin: TextIO | None,
-    stdout: TextIO | None,
+    prompt: str, history: Path | None, on_key: Callable[[], None] | None, stdin: TextIO | None, stdout: TextIO | None
 ) -> Screen:
     if is_terminal(stdin, stdout):
         try:

@@ -12,8 +12,7 @@ from pathlib import Path
 
 from ravestate.folders import user_folder
 
-LARGEST = 1_000_000
-"""The size in bytes after which a new log file begins; one old file is kept."""
+LARGEST = 1_000_000  # the size in bytes after which a new log file begins; one old file is kept
 
 
 def log_file() -> Path:
@@ -25,8 +24,8 @@ def log_file() -> Path:
 def log_to_file(file: Path) -> Generator[None]:
     """In the body, write the log to a file, if the chat and the log would share a terminal.
 
-    Afterwards the log goes where it went before, and a line on standard error names the file if it got warnings or errors. If
-    either stream is redirected, or the file cannot be written, the log stays as it is.
+    Afterwards the log goes where it went before, and a line on standard error names the file if it got warnings or
+    errors. If either stream is redirected, or the file cannot be written, the log stays as it is.
     """
     if not all(stream is not None and stream.isatty() for stream in (sys.stdout, sys.stderr)):
         yield

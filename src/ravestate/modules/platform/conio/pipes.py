@@ -22,12 +22,9 @@ class Pipes:
     interactive = False
 
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
-        """Make a console that has not read anything yet.
+        """Make a console that has not read anything yet. For a closed stream, write None.
 
-        Args:
-            stdin: The stream to read; None, for a closed standard input, counts as an input that has ended.
-            stdout: The stream to write; None counts as a closed output.
-            longest_line: The maximum number of bytes to read of a line; the rest of the line is left out.
+        It reads at most `longest_line` bytes of a line, and leaves out the rest.
         """
         self._stdin = stdin
         self._stdout = stdout
@@ -83,8 +80,6 @@ class Pipes:
         """End the line of pieces, as `Screen.end` describes."""
         rest, self._unwritten = self._unwritten, ""
         self._write(rest + "\n")
-
-    # ------------------------------------------------------------------------------- internals
 
     def _write(self, text: str) -> None:
         if self._stdout is None:

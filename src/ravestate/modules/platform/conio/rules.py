@@ -15,8 +15,7 @@ from .log_file import log_file, log_to_file
 from .names import module, screen
 from .pipes import Pipes
 
-USER = "conio"
-"""The key of the user at the console in ``interloc.users``."""
+USER = "conio"  # the key of the user at the console in ``interloc.users``
 
 
 @module.rule(
@@ -70,22 +69,19 @@ async def listen(ctx: rs.RuleContext) -> None:
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
 async def show(ctx: rs.RuleContext) -> None:
     """Print each utterance of the agent."""
-    console = ctx[screen]
-    if console is not None:
+    if console := ctx[screen]:
         console.write(ctx.payload(rawio.output.changed))
 
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=screen, background=True)
 async def show_piece(ctx: rs.RuleContext) -> None:
     """Print each piece of an utterance that is still growing."""
-    console = ctx[screen]
-    if console is not None:
+    if console := ctx[screen]:
         console.stream(ctx.payload(rawio.piece))
 
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=screen, background=True)
 async def end_line(ctx: rs.RuleContext) -> None:
     """End the line of pieces, even if they have not become a whole utterance."""
-    console = ctx[screen]
-    if console is not None:
+    if console := ctx[screen]:
         console.end()

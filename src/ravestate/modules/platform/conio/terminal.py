@@ -28,8 +28,7 @@ LONGEST = 10_000
 """The number of characters in a line after which a key adds nothing. Undoing a key may cost as much memory as the whole
 line. Pasted text is always accepted whole."""
 
-_OPEN = "…"
-"""The mark behind a streamed line that the user has interrupted by entering a line."""
+_OPEN = "…"  # the mark behind a streamed line that the user has interrupted by entering a line
 
 
 class Terminal:
@@ -52,12 +51,8 @@ class Terminal:
     ) -> None:
         """Make a console that has not read or written anything yet.
 
-        Args:
-            prompt: The text before the line that the user types.
-            history: The file that keeps typed lines. Without a writable file, they are kept for this session only.
-            on_key: Called with each key that changes the line, unless the line is empty afterwards.
-            input: The keyboard; by default, that of the terminal.
-            output: The screen; by default, that of the terminal.
+        The file `history` keeps typed lines; without a writable file, they are kept for this session only. Each key
+        that changes the line calls `on_key`, unless the line is empty afterwards.
         """
         self._prompt = prompt
         self._streamed = ""
@@ -130,8 +125,6 @@ class Terminal:
             line += late
         if line:
             self.show(line)
-
-    # ------------------------------------------------------------------------------- internals
 
     def _keys(self) -> KeyBindings:
         keys = KeyBindings()

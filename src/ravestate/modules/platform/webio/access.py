@@ -15,8 +15,7 @@ from .protocol import ProtocolError
 if TYPE_CHECKING:
     from .names import Settings
 
-PAUSE = 1.0
-"""The seconds that the server waits before it refuses a wrong token, so that guessing takes long."""
+PAUSE = 1.0  # the seconds that the server waits before it refuses a wrong token, so that guessing takes long
 
 
 def is_local(host: str) -> bool:
@@ -35,9 +34,6 @@ class Access:
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
     checks prevent that. Against DNS rebinding, the server answers only to names of this machine. It accepts only its
     own origin and those in the settings. All methods expect the names of headers in lower case.
-
-    Args:
-        settings: The settings of ``webio``.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -90,11 +86,7 @@ class Access:
         )
 
     async def check_token(self, token: str | None) -> None:
-        """Refuse a wrong token, after a pause.
-
-        Raises:
-            ProtocolError: The token is wrong or missing.
-        """
+        """Refuse a wrong token with a `ProtocolError`, after a pause."""
         if not self.admits(token):
             if token:
                 await asyncio.sleep(PAUSE)

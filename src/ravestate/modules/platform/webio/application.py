@@ -41,11 +41,7 @@ log = logging.getLogger("ravestate.webio")
 
 
 def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``.
-
-    Raises:
-        PlatformError: The agent lacks ``webio``, or has a platform for a single user.
-    """
+    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``."""
     settings = _settings_of(agent)
     access = Access(settings)
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)
@@ -85,11 +81,7 @@ class AccessMiddleware:
     """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
     The log names sites that try to embed the page without permission: such a site's visitors see only an empty frame.
-    One instance guards the whole application; a second instance guards the board, which no other site may reach.
-
-    Args:
-        app: The application to guard.
-        inside: Whether the application is the board, not the whole page.
+    One instance guards the whole application; a second one, `inside`, guards the board, which no other site may reach.
     """
 
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:

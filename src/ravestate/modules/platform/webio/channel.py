@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections import deque
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
@@ -14,17 +15,13 @@ from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
 LONGEST = 128 * 1024
 """The maximum number of bytes in a frame. A text may have 10,000 characters, each up to twelve bytes in JSON."""
 
-SILENT = 10.0
-"""The seconds that a client has to send its first frame."""
+SILENT = 10.0  # the seconds that a client has to send its first frame
 
 
 class Channel:
-    """A WebSocket that carries frames as text.
+    """A WebSocket, not accepted yet, that carries frames as text.
 
-    Args:
-        socket: A WebSocket, not accepted yet.
-        replies: The maximum number of replies that may wait for the client. A client that keeps asking without reading
-            is dropped.
+    At most `replies` replies may wait: a client that keeps asking without reading is dropped.
     """
 
     def __init__(self, socket: WebSocket, replies: int) -> None:
@@ -36,15 +33,13 @@ class Channel:
 
     async def carry(self, serve: Callable[[], Awaitable[None]]) -> None:
         """Accept the client, and run `serve` until either side closes. The client gets a `ProtocolError` as a frame."""
-        try:
+        with contextlib.suppress(WebSocketDisconnect):
             await self._socket.accept()
             try:
                 await serve()
             except ProtocolError as error:
                 await self.send(serialise(Error(error.code, str(error))))
                 await self._socket.close(CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code)
-        except WebSocketDisconnect:
-            pass
 
     async def both(self, read: Coroutine[Any, Any, None], write: Coroutine[Any, Any, None]) -> None:
         """Run both coroutines at the same time until one of them ends; then cancel the other."""
@@ -59,14 +54,7 @@ class Channel:
                 raise end
 
     async def first(self, expected: str) -> str | bytes:
-        """Return the client's first frame.
-
-        Args:
-            expected: An example of the first frame, for the error message.
-
-        Raises:
-            ProtocolError: The frame does not come in time, or is too large.
-        """
+        """Return the client's first frame; `expected` is an example of it, for the error message."""
         try:
             async with asyncio.timeout(SILENT):
                 return await self.receive()
@@ -74,11 +62,7 @@ class Channel:
             raise ProtocolError("silent", f"no hello within {SILENT:g} s: begin with {expected}") from None
 
     async def receive(self) -> str | bytes:
-        """Return the client's next frame.
-
-        Raises:
-            ProtocolError: The frame is too large.
-        """
+        """Return the client's next frame, or raise a `ProtocolError` if it is too large."""
         message = await self._socket.receive()
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(message.get("code", 1006))
@@ -106,3 +90,41 @@ class Channel:
     async def end(self) -> None:
         """Close the WebSocket with the code for a conversation that has ended."""
         await self._socket.close(CLOSING_CODES["ended"], "ended")
+
+
+class Bucket:
+    """A rate limit (token bucket) for events: at most `burst` at once, then `rate` per second. Times are in seconds.
+
+    Example:
+        >>> bucket = Bucket(burst=2, rate=0.5, now=0.0)
+        >>> [bucket.wait(now=0.0) for _ in range(3)]
+        [0.0, 0.0, 2.0]
+        >>> bucket.take(now=0.0)
+        False
+    """
+
+    __slots__ = ("_burst", "_level", "_rate", "_time")
+
+    def __init__(self, *, burst: float, rate: float, now: float) -> None:
+        self._burst = burst
+        self._rate = rate
+        self._level = burst
+        self._time = now
+
+    def wait(self, now: float) -> float:
+        """Count an event, even beyond the limit; return the seconds until the limit allows it, 0 if it does now."""
+        self._fill(now)
+        self._level -= 1
+        return max(0.0, -self._level / self._rate)
+
+    def take(self, now: float) -> bool:
+        """Count an event if the limit allows it; return whether it does."""
+        self._fill(now)
+        if self._level < 1:
+            return False
+        self._level -= 1
+        return True
+
+    def _fill(self, now: float) -> None:
+        self._level = min(self._burst, self._level + (now - self._time) * self._rate)
+        self._time = now

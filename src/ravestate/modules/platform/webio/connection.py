@@ -7,30 +7,9 @@ from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocket
 
-from .bucket import Bucket
-from .channel import Channel
-from .protocol import (
-    CLIENT,
-    VERSION,
-    Bye,
-    ClientFrame,
-    Ended,
-    Error,
-    Hello,
-    Paused,
-    Piece,
-    Ping,
-    Pong,
-    ProtocolError,
-    Renamed,
-    Say,
-    ServerFrame,
-    Typing,
-    Welcome,
-    Writing,
-    parse,
-    serialise,
-)  # fmt: skip
+from . import protocol
+from .channel import Bucket, Channel
+from .protocol import CLIENT, VERSION, ProtocolError, parse, serialise
 from .session import Ending, Session
 
 if TYPE_CHECKING:
@@ -41,23 +20,15 @@ BURST, RATE = 20, 5.0
 """How many frames a client may send in a burst, and per second after it. The server delays further frames, and loses
 none. `Writing` frames have a limit of their own with the same numbers; the server ignores further ones."""
 
-REPLIES = 32
-"""The maximum number of replies that may wait to be sent to a client."""
+REPLIES = 32  # the maximum number of replies that may wait to be sent to a client
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
 
 class Connection:
-    """Carries the protocol over one WebSocket.
+    """Carries the protocol over one WebSocket that is not accepted yet.
 
-    Args:
-        socket: A WebSocket, not accepted yet.
-        sessions: The server's conversations.
-        access: The check of the client's token.
-        title: The agent's name on the page; None for the agent's own name.
-        inside: The path of the board, e.g. ``board/``; None if there is none.
-        suggestions: A few things that the visitor could say first.
-        note: A line of text that the page shows until the visitor has said something; None for no line.
+    The path of the board is `inside`. For `title`, `suggestions` and `note`, see `Settings`.
     """
 
     def __init__(
@@ -99,14 +70,14 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
-            await self._send(Welcome(*begin, self._suggestions, self._note))
+            await self._send(protocol.Welcome(*begin, self._suggestions, self._note))
             await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             self._sessions.exit(session, self)
 
-    async def _hello(self) -> Hello:
+    async def _hello(self) -> protocol.Hello:
         frame = parse(await self._channel.first(HELLO), CLIENT)
-        if not isinstance(frame, Hello):
+        if not isinstance(frame, protocol.Hello):
             raise ProtocolError("malformed", f"begin with {HELLO}")
         bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
         await self._access.check_token(frame.token or bearer)
@@ -121,28 +92,28 @@ class Connection:
             text = await self._channel.receive()
             try:
                 frame = parse(text, CLIENT)
-                if isinstance(frame, Writing):
+                if isinstance(frame, protocol.Writing):
                     if writing.take(now()):
                         session.notice_writing()
                     await asyncio.sleep(0)  # let other tasks run between many such frames
                     continue
                 self._take(frame, session)
             except ProtocolError as error:
-                self._reply(Error(error.code, str(error), error.id))
+                self._reply(protocol.Error(error.code, str(error), error.id))
             await asyncio.sleep(others.wait(now()))
 
-    def _take(self, frame: ClientFrame, session: Session) -> None:
-        if isinstance(frame, Say):
+    def _take(self, frame: protocol.ClientFrame, session: Session) -> None:
+        if isinstance(frame, protocol.Say):
             if not session.hear(frame.id, frame.text):
                 raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
-        elif isinstance(frame, Ping):
-            self._reply(Pong())
-        elif isinstance(frame, Bye):
+        elif isinstance(frame, protocol.Ping):
+            self._reply(protocol.Pong())
+        elif isinstance(frame, protocol.Bye):
             self._sessions.leave(session, Ending.BYE)
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
-    def _reply(self, frame: ServerFrame) -> None:
+    def _reply(self, frame: protocol.ServerFrame) -> None:
         self._channel.reply(serialise(frame))
 
     # ------------------------------------------------------------------------------------ to the client
@@ -156,7 +127,7 @@ class Connection:
             await self._channel.send_replies()
             if (name := self._name_of(session)) != agent:
                 agent = name
-                await self._send(Renamed(agent))
+                await self._send(protocol.Renamed(agent))
             for message in session.history.since(last):
                 if message.n != last + 1:
                     raise ProtocolError("behind", f"message {last + 1} is no longer kept: connect again")
@@ -166,15 +137,15 @@ class Connection:
             if session.partial != shown and last == session.history.last:
                 same = _common(shown, session.partial)
                 shown = session.partial
-                await self._send(Piece(_units(shown[:same]), shown[same:]))
+                await self._send(protocol.Piece(_units(shown[:same]), shown[same:]))
             if session.typing != typing:
                 typing = session.typing
-                await self._send(Typing(typing))
+                await self._send(protocol.Typing(typing))
             if session.paused != paused:
                 paused = session.paused
-                await self._send(Paused(paused))
+                await self._send(protocol.Paused(paused))
             if session.ended is not None and last == session.history.last:
-                await self._send(Ended(session.ended.for_visitor))
+                await self._send(protocol.Ended(session.ended.for_visitor))
                 await self._channel.end()
                 return
             await woken.wait()
@@ -183,7 +154,7 @@ class Connection:
         """Return the agent's name for the page of a conversation."""
         return session.agent if self._title is None else self._title
 
-    async def _send(self, frame: ServerFrame) -> None:
+    async def _send(self, frame: protocol.ServerFrame) -> None:
         await self._channel.send(serialise(frame))
 
 

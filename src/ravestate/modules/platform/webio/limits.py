@@ -17,14 +17,12 @@ from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import InvalidState
 
-TIMEOUT = 10.0
-"""The seconds that a client has to send its request, and then again to read the answer."""
+TIMEOUT = 10.0  # the seconds that a client has to send its request, and then again to read the answer
 
 LOWEST_RATE = 8 * 1024
 """The lowest rate at which a client may send a request (bytes per second). It may fall behind by `TIMEOUT` seconds."""
 
-STALL_TIMEOUT = 20.0
-"""The seconds for which a client of a WebSocket may leave data unread."""
+STALL_TIMEOUT = 20.0  # the seconds for which a client of a WebSocket may leave data unread
 
 FULL = (
     b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
@@ -43,12 +41,7 @@ log.addFilter(lambda record: record.msg not in FOREIGN)
 
 
 class LimitedHTTP(H11Protocol):
-    """HTTP with a limit on connections, in total and per address, and with time limits.
-
-    Args:
-        per_address: The maximum number of connections from one address, including WebSockets.
-        most: The maximum number of connections in total.
-    """
+    """HTTP with time limits, and with limits on connections, including WebSockets: `most` in total, and `per_address`."""
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -70,7 +63,6 @@ class LimitedHTTP(H11Protocol):
             self.loop.call_later(TIMEOUT, self._check)
 
     def data_received(self, data: bytes) -> None:
-        """Receive bytes from the client."""
         self._received += len(data)
         super().data_received(data)
 

@@ -15,8 +15,7 @@ from .serving import serve
 if TYPE_CHECKING:
     from .session import Session
 
-ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")
-"""The pattern of a web site's origin: scheme, host and port."""
+ORIGIN = re.compile(r"https?://[^\s/?#@'\";,*]+")  # the pattern of a web site's origin: scheme, host and port
 
 
 def _origin(text: str) -> str:

@@ -41,11 +41,7 @@ class _File:
 
 
 class Pages:
-    """An ASGI application that serves the files of a folder, with ``index.html`` for folders.
-
-    Args:
-        folder: The folder to read; later changes in it have no effect.
-    """
+    """An ASGI application that serves the files of a folder as they are now, with ``index.html`` for folders."""
 
     def __init__(self, folder: Path) -> None:
         self._files: dict[str, _File] = {}

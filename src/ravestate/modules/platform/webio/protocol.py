@@ -123,10 +123,7 @@ Spoken = Annotated[String, AfterValidator(heard_text)]
 Name = Annotated[
     str, Field(strict=True, description=f"a text of 1 to {LONGEST_NAME} characters"), AfterValidator(_name)
 ]
-Id = Annotated[
-    str,
-    Field(strict=True, pattern=r"^[A-Za-z0-9_-]{1,64}$", description="1 to 64 letters, digits, - or _"),
-]
+Id = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_-]{1,64}$", description="1 to 64 letters, digits, - or _")]
 Speaker = Annotated[Literal["user", "agent"], Field(alias="from", description='"user" or "agent"')]
 
 

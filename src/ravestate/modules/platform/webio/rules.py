@@ -7,45 +7,39 @@ from ravestate.modules import interloc, rawio
 
 from .names import module, page
 
-SLOW = 0.3
-"""The seconds of waiting after which the page shows that the agent is working."""
+SLOW = 0.3  # the seconds of waiting after which the page shows that the agent is working
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=page)
 async def show(ctx: rs.RuleContext) -> None:
     """Show each utterance of the agent on the page."""
-    session = ctx[page]
-    if session is not None:
+    if session := ctx[page]:
         session.utter(ctx.payload(rawio.output.changed))
 
 
 @module.rule(when=rawio.piece.max_age(None).detached(), reads=page, background=True)
 async def show_piece(ctx: rs.RuleContext) -> None:
     """Show each piece of a growing utterance on the page."""
-    session = ctx[page]
-    if session is not None:
+    if session := ctx[page]:
         session.grow(ctx.payload(rawio.piece))
 
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=page, background=True)
 async def end_piece(ctx: rs.RuleContext) -> None:
     """End a growing utterance that no rule has written as a whole."""
-    session = ctx[page]
-    if session is not None:
+    if session := ctx[page]:
         session.fall_silent()
 
 
 @module.rule(when=interloc.agent.changed.max_age(None).detached(), reads=page, background=True)
 async def show_name(ctx: rs.RuleContext) -> None:
     """Show the agent's new name on the page."""
-    session = ctx[page]
-    if session is not None:
+    if session := ctx[page]:
         session.notify()
 
 
 @module.rule(when=rs.pressure.true.min_age(SLOW).max_age(None).detached(), reads=page, background=True)
 async def show_delay(ctx: rs.RuleContext) -> None:
     """Show on the page that the agent is working."""
-    session = ctx[page]
-    if session is not None:
+    if session := ctx[page]:
         session.show_work()

@@ -9,7 +9,7 @@ import functools
 import socket
 import sys
 from collections.abc import Callable, Generator, Iterable, Mapping
-from types import MappingProxyType, TracebackType
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 from urllib.parse import quote
 
@@ -21,7 +21,6 @@ from .access import is_local
 from .application import make_app
 from .channel import LONGEST
 from .limits import LimitedHTTP, LimitedWebSocket
-from .tuning import low_latency
 
 if TYPE_CHECKING:
     from starlette.routing import BaseRoute
@@ -29,26 +28,55 @@ if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
     from .names import Settings
+import gc
+from dataclasses import dataclass
 
-SPARE = 128
-"""The number of open files that the server leaves to the rest of the process."""
+SPARE = 128  # the number of open files that the server leaves to the rest of the process
+BACKLOG = 256  # how many connections the system accepts before the server takes them
+UNREAD = 128 * 1024  # how many bytes the system buffers for a client that does not read
+LAST_WORDS = 2.0  # the seconds that connections have to close when the server ends
 
-BACKLOG = 256
-"""How many connections the system accepts before the server takes them."""
 
-UNREAD = 128 * 1024
-"""How many bytes the system buffers for a client that does not read."""
+SWITCH = 0.0005
+"""The seconds after which a computing thread gives way to another. An answer takes several turns of the event loop.
+With Python's default, each turn would wait 5 ms while a thread analyses a sentence."""
 
-LAST_WORDS = 2.0
-"""The seconds that connections have to close when the server ends."""
+COLLECT = (10_000, 10, 10)
+"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10), it would scan all objects of
+several hundred conversations every few seconds, and hold up all answers meanwhile."""
+
+
+@dataclass(slots=True)
+class _Saved:
+    """The number of running servers, and the interpreter's settings from before the first server."""
+
+    users: int = 0
+    switch: float = 0.0
+    collect: tuple[int, int, int] = (0, 0, 0)
+
+
+_saved = _Saved()
+
+
+@contextlib.contextmanager
+def low_latency() -> Generator[None]:
+    """Tune the interpreter for quick answers in the body, until the last server that does so has ended."""
+    if not _saved.users:
+        _saved.switch, _saved.collect = sys.getswitchinterval(), gc.get_threshold()
+        sys.setswitchinterval(SWITCH)
+        gc.set_threshold(*COLLECT)
+    _saved.users += 1
+    try:
+        yield
+    finally:
+        _saved.users -= 1
+        if not _saved.users:
+            sys.setswitchinterval(_saved.switch)
+            gc.set_threshold(*_saved.collect)
 
 
 class Server:
-    """Serves the page of an agent: ``async with Server(agent) as server``.
-
-    Args:
-        agent: An agent with ``webio`` among its modules; its settings say where to listen.
-        routes, inside: As for `webio.app`.
+    """Serves the page of an agent, as its settings say: ``async with Server(agent) as server``. See also `webio.app`.
 
     Raises:
         PlatformError: Other machines can reach the address, and there is no token; or as for `make_app`.
@@ -68,11 +96,7 @@ class Server:
         self._saved = contextlib.ExitStack()
 
     async def __aenter__(self) -> Server:
-        """Start to listen.
-
-        Raises:
-            PlatformError: The port is in use, or the address is not one of this machine.
-        """
+        """Start to listen, or raise a `PlatformError`."""
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
         limits = functools.partial(LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions))
@@ -103,9 +127,7 @@ class Server:
         self._saved.enter_context(low_latency())
         return self
 
-    async def __aexit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    async def __aexit__(self, *_: object) -> None:
         """End the conversations in order, and stop the server."""
         assert self._uvicorn is not None and self._task is not None  # set by `__aenter__`
         with self._saved:
@@ -134,18 +156,14 @@ class Server:
         return f"{self.address}{path}{secret}"
 
     def announce(self, pages: Mapping[str, str] = MappingProxyType({"agent": ""})) -> None:
-        """Print the address of each page.
+        """Print the address of each page, given its path by its name.
 
         The token appears only on a terminal: other outputs are often kept in files that others can read.
-
-        Args:
-            pages: Name of a page → its path.
         """
 
         def lines(address: Callable[[str], str]) -> str:
-            return (
-                "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items()) + " (Ctrl-C ends it)\n"
-            )
+            told = "\n".join(f"The {name} is at {address(path)}" for name, path in pages.items())
+            return f"{told} (Ctrl-C ends it)\n"
 
         if self._settings.token is None or sys.stdout.isatty():
             sys.stdout.write(lines(self.link))

@@ -14,23 +14,66 @@ from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable, without_controls
 
-from .history import History
 from .names import page
 from .protocol import LONGEST_NAME, name_of
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
+from collections import deque
+from collections.abc import Iterator
+from typing import Literal
 
-REMEMBERED = 512
-"""The number of message ids that a session remembers, to ignore repeated messages."""
+from .protocol import Message
 
-GRACE = 0.3
-"""The seconds after the visitor's words before the page shows that the agent is working."""
-
-FAREWELL = 5.0
-"""The seconds that the agent has for a farewell."""
+REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
+GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
+FAREWELL = 5.0  # the seconds that the agent has for a farewell
 
 log = logging.getLogger("ravestate.webio")
+
+
+Speaker = Literal["user", "agent"]
+
+MESSAGES = 500  # the maximum number of messages that a history keeps
+CHARACTERS = 200_000  # the maximum number of characters that a history keeps
+
+
+class History:
+    """The last messages of a conversation, bounded in number and in size."""
+
+    def __init__(self, *, messages: int = MESSAGES, characters: int = CHARACTERS) -> None:
+        self._messages: deque[Message] = deque()
+        self._most = messages
+        self._characters = characters
+        self._size = 0
+        self.last = 0
+        """The number of the newest message; 0 before the first."""
+
+    @property
+    def first(self) -> int:
+        """The number of the oldest message. While there is none, the number that the next message will get."""
+        return self.last - len(self._messages) + 1
+
+    def newest(self, speaker: Speaker) -> Message | None:
+        """Return the newest message of a speaker, or None."""
+        return next((message for message in reversed(self._messages) if message.speaker == speaker), None)
+
+    def add(self, speaker: Speaker, text: str, time: int, id: str | None = None) -> Message:
+        """Add a message, and return it; `time` is in milliseconds since 1970. A text longer than a history is cut."""
+        text = text[: self._characters]
+        self.last += 1
+        message = Message(self.last, speaker, text, time, id)
+        self._messages.append(message)
+        self._size += len(text)
+        while len(self._messages) > self._most or self._size > self._characters:
+            self._size -= len(self._messages.popleft().text)
+        return message
+
+    def since(self, number: int) -> Iterator[Message]:
+        """Yield the messages with numbers greater than `number`, in order, including those added meanwhile."""
+        while number < self.last:
+            number = max(number + 1, self.first)
+            yield self._messages[number - self.first]
 
 
 class Ending(enum.StrEnum):
@@ -62,10 +105,6 @@ class Session:
     """A visitor's conversation. It outlives its connections, and runs on one event loop.
 
     A session has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
-
-    Args:
-        context: The visitor's context, not entered yet.
-        name: The visitor's name; None if it is unknown.
     """
 
     def __init__(self, context: Context, name: str | None = None) -> None:
@@ -105,7 +144,8 @@ class Session:
                 context.put(page, self)
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
-                self._free_from_users()
+                users = self.context.read(interloc.users)
+                self.context.put(interloc.users, {key: user for key, user in users.items() if key != self.visitor})
                 async with asyncio.timeout(FAREWELL):
                     await context.quiet()
         except TimeoutError:
@@ -139,10 +179,6 @@ class Session:
             left.cancel()
             stopped.cancel()
 
-    def _free_from_users(self) -> None:
-        users = self.context.read(interloc.users)
-        self.context.put(interloc.users, {key: user for key, user in users.items() if key != self.visitor})
-
     # ------------------------------------------------------------------------------------ the visitor
 
     @property
@@ -151,11 +187,7 @@ class Session:
         return self._left.is_set()
 
     def hear(self, id: str, text: str) -> bool:
-        """Take the visitor's words. Words that came before under the same `id` are ignored.
-
-        Args:
-            id: The client's id for the words: 1 to 64 letters, digits, ``-`` or ``_``.
-            text: The words, checked by `heard_text`.
+        """Take the visitor's words, checked by `heard_text`. Words that came before under the same `id` are ignored.
 
         Returns:
             Whether the session took the words, now or before; False if the session is `leaving`.

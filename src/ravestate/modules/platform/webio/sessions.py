@@ -12,18 +12,14 @@ from .session import Ending, Onlooker, Session
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-ONLOOKERS = 8
-"""The maximum number of windows that may show one conversation at a time."""
+ONLOOKERS = 8  # the maximum number of windows that may show one conversation at a time
 
 
 class Sessions:
-    """All conversations with one agent.
+    """All conversations with one agent, which makes a context for each.
 
-    Args:
-        agent: The agent; it makes a context for each conversation.
-        limit: The maximum number of conversations. Beyond it, a new conversation ends one that has no window. If all
-            have windows, the server refuses the new one.
-        keep: The seconds for which a conversation without a window is kept.
+    Beyond `limit`, a new conversation ends one that has no window. If all have windows, the server refuses the new one.
+    A conversation without a window is kept for `keep` seconds.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -47,14 +43,7 @@ class Sessions:
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
-        """Begin a conversation, and return it.
-
-        Args:
-            name: The visitor's name; None if it is unknown.
-
-        Raises:
-            ProtocolError: There are too many conversations already, or the agent is being switched off.
-        """
+        """Begin a conversation with a visitor. If there are too many, or the agent is switched off, raise a `ProtocolError`."""
         if len(self._tasks) >= self._limit:
             await self._make_room()
         if self._closed:
@@ -68,11 +57,7 @@ class Sessions:
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Add an onlooker, such as a window, to a conversation.
-
-        Raises:
-            ProtocolError: The conversation has too many onlookers already.
-        """
+        """Add an onlooker, such as a window, to a conversation, unless it has too many already."""
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from . import rules as rules
 from .goal import Goal, goal
-from .names import Settings, goals, module, opportunity, topics
-from .state import GoalState
+from .names import GoalState, Settings, goals, module, opportunity, topics
 from .wish import Wish
 
 __all__ = ["Goal", "GoalState", "Settings", "Wish", "goal", "goals", "module", "opportunity", "topics"]

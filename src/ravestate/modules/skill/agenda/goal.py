@@ -11,21 +11,16 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 import ravestate as rs
-from ravestate.declare.condition import Condition, Constraint
+from ravestate.declare.condition import AllOf, AnyOf, Condition, Constraint, Holds
 from ravestate.modules import rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .conditions import negated, watching
-from .names import goals, opportunity
-from .state import OPEN, GoalState, Status
+from .names import OPEN, GoalState, Status, goals, opportunity
 
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
-MOMENT = 1.0
-"""The seconds for which an opportunity to pursue a goal lasts."""
-
-LONGEST = 1000
-"""How many characters of the user's words the expressions `done` and `refused` search."""
+MOMENT = 1.0  # the seconds for which an opportunity to pursue a goal lasts
+LONGEST = 1000  # how many characters of the user's words the expressions `done` and `refused` search
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,3 +224,43 @@ def _check(goal: str, say: object, intent: object, priority: object, cooldown: o
             raise rs.DeclarationError(f"goal {goal}: {what}={number!r} must be above 0: write {what}=1.0")
     if isinstance(tries, bool) or not isinstance(tries, int) or tries < 1:
         raise rs.DeclarationError(f"goal {goal}: tries={tries!r} must be a whole number of at least 1")
+
+
+def watching(condition: Condition) -> Condition:
+    """Return the condition with all its constraints detached, so that it consumes nothing."""
+    match condition:
+        case rs.Signal():
+            return condition.max_age(None).detached()
+        case Constraint():
+            return condition.detached()
+        case AllOf(parts):
+            return AllOf(tuple(map(watching, parts)))
+        case AnyOf(parts):
+            return AnyOf(tuple(map(watching, parts)))
+        case _:
+            return condition
+
+
+def negated(condition: Condition) -> Condition:
+    """Return the negation of a condition that consists of ``slot.holds(...)`` alone.
+
+    Raises:
+        rs.DeclarationError: The condition contains a signal, which cannot be negated.
+    """
+    match condition:
+        case Holds(slot, predicate):
+
+            def otherwise(value: Any) -> bool:
+                return not predicate(value)
+
+            otherwise.__name__ = f"not_{getattr(predicate, '__name__', 'so')}"
+            return slot.holds(otherwise)
+        case AllOf(parts):
+            return AnyOf(tuple(map(negated, parts)))
+        case AnyOf(parts):
+            return AllOf(tuple(map(negated, parts)))
+        case _:
+            raise rs.DeclarationError(
+                f"unless={condition} has a signal in it: write unless=slot.holds(predicate), with a slot that "
+                "keeps the signal's state"
+            )

@@ -23,15 +23,15 @@ from .stems import Stems
 
 RETRIEVED = 16
 """The number of passages to compare word by word: so many with any word of a question, and as many with all words."""
-READ = (1, 1, 2, 4)
+READ = (1, 1, 2, 4, 8, 8)
 """The number of these passages to read, in batches. Each batch is read only if the last one had no answer."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """Scores that end the reading: `GOOD` for the best of several, `VERY_GOOD` for a single one, `HOPELESS` for the first
 few."""
 ENOUGH = 0.4
 """The minimum share of the question's words (0 to 1) in a passage that is read."""
-ENOUGH_THERE = 0.25
-"""The same in the documents that a talk is about."""
+SHORT = 24
+"""The maximum number of passages of a document in view that are all read."""
 LEVEL = 0.8
 """Scores that differ by less count as equal."""
 COMMON = 20_000
@@ -53,6 +53,8 @@ class Candidate:
     """The reader's score, up to 11; most passages above 0 are good answers."""
     covered: float
     """The share of the question's words in the passage, 0 to 1; rare words weigh more."""
+    own: float = 1.0
+    """The same without the names in the question."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +140,7 @@ class Answerer:
         retrieved = self._retrieve(index, question, titles)
         if not retrieved:
             return Answer(question.text, reason="no document states all of it")
-        read = self._read(question, retrieved)
+        read = self._read(question, retrieved, titles)
         best = read[0]
         sure = confidence(best.score, best.covered)
         return Answer(question.text, best.text, index.source(best.row), best.title, sure, tuple(read))
@@ -166,7 +168,7 @@ class Answerer:
                 self._stems = Stems()
             return self._index
 
-    def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
+    def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, float, Found]]:
         """Return the passages to read with their share of the question, best first; all meet its qualifiers."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
@@ -181,52 +183,44 @@ class Answerer:
 
         searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]
         rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
-        found = index.search(rare or searched, RETRIEVED, titles=titles, without=question.avoids)
+        known_titles = [each for title in titles for each in index.passages(title, SHORT)]
+        found = [*known_titles, *index.search(rare or searched, RETRIEVED, without=question.avoids)]
         # A passage with all words may be hidden behind many that repeat the rarest one.
-        found += [
-            each
-            for each in index.search_all(asked, RETRIEVED, titles=titles, without=question.avoids)
-            if each not in found
-        ]
+        found = list(dict.fromkeys([*found, *index.search_all(asked, RETRIEVED, without=question.avoids)]))
+        avoided = {stem for stems in self._stems(*question.avoids) for stem in stems}
 
         def has(have: set[str], forms: Iterable[str]) -> bool:
             return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
 
         size = index.size()
         weights = [
-            (forms, math.log1p(size / (max(map(standing, known_forms)) + 0.5)))
-            for forms in asked
+            (forms, math.log1p(size / (max(map(standing, known_forms)) + 0.5)), word.lower() in question.given)
+            for word, forms in zip(question.words, asked, strict=False)
             if (known_forms := [form for form in forms if form in stem_of])
         ]
-        total = sum(weight for _, weight in weights) or 1.0
-        retrieved: list[tuple[float, Found]] = []
+
+        def share(have: set[str], *, all_words: bool) -> float:
+            some = [(forms, weight) for forms, weight, given in weights if all_words or not given]
+            total = sum(weight for _, weight in some)
+            return sum(weight for forms, weight in some if has(have, forms)) / total if total else 1.0
+
+        retrieved: list[tuple[float, float, Found]] = []
         stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
-        # A word that some of the documents in view have is not just another name for their subject, unless they say so.
-        told = [forms for forms in asked if titles and any(has(have, forms) for have in stems_of)]
-        also = [
-            f
-            for f in told
-            if any(
-                has(have, f) and _DEFINES.match(e.text.removeprefix(e.title))
-                for e, have in zip(found, stems_of, strict=True)
-            )
-        ]
-        also = also if len(told) > len(also) else []
-        told = [forms for forms in told if forms not in also]
-        weights = [(forms, weight) for forms, weight in weights if forms not in also]
-        total = sum(weight for _, weight in weights) or 1.0
         for each, have in zip(found, stems_of, strict=True):
-            covered = sum(weight for forms, weight in weights if has(have, forms)) / total
+            covered = share(have, all_words=True)
             if (
-                covered >= (ENOUGH_THERE if titles else ENOUGH)
+                (covered >= ENOUGH or each in known_titles)
+                and have.isdisjoint(avoided)
                 and _can_answer(question, each)
-                and all(has(have, need) for need in (*question.needs, *told))
+                and all(has(have, need) for need in question.needs)
             ):
-                retrieved.append((covered, each))
+                retrieved.append((covered, share(have, all_words=False), each))
         # The sort is stable, so BM25 decides between equals.
         return sorted(retrieved, key=lambda each: -each[0])
 
-    def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
+    def _read(
+        self, question: Question, retrieved: Sequence[tuple[float, float, Found]], titles: Sequence[str]
+    ) -> list[Candidate]:
         read: list[Candidate] = []
         start = 0
         for count in READ:
@@ -234,13 +228,17 @@ class Answerer:
             start += count
             if not batch:
                 break
-            scores = self._reranker.score(question.text, [_readable(found) for _, found in batch])
+            scores = self._reranker.score(question.text, [_readable(found) for *_, found in batch])
             read += [
-                Candidate(found.text, found.title, found.row, float(score), covered)
-                for (covered, found), score in zip(batch, scores, strict=True)
+                Candidate(found.text, found.title, found.row, float(score), covered, own)
+                for (covered, own, found), score in zip(batch, scores, strict=True)
             ]
             best = max(candidate.score for candidate in read)
-            if best >= (GOOD if len(read) > 1 else VERY_GOOD) or (best <= HOPELESS and len(read) > 2):
+            if (
+                best >= (GOOD if len(read) > 1 else VERY_GOOD)
+                or (best <= HOPELESS and len(read) > 2 and not titles)
+                or (len(read) >= 8 and not titles)
+            ):
                 break
         read.sort(key=lambda candidate: -candidate.score)
         # Among equals, take the passage with the fewest other words: "life expectancy", not "life expectancy of women".
@@ -262,6 +260,9 @@ _NUMBER = re.compile(
 )
 
 
+_CAUSE = re.compile(
+    r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE
+)
 _DEFINES = re.compile(r" (?:is|was|are|were) (?:an?|the) ")
 _TIME = re.compile(
     r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
@@ -276,8 +277,12 @@ def _can_answer(question: Question, found: Found) -> bool:
         return _NUMBER.search(found.text) is not None
     if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
         return _TIME.search(found.text) is not None
+    names = [*re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text), *found.title.split()]
+    if question.kind is QuestionWord.PERSON and re.search(r"\bwho (?!is|was|are|were)", asked):
+        return " by " in found.text or any(name.lower() not in asked for name in names)
+    if question.kind is QuestionWord.REASON:
+        return _CAUSE.search(found.text) is not None
     if question.kind is QuestionWord.PLACE and "where" not in asked:
-        names = re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text) + found.title.split()
         return any(name.lower() not in asked for name in names)
     return True
 

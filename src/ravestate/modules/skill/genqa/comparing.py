@@ -11,7 +11,7 @@ from ravestate.modules.meta.nlp.tree import Word
 from .answering import Answer
 from .lexicon import lexicon, variants_of
 from .question import Parse
-from .reckoning import apart, dates_in, measured, of_both
+from .reckoning import apart, dates_in, focused, measured, of_both
 from .thread import Turn, phrase_of, referents, refers
 
 _BOTH = ("difference", "together", "total", "altogether")
@@ -45,16 +45,17 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
     if found[0] is None or found[1] is None:
         return None
     one, other = found[0], found[1]
-    values = _values(one.text, other.text, base)
+    of = [focused(f"how {base}", answer.text) for answer in (one, other)]
+    values = _values(*of, base)
     if values is None:
         return None
     wins = direction * values[0] > direction * values[1]
     low = {each.low for each in heard.asked}
     verdict = "Neither." if values[0] == values[1] else f"{names[0] if wins else names[1]}."
     if word.low in _BOTH:
-        verdict = of_both(one.text, other.text, _distance if word.low == "difference" else operator.add)
+        verdict = of_both(*of, _distance if word.low == "difference" else operator.add)
     elif low & {"much", "many"} and not noun:
-        verdict = _years(one, other) if base in _TIMED else of_both(one.text, other.text, _distance)
+        verdict = _years(one, other) if base in _TIMED else of_both(*of, _distance)
     elif heard.kind is QuestionWord.YES_NO and "or" not in low:
         verdict = "Yes." if wins else "No."
     return _both(heard, verdict[:1].upper() + verdict[1:], one, other)

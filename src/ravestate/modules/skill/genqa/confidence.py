@@ -17,3 +17,12 @@ def confidence(score: float, covered: float) -> float:
         covered: The share of the question's words in the passage: 0 to 1.
     """
     return 1.0 / (1.0 + math.exp(-(INTERCEPT + SCORE * score + COVERED * covered)))
+
+
+def in_talk(score: float, own: float) -> float:
+    """Return the same for a follow-up; `own` is the share of its words besides the names that come from the talk.
+
+    A high score alone is enough, because a follow-up rarely has the document's own words.
+    """
+    alone = 0.73 * max(score - 6.0, 0.0) * (1.0 - own)
+    return 1.0 / (1.0 + math.exp(-(-3.45 + 0.24 * max(score, 0.0) + 3.86 * own + alone)))

@@ -15,16 +15,18 @@ from ravestate.modules.meta.nlp.tree import Word
 
 from .answering import Answer, Answerer
 from .comparing import aged, begun, compared
+from .confidence import in_talk
+from .lexicon import variants_of
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
-from .reckoning import Unanswerable, dates_in, reckon
+from .reckoning import Unanswerable, dates_in, focused, reckon
 from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
-COVERED = 0.8
-"""The minimum share of the question's words in a passage that the thread makes more likely."""
-VAGUE, AGAIN = -0.8, -3.0
-"""The logarithm of odds that other passages lose in a follow-up, and the last answer once more."""
+NAMES = 0.35
+"""The share of the question's own words that counts if it has none besides names."""
+CLEAR = 0.9
+"""The confidence of an answer that ends the search."""
 MOST = 8
 """The maximum number of readings that are tried."""
 
@@ -61,23 +63,20 @@ def answer_in(
             question = replace(question, doubtful=True)
         titles: tuple[str, ...] = ()
         if reading.about:
-            titles = tuple(dict.fromkeys((thread[-1].title, reading.about)))
-            words = (*question.words, *as_question(reading.about).words)
-            question = replace(question, text=f"{reading.about}: {question.text}", words=words)
+            question, titles = _about(answerer, question, reading, thread[-1].title)
         answer = _decided(answerer, question, settings, titles)
         reason = reason or answer.reason
         said = {turn.answer for turn in thread} if any(word.low == "else" for word in heard.asked) else ()
         if not answer.text or answer.text in said:
             continue
-        prior = reading.prior
-        if reading.text != heard.text or reading.about:
-            covered = answer.candidates[0].covered if answer.candidates else 1.0
-            prior += 0.0 if covered >= COVERED else AGAIN if answer.text == thread[-1].answer else VAGUE
-            prior = min(prior, VAGUE) if reading.about and covered < COVERED else prior
-        answer = replace(answer, confidence=_shifted(answer.confidence, prior))
+        chance = answer.confidence
+        if answer.candidates and chance > 0.0 and (reading.text != heard.text or reading.about):
+            only_names = all(word.lower() in question.given for word in question.words)
+            chance = in_talk(answer.candidates[0].score, NAMES if only_names else answer.candidates[0].own)
+        answer = replace(answer, confidence=_shifted(chance, reading.prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, reading, seen
-        if best[0].confidence >= settings.sure:
+        if best[0].confidence >= CLEAR:
             break
     if best is None:
         return Answer(heard.text, reason=reason), None
@@ -85,9 +84,24 @@ def answer_in(
     return answer, turn_of(seen, answer, now, reading.sexes)
 
 
+def _about(answerer: Answerer, question: Question, reading: Reading, latest: str) -> tuple[Question, tuple[str, ...]]:
+    """Return a question about something in view, and the titles of the documents that may have the answer."""
+    about = as_question(reading.about)
+    title = answerer.titled(reading.about)
+    given = question.given | {word.lower() for word in about.words}
+    text = question.text if reading.about.lower() in question.text.lower() else f"{reading.about}: {question.text}"
+    needs = question.needs
+    if title or reading.about != reading.about.lower():
+        needs += tuple(variants_of(word) for word in about.words)
+    words = (*question.words, *(word for word in about.words if word not in question.words))
+    declined = "" if question.declined == "it has no word to look for" else question.declined
+    titles = tuple(dict.fromkeys(filter(None, (title, latest))))
+    return replace(question, text=text, words=words, given=given, needs=needs, declined=declined), titles
+
+
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
     """Return the result of a sum; None if the utterance is none."""
-    told, today = [turn.answer for turn in thread], datetime.now().astimezone().date()
+    told, today = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone().date()
     text = heard.text
     try:
         result = reckon(text, told, today, settings.rates)

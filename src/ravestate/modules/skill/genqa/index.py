@@ -8,6 +8,7 @@ from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ravestate.errors import PlatformError
 from ravestate.modules._text import printable
@@ -124,69 +125,62 @@ class Index:
 
     def files(self) -> Iterator[IndexedFile]:
         """Yield all files that have been read, by path."""
-        with self._lock, self._told():
-            rows = self._base.execute(
-                "SELECT path, size, modified, digest, passages FROM files ORDER BY path"
-            ).fetchall()
-        return (IndexedFile(*row) for row in rows)
+        return (IndexedFile(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
 
     def file(self, path: str) -> IndexedFile | None:
         """Return the file under this path; None if it was not read."""
-        with self._lock, self._told():
-            row = self._base.execute(
-                "SELECT path, size, modified, digest, passages FROM files WHERE path = ?", (path,)
-            ).fetchone()
-        return None if row is None else IndexedFile(*row)
+        rows = self._rows("SELECT * FROM files WHERE path = ?", path)
+        return IndexedFile(*rows[0]) if rows else None
 
     def size(self) -> int:
         """Return the number of passages."""
-        with self._lock, self._told():
-            return self._base.execute("SELECT coalesce(sum(passages), 0) FROM files").fetchone()[0]
+        return self._rows("SELECT coalesce(sum(passages), 0) FROM files")[0][0]
 
     def source(self, row: int) -> str:
         """Return the source of a passage."""
-        with self._lock, self._told():
-            found = self._base.execute(
-                "SELECT source FROM documents WHERE first <= ? ORDER BY first DESC LIMIT 1", (row,)
-            ).fetchone()
-        return "" if found is None else found[0]
+        found = self._rows("SELECT source FROM documents WHERE first <= ? ORDER BY first DESC LIMIT 1", row)
+        return found[0][0] if found else ""
 
     def title_of(self, name: str) -> str:
         """Return the title that is `name`, in any case, with or without *the*; empty if there is none."""
         bare = name.lower().removeprefix("the ")
-        with self._lock, self._told():
-            found = self._base.execute(
-                "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1", (bare, f"the {bare}")
-            ).fetchone()
-        return "" if found is None else found[0]
-
-    # ---------------------------------------------------------------------------------- searching
+        query = "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1"
+        found = self._rows(query, bare, f"the {bare}")
+        return found[0][0] if found else ""
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
         """Return the number of passages with each stem; leave out stems without passages."""
         marks = ", ".join("?" * len(stems))
-        with self._lock, self._told():
-            return dict(self._base.execute(f"SELECT term, doc FROM words WHERE term IN ({marks})", tuple(stems)))
+        return dict(self._rows(f"SELECT term, doc FROM words WHERE term IN ({marks})", *stems))
 
-    def search(
-        self, words: Sequence[str], limit: int, *, titles: Sequence[str] = (), without: Sequence[str] = ()
-    ) -> list[Found]:
+    # ---------------------------------------------------------------------------------- searching
+
+    def passages(self, title: str, limit: int) -> list[Found]:
+        """Return the first passages of the documents with this title."""
+        query = """
+            SELECT p.rowid, p.title, text, hints FROM documents d JOIN passages p ON p.rowid BETWEEN d.first AND d.last
+            WHERE d.title = ? COLLATE NOCASE LIMIT ?"""
+        return [Found(*row) for row in self._rows(query, title, limit)]
+
+    def search(self, words: Sequence[str], limit: int, *, without: Sequence[str] = ()) -> list[Found]:
         """Return the passages that share most with `words`, by BM25, best first.
 
         Args:
             words: Any text; operators of the query language are plain words here.
             limit: The maximum number of passages.
-            titles: The titles to search; empty for all.
             without: Words that exclude a passage.
         """
-        return self._matching(_any_of(words), limit, titles, without)
+        return self.search_all([words], limit, without=without)
 
-    def search_all(
-        self, groups: Sequence[Sequence[str]], limit: int, *, titles: Sequence[str] = (), without: Sequence[str] = ()
-    ) -> list[Found]:
-        """Return passages like `search`, but only those with a word of each group."""
-        each = [any_of for group in groups if (any_of := _any_of(group))]
-        return self._matching(" AND ".join(f"({any_of})" for any_of in each), limit, titles, without)
+    def search_all(self, groups: Sequence[Sequence[str]], limit: int, *, without: Sequence[str] = ()) -> list[Found]:
+        """Return passages like `search`, with a word of each group."""
+        query = " AND ".join(f"({any_of})" for group in groups if (any_of := _any_of(group)))
+        if not query:
+            return []
+        if without:
+            query = f"({query}) NOT ({_any_of(without)})"
+        matching = f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?"
+        return [Found(*row) for row in self._rows(matching, query, limit)]
 
     # ------------------------------------------------------------------------------------ writing
 
@@ -234,19 +228,9 @@ class Index:
 
     # ---------------------------------------------------------------------------------- internals
 
-    def _matching(self, query: str, limit: int, titles: Sequence[str], without: Sequence[str]) -> list[Found]:
-        if not query:
-            return []
-        if titles:
-            query = f"({query}) AND title : ({_any_of(titles)})"
-        if without:
-            query = f"({query}) NOT ({_any_of(without)})"
+    def _rows(self, query: str, *values: str | int) -> list[Any]:
         with self._lock, self._told():
-            rows = self._base.execute(
-                f"SELECT rowid, title, text, hints FROM passages WHERE passages MATCH ? ORDER BY {_RANK} LIMIT ?",
-                (query, limit),
-            ).fetchall()
-        return [Found(*row) for row in rows]
+            return self._base.execute(query, values).fetchall()
 
     def _forget(self, path: str) -> bool:
         ranges = self._base.execute("SELECT first, last FROM documents WHERE path = ?", (path,)).fetchall()
@@ -269,9 +253,7 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[
-                    0
-                ]:  # no other process was faster
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # nobody was faster
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 
@@ -295,24 +277,21 @@ class Index:
             yield
         except sqlite3.Error as error:
             code = getattr(error, "sqlite_errorname", "") or ""
-            if code.startswith("SQLITE_FULL"):
-                why = "the disk is full: make room, then index again; what was complete is kept"
-            elif code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
-                why = "another process is writing to it: wait until `ravestate genqa index` has ended there"
-            elif code.startswith("SQLITE_READONLY"):
-                why = f"it may not be written: {_OTHER}"
-            elif code.startswith("SQLITE_CANTOPEN"):
-                why = f"it cannot be opened: {_OTHER}"
-            elif code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
-                why = f"it is not an index, or damaged: remove it and index anew, or {_OTHER}"
-            else:
-                why = str(error)
+            why = next((why for start, why in _ERRORS.items() if code.startswith(f"SQLITE_{start}")), str(error))
             raise PlatformError(f"genqa: the index {self.path}: {why}") from error
         except OSError as error:
             raise PlatformError(f"genqa: the index {self.path}: {error.strerror or error}") from error
 
 
 _OTHER = "name another file: --set genqa.index=/path/to/index.sqlite"
+_BUSY = "another process is writing to it: wait until `ravestate genqa index` has ended there"
+_DAMAGED = f"it is not an index, or damaged: remove it and index anew, or {_OTHER}"
+_ERRORS = {
+    "FULL": "the disk is full: make room, then index again; what was complete is kept",
+    "BUSY": _BUSY, "LOCKED": _BUSY, "NOTADB": _DAMAGED, "CORRUPT": _DAMAGED,
+    "READONLY": f"it may not be written: {_OTHER}", "CANTOPEN": f"it cannot be opened: {_OTHER}",
+}  # fmt: skip
+"""What to do about each error of SQLite."""
 
 
 def _any_of(words: Sequence[str]) -> str:

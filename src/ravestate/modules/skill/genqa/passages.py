@@ -29,23 +29,21 @@ def passages_of(text: str) -> Iterator[Passage]:
     """Yield the passages of `text`, in order.
 
     An empty line ends a paragraph; a single line break is a space. A sentence that begins with *it*, *she* or *this*
-    joins the previous one, if both are short.
+    comes with the latest one that does not, if both are short.
 
     Example:
         >>> [p.text for p in passages_of("Delft is a town in Holland. It has 100,000 inhabitants.\\n\\nVermeer lived there.")]
-        ['Delft is a town in Holland. It has 100,000 inhabitants.', 'Vermeer lived there.']
+        ['Delft is a town in Holland.', 'Delft is a town in Holland. It has 100,000 inhabitants.', 'Vermeer lived there.']
     """
     for paragraph in _PARAGRAPH.split(_HYPHEN.sub("", printable(text))):
-        held = ""
+        before = ""
         for sentence in _sentences(" ".join(paragraph.split())):
-            if held and _LEANS.match(sentence) and len(held) + len(sentence) < LONGEST:
-                held = f"{held} {sentence}"
+            if before and _LEANS.match(sentence) and len(before) + len(sentence) < LONGEST:
+                yield Passage(f"{before} {sentence}")
                 continue
-            if len(held) >= SHORTEST:
-                yield Passage(held)
-            held = sentence
-        if len(held) >= SHORTEST:
-            yield Passage(held)
+            before = sentence
+            if len(sentence) >= SHORTEST:
+                yield Passage(sentence)
 
 
 def _sentences(paragraph: str) -> Iterator[str]:

@@ -40,6 +40,8 @@ class Question:
     """The words for its subject, in order, each once."""
     kinds: tuple[str, ...] = ()
     """The words for the kind of answer."""
+    given: frozenset[str] = frozenset()
+    """The words for the names in it, which every passage about them has."""
     needs: tuple[tuple[str, ...], ...] = ()
     """Its qualifiers: a passage must have a word of each."""
     avoids: tuple[str, ...] = ()
@@ -142,7 +144,8 @@ def as_question(heard: str | Parse) -> Question:
     if any(word.low in THE_TWO for word in said):
         doubtful = True
     needs, avoids = _qualifiers(heard)
-    return Question(heard.text, words, kinds, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, reason)
+    given = frozenset(map(str.lower, named))
+    return Question(heard.text, words, kinds, given, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, reason)
 
 
 def is_name(seen: Parse, word: Word) -> bool:

@@ -12,7 +12,7 @@ from datetime import date, datetime
 from functools import cache
 from typing import Any
 
-from .lexicon import lexicon
+from .lexicon import lexicon, variants_of
 
 LONGEST = 200
 """Characters of a sum."""
@@ -94,7 +94,16 @@ def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, floa
     if len(text) > LONGEST:
         return ""
     spoken = _in_digits(text.strip(" ?!."))
-    return _dates(spoken, told, today) or _sum(spoken, told, rates or {})
+    return _dates(spoken, told, today) or _sum(spoken, told, rates or {}) or _times(spoken, told)
+
+
+def _times(spoken: str, told: Sequence[str]) -> str:
+    """Return the price for several: *and for 5 people?*."""
+    count = re.search(r"\b(?:for|of|do|does) (\d+)(?: [a-z]+){0,2}$", spoken)
+    price = measured(told[-1])[:1] if count and told else []
+    if not count or not price or not price[0].unit.startswith(_MONEY):
+        return ""
+    return f"That is {_number(price[0].value * int(count[1]))} {price[0].word}."
 
 
 def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
@@ -105,7 +114,10 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
         after: Earlier texts, whose numbers follow.
     """
     found: list[Quantity] = []
-    tokens = [*_TOKEN.findall(_in_digits(text)), "", "", ""]
+    spoken = re.sub(r"\bdegrees? (?=[cf])", "", _in_digits(text))
+    for phrase, unit in lexicon("reckoning.yaml")["joined"].items():
+        spoken = spoken.replace(phrase, unit)
+    tokens = [*_TOKEN.findall(spoken), "", "", ""]
     for place, token in enumerate(tokens):
         if token[:1].isdigit():
             number = float(token.replace(",", ""))
@@ -116,6 +128,22 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
             found.append(Quantity(int(number) if number == int(number) else number, unit, word if unit else ""))
     found.sort(key=lambda quantity: not quantity.unit)
     return found + (measured(after[-1]) if after else [])
+
+
+def focused(question: str, answer: str) -> str:
+    """Return an answer with those parts first that have most words of the question besides names.
+
+    Example:
+        >>> focused("How high is it?", "The bridge is 512 metres long and 63 metres high.")
+        '63 metres high. The bridge is 512 metres long'
+    """
+    words = re.findall(r"[a-z]+", question.lower())
+    weights = {form: 3 if word in words[1:2] else 1 for word in reversed(words) for form in variants_of(word)}
+    parts = re.split(r"[,;.] | and (?=[^,.]*\d)|\.$", answer)
+    worth = {
+        part: sum(weights.get(word, 0) for word in set(part.lower().split()) - words_for("plain")) for part in parts
+    }
+    return ". ".join(sorted(filter(None, parts), key=lambda part: -worth[part]))
 
 
 def of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
@@ -206,7 +234,7 @@ def _result(source: str, units: Sequence[str], target: str, word: str, rates: Ma
             return _number(value)
         unit = _in_pint(goal, rates)
         value = (value / unit).to("") if money else value.to(unit)
-        return f"{_number(value.magnitude)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
+        return f"{_number(value.magnitude, rounded=bool(target) and not money)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
     except ZeroDivisionError:
         raise Unanswerable("Nothing can be divided by zero.") from None
     except OverflowError:
@@ -286,12 +314,16 @@ def _unit(word: str, others: Sequence[str]) -> str:
     return _currencies()[word] if word in _currencies() and (money or word not in _units()) else _units().get(word, "")
 
 
-def _number(value: Any) -> str:
-    """Return a number in digits, rounded to what matters."""
+def _number(value: Any, *, rounded: bool = False) -> str:
+    """Return a number in digits, rounded to what matters; `rounded` to what people say."""
     if not math.isfinite(value) or abs(value) >= 10**DIGITS:
         raise OverflowError
-    rounded = value if isinstance(value, int) else round(value, 3) if abs(value) >= 1 else float(f"{value:.3g}")
-    return f"{int(rounded):,}" if rounded == int(rounded) else f"{rounded:,}"
+    if not isinstance(value, int):
+        size = abs(value)
+        places = 3 if not rounded else 0 if size >= 100 else 1 if size >= 10 else 2
+        exact = round(value, 1)
+        value = exact if abs(value - exact) < 1e-9 else round(value, places) if size >= 1 else float(f"{value:.3g}")
+    return f"{int(value):,}" if value == int(value) else f"{value:,}"
 
 
 # ---------------------------------------------------------------------------------------------- dates
@@ -323,7 +355,9 @@ def _dates(spoken: str, told: Sequence[str], today: date) -> str:
     refers = bool(words & {"that", "this", "them", "was", "did"} or (words & {"it", "old"} and not weekday))
     if not dates and refers and told and not (weekday and "today" in words):
         dates = [day for text in told[-2:] for day in dates_in(text)[:2]][-1 if weekday or "ago" in words else -2 :]
-    if not dates or ("old" in words and len(dates) < 2):
+    if "old" in words and "is" in words and len(dates) == 1 and "die" not in told[-1]:
+        words.add("ago")
+    elif not dates or ("old" in words and len(dates) < 2):
         return ""
     year = next((each.day.year for each in reversed(dates) if each.has_year), today.year)
     dates = [each if each.has_year else replace(each, day=each.day.replace(year=year)) for each in dates]

@@ -17,7 +17,7 @@ SHIPPED = "ravestate:collection"
 
 _OWN = "Ravestate's own collection"
 _FACTBOOK = "world-factbook.jsonl.gz"
-_GENERAL = "general.yaml"
+_GENERAL = ("general.yaml", "people.yaml")
 
 
 def bring_up(index: Index, *, wanted: bool = True) -> bool:
@@ -32,7 +32,7 @@ def bring_up(index: Index, *, wanted: bool = True) -> bool:
     if not wanted:
         return known is not None and index.forget(SHIPPED)
     folder = files("ravestate.modules.skill.genqa") / "collection"
-    content = [(folder / name).read_bytes() for name in (_FACTBOOK, _GENERAL)]
+    content = [(folder / name).read_bytes() for name in (_FACTBOOK, *_GENERAL)]
     digest = hashlib.blake2b(b"".join(content), digest_size=16).hexdigest()
     if known is not None and known.digest == digest:
         return False
@@ -41,8 +41,8 @@ def bring_up(index: Index, *, wanted: bool = True) -> bool:
     return True
 
 
-def documents(factbook: bytes, general: bytes) -> Iterator[Document]:
-    """Yield the documents of the collection's two files."""
+def documents(factbook: bytes, *general: bytes) -> Iterator[Document]:
+    """Yield the documents of the collection's files."""
     import yaml
 
     for line in gzip.decompress(factbook).splitlines():
@@ -53,6 +53,7 @@ def documents(factbook: bytes, general: bytes) -> Iterator[Document]:
             [Passage(text, f"{entry['also']} {asked}") for text, asked in entry["sentences"]],
         )
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    said: dict[str, list[str]] = yaml.load(general, loader)  # a safe loader, and our own file
-    for title, sentences in said.items():
-        yield Document(title, _OWN, [Passage(sentence) for sentence in sentences])
+    for file in general:
+        said: dict[str, list[str]] = yaml.load(file, loader)  # a safe loader, and our own file
+        for title, sentences in said.items():
+            yield Document(title, _OWN, [Passage(sentence) for sentence in sentences])

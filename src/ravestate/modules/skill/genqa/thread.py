@@ -7,7 +7,7 @@ likelihood, and the documents decide between them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Tree, Word
@@ -25,7 +25,7 @@ KEPT = 6
 """The number of questions that stay in view."""
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to one."""
-LESS = -0.4
+LESS = -0.15
 """The logarithm of odds that each reading loses to the one before."""
 FAR = -5.0
 """The same for *she* as a thing, such as a ship, with a person in view."""
@@ -109,31 +109,30 @@ class Reading:
 def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
     """Return the turn of a complete question and its answer."""
     answer, title = found.text, found.title
-    told, words = parse(answer), set(asked.text.lower().split())
-    things = [Thing(title, thing.label or "TITLE") if _same(thing.text, title) else thing for thing in things_of(asked)]
-    things = [thing for thing in things if thing.label not in ("ORDINAL", "CARDINAL")]
-    if (
-        title
-        and title.lower() in f"{asked.tree.text} {answer}".lower()
-        and not any(_same(t.text, title) for t in things)
-    ):
-        things.append(Thing(title, next((t.label for t in things if t.is_name and t.text in title), "TITLE")))
-    named = set(title.lower().split())
-    things = [t for t in things if _same(t.text, title) or not named.issuperset(t.text.lower().split())]
+    told, words, named = parse(answer), set(asked.text.lower().split()), set(_bare(title).split())
+    things = [
+        replace(thing, text=title, label=thing.label or "TITLE") if _bare(thing.text) == _bare(title) else thing
+        for thing in things_of(asked)
+        if thing.label not in ("ORDINAL", "CARDINAL")
+    ]
+    things = [thing for thing in things if thing.text == title or not named.issuperset(thing.text.lower().split())]
+    if title and title.lower() in f"{asked.tree.text} {answer}".lower() and all(t.text != title for t in things):
+        things.append(Thing(title, "TITLE"))
     things.sort(key=lambda thing: not thing.is_name)
-    defines = bool(title) and len(things) == 1 and _same(things[0].text, title) and asked.kind is QuestionWord.PERSON
-    defines = defines and any(word.lemma == "be" for word in asked.asked)
-    new = [t for t in things_of(told) if not _same(t.text, title) and not words.issuperset(t.text.lower().split())]
-    if asked.kind is QuestionWord.PERSON:
-        if not any(thing.is_person for thing in new):
-            name = next((thing for thing in new if thing.is_name), None)
-            new = [Thing(thing.text, "PERSON") if thing is name else thing for thing in new]
-        known = [sex for sex in ("he", "she") if not words_of(sex).isdisjoint(words)]
-        sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person for sex in known))
+    who = asked.kind is QuestionWord.PERSON
+    defines = who and [t.text for t in things] == [title] and any(word.lemma == "be" for word in asked.asked)
+    known = words | named
+    new = [thing for thing in things_of(told) if not known.issuperset(_bare(thing.text).split())]
+    if who and new and not any(thing.is_person for thing in new):
+        name = next((thing for thing in new if thing.is_name), new[0])
+        new = [replace(thing, label="PERSON") if thing is name else thing for thing in new]
+    if who:
+        said = [sex for sex in ("he", "she") if not words_of(sex).isdisjoint(words)]
+        sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person for sex in said))
     items = max(_lists(told.tree), key=len, default=())
-    question = asked.text.rstrip("?")
+    source, confidence = found.source, found.confidence
     return Turn(
-        question, answer, title, at, tuple(things), tuple(new), items, sexes, found.source, found.confidence, defines
+        asked.text.rstrip("?"), answer, title, at, tuple(things), tuple(new), items, sexes, source, confidence, defines
     )
 
 
@@ -170,8 +169,8 @@ def phrase_of(tree: Tree, head: Word) -> list[Word]:
     return [*(word for child in left for word in tree.subtree(child)), head]
 
 
-def _same(one: str, other: str) -> bool:
-    return one.lower().removeprefix("the ") == other.lower().removeprefix("the ")
+def _bare(text: str) -> str:
+    return text.lower().removeprefix("the ")
 
 
 def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
@@ -279,12 +278,12 @@ class _Follow:
     def __init__(self, seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> None:
         self.seen, self.tree, self.thread = seen, seen.tree, thread
         self.last = thread[-1]
-        self.before = next((turn for turn in reversed(thread) if turn.question), self.last)
+        self.before = [turn for turn in reversed(thread) if turn.question]
         words = said = [word for word in seen.asked if word.pos != "PUNCT"]
-        while words and (
-            words[0].pos == "CCONJ" or [word.low for word in words[:2]] in (["what", "about"], ["how", "about"])
-        ):
-            words = words[1 if words[0].pos == "CCONJ" else 2 :]
+        while words and (words[0].pos == "CCONJ" or words[0].low in ("so", "then", "ok")):
+            words = words[1:]
+        if [word.low for word in words[:2]] in (["what", "about"], ["how", "about"]):
+            words = words[2:]
         self.words, self.leads = words, len(words) < len(said)
         self.text = self.tree.phrase(words)
         self.pronouns = [word for word in words if refers(word, words)]
@@ -294,34 +293,51 @@ class _Follow:
 
     def readings(self) -> Iterator[Reading]:
         """Yield the readings, most likely first."""
-        one = next(
-            (word for word in self.words if word.low in _ONES and word.pos in ("NUM", "NOUN", "PRON", "ADJ")), None
-        )
+        words = self.words
+        one = next((w for w in words if w.low in _ONES and w.pos in ("NUM", "NOUN", "PRON", "ADJ")), None)
+        rest = [word for word in words if word not in self.pronouns]
         if meant := correction(self.seen):
-            yield from self._swapped(self.tree.phrase(meant), named=True)
+            yield from self._instead(meant)
         elif one is not None:
             yield from self._chosen(one)
-        elif self.words and not any(word.tag in FINITE for word in self.words):
-            yield from self._fragment()
+        elif rest and rest[0].tag in WH and all(word.tag in WH or word.lemma == "be" for word in rest):
+            yield from self._instead(rest[:1])  # and when was that?
+        elif words and not any(word.tag in FINITE for word in words):
+            if self.pronouns:
+                yield from self._resolved()
+            else:
+                yield from ([] if self.leads or not self.named else [self._alone(0.0)])
+                yield from self._instead(words)
+                yield from self._about()
+                yield from ([] if self.leads and not self._has_of() else [self._alone(-0.3)])
         elif self.pronouns:
             yield from self._resolved()
-            if any(w.low == "it" for w in self.pronouns) and any(
-                w.pos in ("NOUN", "PROPN", "VERB") for w in self.words
-            ):
-                yield Reading(f"{self.text}?", -1.0)  # when did it start to rain
-        elif self.words:
-            if not self.named:
-                for rank, thing in enumerate(self.names):  # who was on board
-                    yield Reading(f"{self.text}?", 0.8 + LESS * rank, about=thing.text)
-            yield Reading(f"{self.text}?", 0.0 if self.named or self.leads else -1.0)
+            if any(w.low == "it" for w in self.pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
+                yield self._alone(-0.3)  # when did it start to rain
+        elif words:
+            yield from ([] if self.named else self._about())
+            yield self._alone(0.0 if self.named or self.leads else -0.3)
+
+    def _has_of(self) -> bool:
+        return self.named and any(word.low == "of" for word in self.words[1:])
+
+    def _alone(self, prior: float) -> Reading:
+        return Reading(f"{self.text}?" if self.seen.kind is not None else self.text, prior)
+
+    def _about(self) -> Iterator[Reading]:
+        """Yield the utterance about each name in view: *who was on board?*."""
+        for rank, thing in enumerate(self.names):
+            of = "" if any(word.tag in (*FINITE, *WH) for word in self.words) else f" of {thing.text}"
+            yield Reading(f"{self.text}{of}?", LESS * rank, about=thing.text)
 
     def _resolved(self) -> Iterator[Reading]:
+        """Yield the utterance with each thing that its pronoun may stand for."""
         pronoun = self.pronouns[0].low
         person = pronoun in SEXES and not self.last.defines and any(thing.is_person for thing in self.last.told)
         for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
             sexes = ((thing.text, pronoun),) if pronoun in SEXES else ()
-            far = FAR if person and not thing.is_person else 0.0
-            yield Reading(self._with(self.words, thing.text), LESS * rank + far, sexes=sexes)
+            far = FAR if person and not thing.is_person else LESS * 5 * rank if pronoun == "there" else 0.0
+            yield Reading(self._with(self.words, thing.text), LESS * rank + far, thing.text, sexes)
 
     def _with(self, words: Sequence[Word], thing: str, instead: Sequence[Word] = ()) -> str:
         """Return words as a question, with a thing in place of the pronouns and of the phrase `instead`."""
@@ -333,14 +349,13 @@ class _Follow:
                 parts.append(f"{thing}'s" if word.tag == "PRP$" else f"in {thing}" if word.low == "there" else thing)
             else:
                 parts.append(word.text)
-        return " ".join(parts).replace(" 's", "'s").replace(" n't", "n't").strip(" ?!.,") + "?"
+        return _question(parts)
 
     def _chosen(self, one: Word) -> Iterator[Reading]:
-        """Yield the readings of *the first one* and *the other one*: members of a list, or earlier subjects."""
+        """Yield the readings of *the first one* and *the other one*: members of a list, earlier subjects, or a rank."""
         own = [word for word in phrase_of(self.tree, one) if word in self.words]
         before = self.tree.before(own[0])
-        if before is not None and before.low == "the":
-            own = [before, *own]
+        own = [before, *own] if before is not None and before.low == "the" else own
         rest = [word for word in self.words if word not in own]
         if any(word.tag in WH for word in rest) and rest[0].index > one.index:  # the first one, who climbed it?
             words = rest
@@ -351,64 +366,57 @@ class _Follow:
         for group in (*(list(turn.items) for turn in reversed(self.thread[-2:]) if turn.items), subjects):
             chosen = group[-2::-1] if "other" in low else []
             for rank, place in _PLACES_IN_LIST.items():
-                if rank in low and -len(group) <= place < len(group):
+                if rank in low and -len(group) <= place < len(group) > 1:
                     chosen.append(group[place])
             for thing in chosen:
                 if words:
                     yield Reading(self._with(words, thing, own))
                 else:
-                    yield from self._swapped(thing, named=True)
+                    yield from self._instead(own, thing)
+        if not words:
+            yield from self._instead([word for word in own if word is not one])
 
-    def _fragment(self) -> Iterator[Reading]:
-        """Yield the readings of an utterance without a verb: *and when?*, *and its captain?*, *and Spain?*."""
-        alone = f"{self.text}?" if self.seen.kind is not None else self.text
-        first, last = self.words[0], self.words[-1]
-        if self.pronouns:
-            yield from self._resolved()
-        elif any(word.tag in WH for word in self.words):
-            yield from self._asked_anew()
-        elif not self.named and last.tag in ("JJS", "JJR", "JJ", "RBS", "RB", "CD"):
-            yield from self._ranked()
-        elif first.pos in ("ADP", "SCONJ"):
-            yield from self._swapped(self.tree.phrase(self.words[1:]), named=self.named, after=first.low)
-            yield Reading(f"{self.before.question} {self.text}?", LESS)
-        else:
-            if self.named:
-                yield from ([] if self.leads else [Reading(alone)])
-                yield from self._swapped(self.text, named=True)
-            for rank, thing in enumerate(self.names):
-                yield Reading(f"{self.text} of {thing.text}?", LESS * rank)
-            if not self.named:
-                yield from self._swapped(self.text, named=False)
-                yield from ([] if self.leads else [Reading(alone, -1.0)])
+    def _instead(self, new: Sequence[Word], text: str = "") -> Iterator[Reading]:
+        """Yield earlier questions, latest first, with new words in place of a part of the same kind.
 
-    def _swapped(self, new: str, *, named: bool, after: str = "") -> Iterator[Reading]:
-        """Yield the question before about something else, first in place of a thing that follows the word `after`."""
-        question = self.before.question
-        olds = [thing.text for thing in self.before.asked if thing.is_name == named]
-        olds.sort(key=lambda old: f"{after} {old}".lower() not in question.lower())
-        for rank, old in enumerate(olds):
-            at = question.lower().find(old.lower())
-            if at >= 0:
-                yield Reading(f"{question[:at]}{new}{question[at + len(old) :]}?", LESS * rank)
+        The parts are the question word (*and when?*), the rank (*and the second highest?*) and the names and nouns, first
+        those after the same preposition (*and of Spain?*).
+        """
+        text = text or self.tree.phrase(new)
+        first, last = new[0], new[-1]
+        for back, turn in enumerate(self.before):
+            words = [word for word in parse(turn.question).tree.words if word.pos != "PUNCT"]
+            asks = next((place for place, word in enumerate(words) if word.tag in WH), None)
+            if any(word.tag in WH for word in new):
+                if asks is not None:
+                    verb = next(
+                        (p for p, word in enumerate(words) if p > asks and word.pos in ("AUX", "VERB")), asks + 1
+                    )
+                    yield Reading(_question([text, *(word.text for word in words[verb:])]), LESS * back)
+                    return
+                continue
+            ranks = [p for p, word in enumerate(words) if word.tag in ("JJS", "RBS") or word.low in words_of("ranks")]
+            if last.tag in ("JJS", "RBS") or (last.low in words_of("ranks") and not self.named):
+                if ranks:
+                    left = [word.text for word in words[: ranks[0]]]
+                    left = left[:-1] if left[-1:] == ["the"] and first.low == "the" else left
+                    yield Reading(
+                        _question([*left, text, *(word.text for word in words[ranks[-1] + 1 :])]), LESS * back
+                    )
+                continue
+            leading = first.pos in ("ADP", "SCONJ")
+            fresh = self.tree.phrase(new[1:]) if leading and not text.startswith("the ") else text
+            olds = [thing.text for thing in turn.asked if thing.is_name or not (self.named or turn is not self.last)]
+            olds = [old for old in olds if not leading or f"{first.low} {old}".lower() in turn.question.lower()] or olds
+            for rank, old in enumerate(olds):
+                at = turn.question.lower().find(old.lower())
+                if at >= 0:
+                    swapped = f"{turn.question[:at]}{fresh}{turn.question[at + len(old) :]}?"
+                    yield Reading(swapped, LESS * (rank + back))
+            if leading and turn is self.last:
+                yield Reading(f"{turn.question} {text}?", LESS)
 
-    def _asked_anew(self) -> Iterator[Reading]:
-        """Yield the question before with another question word."""
-        words = [word for word in parse(self.before.question).tree.words if word.pos != "PUNCT"]
-        asks = next((place for place, word in enumerate(words) if word.tag in WH), None)
-        if asks is not None:
-            verb = next((p for p, word in enumerate(words) if p > asks and word.pos in ("AUX", "VERB")), asks + 1)
-            yield Reading(" ".join([self.text, *(word.text for word in words[verb:])]).replace(" 's", "'s") + "?")
 
-    def _ranked(self) -> Iterator[Reading]:
-        """Yield the question before with another rank: *and the second highest?*."""
-        words = parse(self.before.question).tree.words
-        ranks = [
-            place for place, word in enumerate(words) if word.tag in ("JJS", "RBS") or word.low in words_of("ranks")
-        ]
-        if ranks:
-            left = [word.text for word in words[: ranks[0]]]
-            left = left[:-1] if left[-1:] == ["the"] and self.text.lower().startswith("the ") else left
-            yield Reading(
-                " ".join([*left, self.text, *(word.text for word in words[ranks[-1] + 1 :])]).replace(" 's", "'s") + "?"
-            )
+def _question(parts: Sequence[str]) -> str:
+    """Return words as a question."""
+    return " ".join(parts).replace(" 's", "'s").replace(" n't", "n't").strip(" ?!.,") + "?"

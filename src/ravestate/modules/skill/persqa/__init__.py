@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from . import publishing as publishing
 from . import rules as rules
 from .names import Settings, facts, forgotten, module, reply, talk, told, who
 from .talk import Question, Talk

@@ -15,33 +15,32 @@ FITTING = {
     "work": ("job",),
     "organisation": ("workplace", "group"),
     "club": ("group",),
+    "university": ("school",),
     "subject": ("studies",),
     "activity": ("activity",),
 }
-"""The classes of `nouns.yaml` that are values of each kind of topic."""
+"""The classes of `nouns.yaml` that are values of each kind of topic, or of one topic."""
+_FOLDER = files(__name__.rpartition(".")[0])
 
 
 @cache
 def nouns() -> Matcher:
     """Return the classifier of nouns, loaded or not."""
-    return Matcher(read_examples(files(__name__.rpartition(".")[0]) / "nouns.yaml").classes, least=0.0, shapes=0.0)
+    return Matcher(read_examples(_FOLDER / "nouns.yaml").classes, least=0.0, shapes=0.0)
 
 
 @cache
 def acts() -> Matcher:
     """Return the classifier of what the user does towards the agent's questions, loaded or not."""
-    found = read_examples(files(__name__.rpartition(".")[0]) / "acts.yaml")
+    found = read_examples(_FOLDER / "acts.yaml")
     return Matcher(found.classes, found.none)
 
 
 def likeness(value: str, kind: str) -> float:
     """Return how well a value fits a kind: its distance from the nearest class of another kind, about -1 to 1; 0 if unsure."""
-    fitting = FITTING[kind]
     ranked = nouns().ranked(value)
-    best = max((match for match in ranked if match.name in fitting), key=lambda match: match.margin, default=None)
-    if best is None:
-        return -1.0 if ranked and ranked[0].name else 0.0
-    return best.margin
+    fitting = [match.margin for match in ranked if match.name in FITTING[kind]]
+    return max(fitting, default=-1.0 if ranked and ranked[0].name else 0.0)
 
 
 def is_remark(value: str) -> bool:

@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from .topics import NAME, TOPICS, Fact, in_order
-from .wording import among
-
-Facts = Mapping[str, tuple[str, ...]]
-"""Values by topic; an empty tuple means that there are none."""
+from .wording import Facts, without
 
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """The result of learning.
-
-    Attributes:
-        facts: All facts.
-        topics: The topics that the user told about.
-        changed: Topics whose old values were replaced or removed.
-        new: Topics with values that were not known.
-    """
+    """The result of learning."""
 
     facts: Facts
+    """All facts."""
     topics: tuple[str, ...]
+    """The topics that the user told about."""
     changed: frozenset[str]
+    """Topics whose old values were replaced or removed."""
     new: frozenset[str]
+    """Topics with values that were not known."""
 
 
 def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) -> News:
@@ -43,39 +37,25 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
     """
     now = dict(facts)
     topics: list[str] = []
-    changed: set[str] = set()
-    new: set[str] = set()
     for fact in told:
-        if fact.topic == NAME:
+        topic, values = fact.topic, fact.values
+        if topic == NAME:
             continue
-        topics.append(fact.topic)
-        before = now.get(fact.topic)
-        if fact.gone:
-            _strike(now, fact)
-            if fact.topic == "occupation" and not now.get("occupation"):
-                topics.append("employer")
-                now["employer"] = ()
-        else:
-            kept = _without(before or (), instead_of) if TOPICS[fact.topic].many else ()
-            now[fact.topic] = kept + _without(fact.values, kept)
-            if _without(fact.values, before or ()):
-                new.add(fact.topic)
-        if before and _without(before, now.get(fact.topic, ())):
-            changed.add(fact.topic)
+        topics.append(topic)
+        if not fact.gone:
+            kept = without(now.get(topic, ()), instead_of) if TOPICS[topic].many else ()
+            now[topic] = kept + without(values, kept)
+            continue
+        before = now.pop(topic, ())
+        left = without(before, values) if values else ()
+        if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):  # there may be another place
+            now[topic] = left
+        if topic == "occupation" and not left:
+            topics.append("employer")
+            now["employer"] = ()
+    changed = {topic for topic in topics if without(facts.get(topic, ()), now.get(topic, ()))}
+    new = {topic for topic in topics if without(now.get(topic, ()), facts.get(topic, ()))}
     return News(now, tuple(topics), frozenset(changed), frozenset(new))
-
-
-def _strike(facts: dict[str, tuple[str, ...]], fact: Fact) -> None:
-    left = _without(facts.get(fact.topic, ()), fact.values) if fact.values else ()
-    if left or (not fact.values and TOPICS[fact.topic].kind not in ("place", "organisation")):
-        facts[fact.topic] = left
-    else:
-        facts.pop(fact.topic, None)  # there is another value to ask about
-
-
-def _without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
-    others = tuple(others)
-    return tuple(value for value in values if not among(value, others))
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:
@@ -83,14 +63,11 @@ def merged(remembered: Facts, told: Facts) -> Facts:
     found = dict(remembered)
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()
-        found[topic] = before + _without(values, before)
+        found[topic] = before + without(values, before)
     return {topic: found[topic] for topic in in_order(found)}
 
 
 def told_apart(facts: Facts, remembered: Facts, told: Iterable[str]) -> Facts:
     """Return the facts that come from this conversation alone."""
-    return {
-        topic: _without(facts[topic], remembered.get(topic, ())) if TOPICS[topic].many else facts[topic]
-        for topic in told
-        if topic in facts
-    }
+    before = {topic: remembered.get(topic, ()) if TOPICS[topic].many else () for topic in told}
+    return {topic: without(facts[topic], before[topic]) for topic in before if topic in facts}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ravestate.modules import nlp
@@ -12,20 +12,20 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
 from .kinds import likeness
-from .relations import relations
-from .topics import NAME, TOPICS, Fact, favourite
+from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import gerund, is_gerund, value_of
-from .wording import among
+from .wording import Facts, among
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics that the past tells as well: *I studied law*."""
-_BE, _CALLED = "be", frozenset(["be called", "be named"])
+_CALLED = frozenset(["be", "be called", "be named"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
-_NAMING = frozenset(["'s", "’s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
+_NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
 """Words between a relative and their name: *my mother's name is Anna*."""
-_NOUNS = frozenset(["PROPN", "NOUN", "X", "ADJ"])
-_ARTICLES = r"(?:(?:the|an?|our|this|that|these|those)\s+)?"
+_TURN = re.compile(r", (?:and )?(not) |,? but (?!i\b)", re.IGNORECASE)
+_NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
+_NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,74 +52,84 @@ class Reader:
         self.seen = seen
         self.asked = asked
         self.tree = seen.tree
-        self._table = relations()
 
-    def facts(self, known: Mapping[str, tuple[str, ...]] | None = None) -> list[Fact]:
+    def facts(self, known: Facts | None = None) -> list[Fact]:
         """Return the facts that the user states, one for each topic; `known` are those of before."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
+        denied = ""  # the topic of the last denial: my name isn't Ada, it's Ida
         for said in filter(self._asserted, self.seen.statements):
             if topic := self.ended(said):
                 gone.setdefault(topic, ())
                 continue
-            for link in self.links(said):
+            instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
+            for link in [Link(denied, said.object)] if instead else self.links(said):
+                denied = link.topic if said.negated else ""
                 values = self._values(link)
                 over = said.past and link.topic not in LASTING
-                if said.negated or (over and values and among(values[0], (known or {}).get(link.topic, ()))):
+                if self._denies(said, link.phrase) or (
+                    over and values and among(values[0], (known or {}).get(link.topic, ()))
+                ):
                     if values or link.phrase is None or _ANY.match(link.phrase.text):
                         gone.setdefault(link.topic, values)
                 elif not over:
-                    for value in values:
-                        pursued = link.topic == "liking" and is_gerund(value)
-                        _add(told, "hobby" if pursued else link.topic, value)
-        for topic, values in self._mentioned():
-            for value in values if topic not in gone and (topic != NAME or topic not in told) else ():
-                _add(told, topic, value)
+                    _add(told, link.topic, values)
+        for topic, values in self._named():
+            if topic not in gone and (topic != NAME or topic not in told):
+                _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
             told["home"] = told.pop("origin")
-        denied = [Fact(topic, values, gone=True) for topic, values in gone.items() if topic not in told]
-        return [*(Fact(topic, values) for topic, values in told.items()), *denied]
+        struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
+        return [*(Fact(topic, values) for topic, values in told.items()), *struck]
+
+    def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
+        """Return whether a negation covers a phrase: *Bonn* in *I live in Ulm, not in Bonn* and *I don't live in Bonn, but
+        in Ulm*, but not *Ulm*."""
+        turn = _TURN.search(self.tree.text)
+        if (
+            turn is None
+            or not said.negated
+            or phrase is None
+            or (turn[1] and _NOT.search(self.tree.text[: turn.start()]))
+        ):
+            return said.negated
+        return (phrase.text in self.tree.text[turn.end() :]) == bool(turn[1])
 
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""
-        kind = self.seen.question
+        kinds = nlp.QuestionWord
+        unknown = None if self.seen.question == kinds.YES_NO else self.seen.question
         for said in self.seen.statements:
             if not said.question or said.conditional:
                 continue
-            parts = (said.triple.object, said.triple.subject)
-            unknown = next((part for part in parts if isinstance(part, nlp.QuestionWord)), None)
-            unknown = unknown or (None if kind == nlp.QuestionWord.YES_NO else kind)
             if unknown is not None and said.subject.person == "I":
                 asked = f"{_predicate(said)} {unknown.name}"
                 keys = (*(f"{asked} {phrase.head}" for phrase in said.phrases), asked)
-                topic = self._asked_noun(said) or next(filter(None, map(self._table.asks.get, keys)), "")
-                if topic:
-                    return Fact(topic, ())
-            if unknown in (None, nlp.QuestionWord.PERSON, nlp.QuestionWord.OBJECT, nlp.QuestionWord.PLACE):
-                for link in self.links(said):
-                    values = self._values(link) if unknown is None else ()
-                    if values or link.phrase is None or unknown is not None or TOPICS[link.topic].nouns:
-                        return Fact(link.topic, values)
+                if topic := self._asked_noun(said) or next(filter(None, map(ASKS.get, keys)), ""):
+                    return Fact(topic)
+            for link in self.links(said) if unknown in (None, kinds.PERSON, kinds.OBJECT, kinds.PLACE) else ():
+                values = () if unknown else self._values(link)
+                if values or unknown or link.phrase is None or TOPICS[link.topic].kind == "people":
+                    return Fact(link.topic, values)
         return None
 
     def _asked_noun(self, said: nlp.Statement) -> str:
         """Return the topic of the noun in *which club am I in*, *which food do I like best*."""
-        for word in self.tree.words[:-1]:
-            noun = self.tree.words[word.index + 1]
+        for word, noun in itertools.pairwise(self.tree.words):
             if word.low in ("which", "what") and noun.pos == "NOUN":
-                likes = said.verb in self._table.words["likes"]
-                return favourite(f"favourite {noun.lemma}") if likes else self._table.nouns.get(noun.lemma, "")
+                likes = said.verb in WORDS["likes"]
+                return favourite(f"favourite {noun.lemma}") if likes else NOUNS.get(noun.lemma, "")
         return ""
 
     def without_name(self) -> str:
         """Return the topic of a relative that the user has, but does not name: *I have two brothers*."""
-        having = (said for said in self.seen.statements if said.holds and self._has(said))
-        return next(filter(None, (self.relative(said.object.head) for said in having)), "")
+        had = (self.relative(said.object.head) for said in self.seen.statements if said.holds and self._has(said))
+        return next(filter(None, had), "")
 
     def remaining_name(self) -> str:
         """Return the name in an utterance that only says who speaks: *it's me, Marlene*; empty if there is none."""
-        runs = (" ".join(self._run(word)) for word in self.tree.words if word.pos in (*_NOUNS, "VERB"))
-        return next(filter(None, (value_of(run, TOPICS[NAME], self.seen, sure=False) for run in runs)), None) or ""
+        runs = (value_of(self._run(word), TOPICS[NAME], self.seen, sure=False) for word in self.tree.words)
+        return next(filter(None, runs), "")
 
     # ---------------------------------------------------------------------------------- statements to topics
 
@@ -129,187 +139,179 @@ class Reader:
         thing = said.object.text
         if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
             return False  # when I live in Paris, I will eat cheese
-        return not said.request or said.subject.text.lower() == "i" or said.verb in ("call", "name")
+        return not said.request or said.subject.text.lower() == "i"
 
     def _is_habit(self, said: nlp.Statement) -> bool:
         """Return whether a plan is none: *I like to read*, but not *I would like to read*."""
         first = _predicate(said).split()[0]
         likes = [word for word in self.tree.words if word.lemma == first]
-        wished = any(aux.low in ("would", "'d") for like in likes for aux in self.tree.children(like, "aux"))
-        return first in self._table.words["likes"] and not wished
+        return first in WORDS["likes"] and not any(
+            aux.low in ("would", "'d") for aux in self.tree.children_of(likes, "aux")
+        )
 
     def links(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield the topics of a statement."""
         subject, object, predicate = said.subject, said.object, _predicate(said)
         if subject.person == "I":
             yield from self._of_user(said)
-        elif said.verb == "call" and object.person == "I":
-            yield from self._called(said)
-        elif object.person == "I" and (topic := self._table.says.get(f"{predicate} me")):
-            yield Link(topic, subject)
+        elif object.person == "I" and (found := SAYS.get(f"{predicate} me")):
+            yield Link(found[0], subject, found[1])
         elif topic := self.noun(subject):
-            about = TOPICS[topic]
-            if said.verb == _BE or predicate in _CALLED:
-                sure = bool(object.names) or subject.head == "name" or said.verb != _BE or about.kind != "people"
-                if not object.preposition:
-                    yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, sure)
-            elif about.kind == "activity" and (verb := self.verb(said)):
+            if predicate in _CALLED and not object.preposition:
+                sure = bool(object.names) or subject.head == "name" or TOPICS[topic].kind != "people"
+                yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, sure)
+            elif TOPICS[topic].kind == "activity" and (verb := self.verb(said)):
                 yield Link(topic, subject, value=self._span(verb.text, object))
-        elif said.verb == _BE and (topic := self.noun(object)):
+        elif said.verb == "be" and (topic := self.noun(object)):
             yield Link(topic, subject if isinstance(said.triple.subject, str) else None, sure=topic != NAME)
 
     def noun(self, phrase: Phrase) -> str:
         """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
         owner = phrase.owner
-        if owner is None or not phrase.of("I"):
+        if owner is None or not phrase.of("I") or _is_former(phrase.text):
             return ""
         if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
             return self.noun(owner)  # my sister's name, one of my hobbies
         low = phrase.text.lower()
-        topic = self._table.nouns.get(" ".join(low.split()[-2:])) or self._table.nouns.get(phrase.head, "")
+        topic = NOUNS.get(" ".join(low.split()[-2:])) or NOUNS.get(phrase.head, "")
         best = re.search(r"\bfavou?rite .+", low)
         return favourite(best[0]) if best and phrase.head in best[0] and topic != "hobby" else topic
 
     def _of_user(self, said: nlp.Statement) -> Iterator[Link]:
         predicate, object = _predicate(said), said.object
         if self._has(said):
-            if (topic := self._table.nouns.get(object.head, "")) and (said.negated or object.names or said.question):
+            if (topic := NOUNS.get(object.head, "")) and (said.negated or object.names or said.question):
                 yield Link(topic, object if object.names else None)
             return
         if hobby := self._pursuit(said):
             yield hobby
             return
-        if predicate == _BE:
+        if predicate == "be":
             yield from self._being(said)
-        direct = object.text and not object.preposition
         for phrase in dict.fromkeys((object, *said.phrases)):
-            head = f" {object.head}" if predicate == _BE and direct and phrase.preposition not in ("", "from") else ""
-            keys = (
-                f"{predicate}{head} {phrase.preposition}".strip(),
-                f"{self._word_before(phrase)} {phrase.preposition}",
-            )
-            if phrase.text and (topic := self._table.says.get(keys[0]) or self._table.says.get(keys[1], "")):
-                yield Link(topic, phrase, predicate != _BE and (phrase.preposition != "in" or topic == "subject"))
-                if topic == "childhood" and "born" in self.tree.text:
+            nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
+            key = f"{predicate} {object.head if nominal else ''} {phrase.preposition}"
+            verb = f"{self._word_before(phrase)} {phrase.preposition}"
+            if phrase.text and (found := SAYS.get(" ".join(key.split())) or SAYS.get(verb)):
+                yield Link(found[0], phrase, found[1])
+                if found[0] == "childhood" and "born" in self.tree.text:
                     yield Link("birthplace", phrase)  # I was born and raised in Dresden
 
     def _pursuit(self, said: nlp.Statement) -> Link | None:
         """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*, *I paint in my free time*."""
-        verbs, object, words = _predicate(said).split(), said.object, self._table.words
-        verb, leisure = self.verb(said), _LEISURE.search(self.tree.text)
+        verbs, object = _predicate(said).split(), said.object
+        verb = self.verb(said)
         if verb is None or said.subject.text.lower() != "i" or not isinstance(said.triple.object, str):
             return None
         chained, direct = len(verbs) > 1, object.text and not object.preposition
         free = object.head in ("time", "weekend", "fun")
         written = self._span(verb.low, Phrase("") if free else object)
-        if verbs[0] in words["likes"]:
+        if verb.tag in ("VBN", "VBZ"):
+            written = re.sub(r"^\w+", verb.lemma, written)
+        if verbs[0] in WORDS["likes"]:
             wanted = chained
-        elif verbs[0] in words["pastimes"]:
-            wanted = chained or bool(direct)
+        elif verbs[0] in WORDS["pastimes"]:
+            wanted = verb.tag != "VBD" and (chained or object.text.endswith("ing") if verbs[0] == "go" else direct)
         elif verb.tag == "VBG" and verb.dep == "conj":  # I love climbing and baking bread
-            wanted = any(other.verb in words["likes"] and other.holds for other in self.seen.statements)
-        elif leisure and verbs[0] != _BE:
-            wanted = bool(direct or free)
+            wanted = any(other.verb in WORDS["likes"] and other.holds for other in self.seen.statements)
+        elif verbs[0] != "be" and _LEISURE.search(self.tree.text):
+            wanted = direct or free
         else:
             habit = said.holds and verb.tag in ("VBP", "VB") and direct and not chained
-            wanted = bool(habit) and likeness(gerund(written, self.seen), "activity") > 0.2
+            wanted = habit and likeness(gerund(written, self.seen), "activity") > 0.2
         return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
     def _has(self, said: nlp.Statement) -> bool:
         """Return whether the user says what they have: *I have*, *I've got*."""
         got = said.verb == "get" and any(word.low == "got" for word in self.tree.words)
-        return said.subject.person == "I" and (said.verb == "have" or got)
+        return said.subject.person == "I" and (said.verb in ("have", "own") or got)
 
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
-        number = re.fullmatch(r"(\d+)( years?( old)?| old)?", text)
-        if number or (object.head == "old" and len(text.split()) == 3):
-            yield Link("age", object, value=number[1] if number else str(int(object.amount or 0)))
-        elif object.head in ("member", "fan") and object.owner is not None:
-            yield Link("club" if object.head == "member" else "liking", object.owner)
+        if number := re.fullmatch(r"(\d+)(?: years?(?: old)?| old)?", text):
+            yield Link("age", object, value=number[1])
+        elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
+            yield Link(found[0], object.owner)
         elif object.head == "student":
             yield Link("occupation", object, value="student")
-            before = text.rpartition(" ")[0]
-            if before or object.owner is not None:
-                yield Link("subject", object.owner or object, sure=False, value=before)
+            yield Link("subject", object.owner or object, sure=False, value=text.rpartition(" ")[0])
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
         elif object.names and not object.head and not object.preposition:
             yield Link(NAME, object, sure=self.asked == NAME)
-        elif text and not object.preposition and not object.of("I"):
+        elif text and not object.preposition and not object.of("I") and object.head != "old":
             yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
-            yield from (Link("employer", phrase) for phrase in places)
-
-    def _called(self, said: nlp.Statement) -> Iterator[Link]:
-        """Yield the name in *call me Tom*, *my friends call me Buzz*."""
-        me = next((word for word in self.tree.words if word.low == "me"), None)
-        after = self.tree.after(me) if me is not None else None
-        if after is not None and after.pos in (*_NOUNS, "VERB"):
-            sure = after.pos == "PROPN" or not said.request
-            yield Link(NAME, said.object, sure, value=" ".join(self._run(after)))
+            yield from (Link("employer", phrase, sure=False) for phrase in places)
 
     def ended(self, said: nlp.Statement) -> str:
         """Return the topic that *I quit my job*, *I moved away* ends; empty if there is none."""
-        if said.subject.person != "I" or said.past:
-            return ""
         predicate = ("not " if said.negated else "") + _predicate(said)
-        return self._table.ends.get(f"{predicate} {said.object.head or said.object.text.lower()}".strip(), "")
+        ended = ENDS.get(f"{predicate} {said.object.head or said.object.text.lower()}".strip(), "")
+        return ended if said.subject.person == "I" and not said.past else ""
 
-    def _mentioned(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the relatives that the user names: *my sister Rosa*, *my mother's name is Anna*, *a son named Ben*.
+    def _named(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Yield the relatives that the user names, and how they are called: *my sister Rosa*, *my mother's name is Anna*,
+        *a son named Ben*, *call me Tom*.
 
         The parser often misses the second of two, so the words decide here."""
-        if any(said.question or said.conditional or said.hearsay for said in self.seen.statements):
-            return
+        unsaid: set[str] = set()
         for said in self.seen.statements:
-            for phrase in (said.subject, said.object, *said.phrases):
+            phrases = (said.subject, said.object, *said.phrases)
+            open = said.question or said.conditional or said.hearsay or said.past or said.plan
+            if open or (said.negated and said.verb == "call"):
+                unsaid |= {said.verb, *(phrase.head for phrase in phrases)}
+            for phrase in phrases if not open else ():
                 mine = phrase.of("I") or (self._has(said) and not said.negated)
-                if phrase.names and mine and (topic := self.relative(phrase.head)):
-                    yield topic, self._people(topic, phrase.names)
+                if phrase.names and mine and not _is_former(phrase.text) and (topic := self.relative(phrase.head)):
+                    yield topic, self._fitting(topic, phrase.names)
         words = self.tree.words
-        for index, word in enumerate(words):
-            own = word.low == "name" and index > 0 and words[index - 1].low == "my"  # my name's Tom
-            topic = NAME if own else self.relative(word.lemma)
-            rest = words[index if own else index + 1 :]
-            passed = [other.low for other in itertools.takewhile(lambda other: other.low in _NAMING, rest)]
-            named = {"'s", "’s"} if own else {"name", "names", "called", "named"}
-            if topic and named & set(passed) and len(passed) < len(rest):
-                first = rest[len(passed)]
-                yield topic, self._people(topic, [" ".join(self._run(one)) for one in (first, *self._joined(first))])
+        for before, word in itertools.pairwise(words):
+            own = (before.low, word.low) == ("my", "name")  # my name's Tom
+            me = before.lemma == "call" and word.low == "me"
+            topic = NAME if own or me else self.relative(word.lemma)
+            passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
+            first = words[word.index + 1 + len(passed) :][:1]
+            named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
+            named = named or (passed == [","] and word.tag == "NNS" and {one.pos for one in first} == {"PROPN"})
+            said = not unsaid & {word.lemma, before.lemma} and not _is_former(
+                f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"
+            )
+            if topic and first and named and said:
+                yield topic, self._fitting(topic, map(self._run, (*first, *self._joined(first[0]))))
 
     def relative(self, noun: str) -> str:
         """Return the topic of a relative, a friend or a pet; empty for other nouns."""
-        topic = self._table.nouns.get(noun, "")
-        return topic if topic and TOPICS[topic].nouns else ""
+        topic = NOUNS.get(noun, "")
+        return topic if topic and TOPICS[topic].kind == "people" else ""
 
     # ----------------------------------------------------------------------------------------------- words
 
     def _values(self, link: Link) -> tuple[str, ...]:
-        if link.phrase is None:
-            return ()
         topic, phrase = TOPICS[link.topic], link.phrase
-        if topic.kind in ("people", "name") and phrase.head == "name" and phrase.owner and not link.value:
+        if phrase is None:
+            return ()
+        if topic.kind in ("people", "name") and phrase.head == "name" and phrase.owner:
             phrase = phrase.owner  # by the name of Blackbeard
         raw = (phrase.names if topic.kind == "people" else ()) or (link.value or self.written(phrase),)
-        sure = link.sure or link.topic == self.asked
-        return tuple(filter(None, (value_of(text, topic, self.seen, sure=sure) for text in raw)))
+        return self._fitting(link.topic, raw, sure=link.sure or link.topic == self.asked)
 
-    def _people(self, topic: str, names: Iterable[str]) -> tuple[str, ...]:
-        return tuple(filter(None, (value_of(name, TOPICS[topic], self.seen) for name in names)))
+    def _fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
+        return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))
 
     def verb(self, said: nlp.Statement) -> Word | None:
         """Return the verb of a statement in the tree."""
         last = said.triple.predicate.split()[-1]
         verbs = [word for word in self.tree.words if word.low == last or word.lemma == said.verb]
-        return next((word for word in verbs if word.pos in ("VERB", "AUX")), verbs[0] if verbs else None)
+        return min(verbs, key=lambda word: word.pos not in ("VERB", "AUX"), default=None)
 
     def written(self, phrase: Phrase) -> str:
         """Return a phrase with its article, as in the utterance."""
         inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
+        articles = r"(?:(?:the|an?|our|this|that|these|those)\s+)?"
         name = r"(?:-[\w-]+|\s(?:am|an der|upon|de|del)\s\w+)*"  # Stoke-on-Trent, Frankfurt am Main
-        found = re.search(rf"(?<![\w']){_ARTICLES}{inner}(?!\w){name}", self.tree.text, re.IGNORECASE)
+        found = re.search(rf"(?<![\w']){articles}{inner}(?!\w){name}", self.tree.text, re.IGNORECASE)
         return found[0] if found else phrase.name or phrase.text
 
     def _span(self, verb: str, object: Phrase) -> str:
@@ -327,25 +329,32 @@ class Reader:
     def _joined(self, word: Word) -> Iterator[Word]:
         """Yield the names that *and* joins to a name."""
         for other in self.tree.children(word, "conj"):
-            if other.pos in _NOUNS and not self.tree.children(other, "det", "poss", "nsubj"):
+            if other.pos in _NOMINAL and not self.tree.children(other, "det", "poss", "nsubj"):
                 yield other
                 yield from self._joined(other)
 
-    def _run(self, word: Word) -> list[str]:
-        """Return the words of a name; none if the word cannot begin one."""
-        run = [child.text for child in self.tree.children(word, "compound") if child.index < word.index]
-        run += [word.text] if word.pos in (*_NOUNS, "VERB") else []
-        while run and (after := self.tree.after(word)) and after.pos == "PROPN" and after.start == word.end + 1:
-            run.append(after.text)
+    def _run(self, word: Word) -> str:
+        """Return a name of several words; empty if the word cannot begin one."""
+        if word.pos not in (*_NOMINAL, "VERB"):
+            return ""
+        run = [child for child in self.tree.children(word, "compound") if child.index < word.index] + [word]
+        while (after := self.tree.after(word)) and after.pos == "PROPN" and after.start == word.end + 1:
+            run.append(after)
             word = after
-        return run
+        return " ".join(one.text for one in run)
+
+
+def _is_former(words: str) -> bool:
+    return bool(WORDS["former"] & set(re.split(r"\W", words.lower())))
 
 
 def _predicate(said: nlp.Statement) -> str:
     return said.triple.predicate.removeprefix("not ")
 
 
-def _add(told: dict[str, tuple[str, ...]], topic: str, value: str) -> None:
-    before = told.get(topic, ())
-    if value not in before and (TOPICS[topic].many or not before):
-        told[topic] = (*before, value)
+def _add(told: dict[str, tuple[str, ...]], topic: str, values: Iterable[str]) -> None:
+    for value in values:
+        one = "hobby" if topic == "liking" and is_gerund(value) else topic
+        before = told.get(one, ())
+        if value not in before and (TOPICS[one].many or not before):
+            told[one] = (*before, value)

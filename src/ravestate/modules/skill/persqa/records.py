@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from ravestate.modules import ontology
 
 from .told import Told
-from .topics import NAME, TOPICS, Topic, about, in_order
-from .wording import among
+from .topics import NAME, TOPICS, about, in_order
+from .wording import Facts, among
 
 REMARK = "has_told"
 """The relation from a person to what they told."""
@@ -17,31 +17,26 @@ MOST = 200
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person with this name. If there are several, prefer the one with the most relations, then the
-    oldest."""
-    people = graph.find("Person", {"name": name})
-    if len(people) < 2:
-        return people[0] if people else None
-    amounts = [len(graph.relations(person)) for person in people]
-    return people[amounts.index(max(amounts))]
+    """Return the person of this name with the most relations; the oldest if there are several."""
+    people = namesakes(graph, name)
+    return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
+
+
+def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
+    """Return all people of this name, oldest first."""
+    return graph.find("Person", {"name": name})
 
 
 def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, ...]]:
     """Return the values of a person by topic, in the order of the topics, without the name."""
-    found = _related(graph, person)
-    values = {topic: tuple(node["name"] for node in nodes) for topic, nodes in found.items()}
+    values = {topic: tuple(node["name"] for node in nodes) for topic, nodes in _related(graph, person).items()}
     for topic in TOPICS.values():
         if not topic.relation and topic.name != NAME and (value := person.get(topic.name)) is not None:
             values[topic.name] = (str(value),)
     return {topic: values[topic] for topic in in_order(values)}
 
 
-def note(
-    graph: ontology.Graph,
-    person: ontology.Node,
-    facts: Mapping[str, tuple[str, ...]],
-    once: Mapping[str, tuple[str, ...]],
-) -> None:
+def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts) -> None:
     """Save the facts about a person. Saving them twice is harmless.
 
     If a topic may have several values, those that other rules have saved in the meantime stay.
@@ -61,39 +56,36 @@ def note(
             continue
         present = related.get(name, [])
         for node in present:
-            if among(node["name"], values):
-                continue
-            if not (topic.many and values) or among(node["name"], once.get(name, ())):
+            ours = not (topic.many and values) or among(node["name"], once.get(name, ()))
+            if ours and not among(node["name"], values):
                 graph.unrelate(person, topic.relation, node, forget=True)
         for value in values:
-            if not among(value, [node["name"] for node in present]):
-                others = [
-                    node
-                    for one, nodes in related.items()
-                    if one != name and TOPICS[one].relation == topic.relation
-                    for node in nodes
-                ]
-                thing = _thing(graph, topic, value, [person, *(others if topic.role else [])])
-                graph.relate(person, topic.relation, thing, {"role": name} if topic.role else {})
-                related.setdefault(name, []).append(thing)
+            if among(value, [node["name"] for node in present]):
+                continue
+            # People are not their own friends, and a sister and a brother of one name are two people.
+            alike = [one for one in related if one != name and TOPICS[one].relation == topic.relation and topic.role]
+            others = [person, *(node for one in alike for node in related[one])]
+            found = (node for node in graph.find(topic.type, {"name": value}) if node not in others)
+            thing = next(found, None) or graph.save(ontology.Node(topic.type, {"name": value}))
+            graph.relate(person, topic.relation, thing, {"role": name} if topic.role else {})
+            related.setdefault(name, []).append(thing)
 
 
 def remarks(graph: ontology.Graph, person: ontology.Node) -> dict[str, Told]:
     """Return what a person told that no topic covers, by key, oldest first."""
-    found: dict[str, Told] = {}
-    for node in graph.related(person, REMARK, back=False):
-        parts = (node.get(name) or "" for name in ("subject", "verb", "object", "wording"))
-        one = Told(*parts, by=person.get(NAME) or "", at=node.get("said_at"))
-        found[one.key] = one
-    return found
+    return {one.key: one for one, _ in _remarks(graph, person)}
+
+
+def _remarks(graph: ontology.Graph, person: ontology.Node) -> list[tuple[Told, ontology.Node]]:
+    parts = ("subject", "verb", "object", "wording")
+    nodes = graph.related(person, REMARK, back=False)
+    name = person.get(NAME) or ""
+    return [(Told(*(node.get(part) or "" for part in parts), by=name, at=node.get("said_at")), node) for node in nodes]
 
 
 def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str, Told]) -> None:
     """Save what a person told, at most the last `MOST` remarks; those not in `told` are removed."""
-    present = {
-        f"{n.get('subject')} / {n.get('verb')} / {n.get('object') or ''}".lower(): n
-        for n in graph.related(person, REMARK, back=False)
-    }
+    present = {one.key: node for one, node in _remarks(graph, person)}
     kept = dict(list(told.items())[-MOST:])
     for key, node in present.items():
         if key not in kept:
@@ -111,11 +103,6 @@ def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str
             graph.relate(person, REMARK, node, {})
 
 
-def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
-    """Return all people of this name, oldest first."""
-    return graph.find("Person", {"name": name})
-
-
 def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ontology.Node]]:
     """Return the named nodes to which a person is related, by topic."""
     found: dict[str, list[ontology.Node]] = {}
@@ -124,11 +111,3 @@ def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ont
         if topic and relation.source.id == person.id and relation.target.get("name"):
             found.setdefault(topic, []).append(relation.target)
     return found
-
-
-def _thing(graph: ontology.Graph, topic: Topic, value: str, others: Sequence[ontology.Node]) -> ontology.Node:
-    """Return the node that a value names, but none of the `others`: people are not their own friends."""
-    for node in graph.find(topic.type, {"name": value}):
-        if node not in others:
-            return node
-    return graph.save(ontology.Node(topic.type, {"name": value}))

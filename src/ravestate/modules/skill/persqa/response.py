@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import random
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ravestate.errors import PlatformError, RavestateError
 from ravestate.modules import ontology
@@ -14,31 +14,27 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
-from .replies import asking, clauses, learned, memorable, say, stating, summary
 from .talk import CONFIRM, FORGET, TRIES, Talk
 from .topics import NAME, TOPICS, Fact, in_order
 from .understanding import EVERYTHING, Meaning
-from .wording import among, joined, same
+from .wording import among, asking, clauses, joined, learned, memorable, same, say, stating, without
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """The response to an utterance.
-
-    Attributes:
-        answer: The reply; None if there is none.
-        user: The user after the utterance.
-        errand: A task with memory (None where there is none) that comes before the reply. It returns the final response.
-            It raises nothing: ``talk.trouble`` has a failure of memory.
-        forgotten: Whether the user has been forgotten.
-    """
+    """The response to an utterance."""
 
     answer: Intent | None
+    """The reply; None if there is none."""
     user: Acquaintance
+    """The user after the utterance."""
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
+    """A task with memory (None where there is none) that comes before the reply. It returns the final response.
+    It raises nothing: ``talk.trouble`` has a failure of memory."""
     forgotten: bool = False
+    """Whether the user has been forgotten."""
 
 
 def respond_to(
@@ -53,49 +49,58 @@ def respond_to(
         chance: The source of random choices.
         confirm: Whether a known name has to be confirmed before memory's facts are used.
     """
-    listening = replace(user, talk=user.talk.listening(now, leave=meaning.leave))
-    if user.talk.doubt and meaning.kind not in ("vouched", "told") and _lapsed(listening.talk):
-        listening = listening.stranger()
+    if meaning.kind == "which":  # the question stays open
+        return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
+    heard = replace(user, talk=user.talk.listening(now, leave=meaning.leave))
+    question = heard.talk.question
+    lapsed = question is None or question.topic != CONFIRM or question.turns > 1
+    if user.talk.doubt and lapsed and meaning.kind not in ("vouched", "told"):
+        heard = heard.stranger()
     match meaning.kind:
         case "nothing":
-            return Response(None, listening)
-        case "told" | "corrected":
-            return _told(meaning, listening, now, chance, confirm=confirm)
-        case "identified":
-            return _identified(meaning, listening, now, chance, confirm=confirm)
-        case "vouched":
-            return Response(None, listening, lambda memory: _settled(meaning, listening, memory, now, chance))
-        case "mistaken":
-            return _mistaken(listening, now)
-        case "asked_told":
-            return Response(say("recall", user.known, fact=joined([one.text for one in meaning.free])), listening)
-        case "declined" | "unsure":
-            return _closed(meaning.kind, meaning.topic, listening)
+            return Response(None, heard)
+        case "identified" if not meaning.facts or among(heard.name or "", meaning.facts[0].values):
+            return (
+                _ask(NAME, "identify", heard, now) if heard.name is None else Response(say("back", heard.known), heard)
+            )
+        case "told" | "corrected" | "identified":
+            return _told(meaning, heard, now, chance, confirm=confirm)
         case "none":
-            closed = _closed("none", meaning.topic, listening).user
-            none = Meaning("none", (Fact(meaning.topic, (), gone=True),), meaning.topic)
-            return _told(none, closed, now, chance, confirm=confirm)
-        case "which":
-            talk = replace(user.talk, ignored=0, spoke=now)  # the question stays open
-            return Response(say("which", user.known), replace(user, talk=talk))
+            facts = (Fact(meaning.topic, gone=True),)
+            return _told(replace(meaning, facts=facts), _closing(heard, meaning.topic), now, chance, confirm=confirm)
+        case "vouched":
+            return Response(None, heard, lambda memory: _settled(meaning, heard, memory, now, chance))
+        case "mistaken":
+            return Response(None, heard, lambda memory: _mistaken(heard, memory, now))
+        case "asked_told":
+            return Response(say("recall", user.known, fact=joined([one.text for one in meaning.free])), heard)
+        case "declined" | "unsure":
+            return Response(say(meaning.kind, user.known), _closing(heard, meaning.topic))
         case "mentioned":
-            asking_on = replace(listening, talk=listening.talk.asking(meaning.topic, now))
-            return Response(say("ask_relative", user.known), asking_on)
+            return _ask(meaning.topic, "ask_relative", heard, now)
         case "asked":
-            return _asked(meaning.facts[0], listening, now)
+            return _asked(meaning.facts[0], heard, now)
         case "strike":
-            return _struck(meaning, listening)
+            return _struck(meaning, heard)
         case "forget":
-            return _wants_out(listening, now)
+            return _wants_out(heard, now)
         case "forget_no":
-            talk = listening.talk.closing()
-            return Response(say("forget_not", user.known), replace(listening, talk=talk))
+            return Response(say("forget_not", heard.known), _closing(heard))
         case "forget_yes":
-            return Response(None, listening, lambda memory: _forget(listening, memory))
+            return Response(None, heard, lambda memory: _forget(heard, memory))
 
 
-def _closed(intent: str, topic: str, user: Acquaintance) -> Response:
-    return Response(say(intent, user.known), replace(user, talk=user.talk.closing(topic)))
+def _with(user: Acquaintance, **changes: Any) -> Acquaintance:
+    return replace(user, talk=replace(user.talk, **changes))
+
+
+def _closing(user: Acquaintance, *topics: str) -> Acquaintance:
+    return replace(user, talk=user.talk.closing(*topics))
+
+
+def _ask(topic: str, intent: str, user: Acquaintance, now: float, /, **parameters: str | None) -> Response:
+    """Return a response that asks about a topic."""
+    return Response(say(intent, user.known, **parameters), replace(user, talk=user.talk.asking(topic, now)))
 
 
 async def _at_once(memory: ontology.Memory | None, operations: Callable[[ontology.Graph], T]) -> T:
@@ -104,22 +109,7 @@ async def _at_once(memory: ontology.Memory | None, operations: Callable[[ontolog
     return await memory.together(operations)
 
 
-def _lapsed(talk: Talk) -> bool:
-    """Return whether the question that should confirm the name waits no longer."""
-    return talk.question is None or talk.question.topic != CONFIRM or talk.question.turns > 1
-
-
 # ------------------------------------------------------------------------------------ identity
-
-
-def _identified(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random, *, confirm: bool) -> Response:
-    """Return the response to *it's me*, with a name or without."""
-    name = meaning.facts[0].values[0] if meaning.facts else None
-    if user.name is not None and (name is None or same(name, user.name)):
-        return Response(say("back", user.known), user)
-    if name is None:
-        return Response(say("identify", {}), replace(user, talk=user.talk.asking(NAME, now)))
-    return _told(replace(meaning, kind="told"), user, now, chance, confirm=confirm)
 
 
 async def _settled(
@@ -127,36 +117,26 @@ async def _settled(
 ) -> Response:
     """Return the response to the answer that should confirm the name."""
     answer = meaning.facts[0].values if meaning.facts else ()
-    user = replace(user, talk=user.talk.closing())
-
-    def settle(graph: ontology.Graph) -> Acquaintance:
-        return user.settled(graph, answer).noted(graph)
-
+    user = _closing(user)
     try:
-        after = await _at_once(memory, settle)
+        after = await _at_once(memory, lambda graph: user.settled(graph, answer).noted(graph))
     except RavestateError as error:
-        after = replace(user.stranger(), talk=replace(user.stranger().talk, trouble=str(error)))
+        after = _with(user.stranger(), trouble=str(error))
     if after.talk.wants_out:
         return _wants_out(after, now)
     if after.talk.newcomer:
         return Response(say("namesake", after.known), after)
     assert after.name is not None
-    return _of_name(after.name, user, after, chance, now)
+    return _of_name(after.name, user, after, chance)
 
 
-def _mistaken(user: Acquaintance, now: float) -> Response:
+async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
     """Take back that the user is the person of their name, and ask who they are."""
-    asking_on = Talk().asking(NAME, now)
-
-    async def take_back(memory: ontology.Memory | None) -> Response:
-        facts = told_apart(user.facts, user.talk.remembered, user.talk.told) if user.talk.met else user.facts
-        after = Acquaintance(None, facts, replace(asking_on, told=frozenset(facts), spoke=now))
+    facts = told_apart(user.facts, user.talk.remembered, user.talk.told) if user.talk.met else user.facts
+    if user.talk.met and not user.talk.newcomer:
         with contextlib.suppress(RavestateError):
-            if user.talk.met and not user.talk.newcomer:
-                await _at_once(memory, user.restored)
-        return Response(say("mistaken", {}), after)
-
-    return Response(None, user, take_back)
+            await _at_once(memory, user.restored)
+    return _ask(NAME, "mistaken", Acquaintance(None, facts, Talk(told=frozenset(facts), spoke=now)), now)
 
 
 # ------------------------------------------------------------------------------------ told
@@ -176,20 +156,19 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, name, memory, confirm=confirm)
-        if after.talk.doubt and not user.talk.doubt:
-            talk = after.talk.asking(CONFIRM, now)
-            return Response(_confirming(after), replace(after, talk=talk))
+        known, doubt = after.known, after.talk.doubt
+        if doubt and not user.talk.doubt:
+            intent = f"vouch_{doubt}" if TOPICS[doubt].asked else "vouch"
+            noun = f"{doubt}'s name" if TOPICS[doubt].kind == "people" else doubt
+            return _ask(CONFIRM, intent, after, now, topic=noun)
         if after.talk.wants_out and name is not None:
             return _wants_out(after, now)
         if not meaning.facts:
             return Response(None, after)
         if after.talk.trouble and not user.talk.warned:
-            warned = replace(after, talk=replace(after.talk, warned=True))
-            return Response(say("unsaved_name" if name is not None else "unsaved", after.known), warned)
-        if meaning.kind == "none":
-            return Response(say("none", after.known), after)
+            return Response(say("unsaved" if name is None else "unsaved_name", known), _with(after, warned=True))
         if name is not None:
-            return _of_name(name, before, after, chance, now)
+            return _of_name(name, before, after, chance)
         return Response(_of_facts(meaning, news, before, after), after)
 
     return Response(None, user, write)
@@ -208,9 +187,9 @@ async def _written(
     try:
         if user.who is not None:  # otherwise only this conversation has the facts
             user = await _at_once(memory, write)
-        return replace(user, talk=replace(user.talk, trouble=""))
+        return _with(user, trouble="")
     except RavestateError as error:
-        user = replace(user, talk=replace(user.talk, trouble=str(error)))
+        user = _with(user, trouble=str(error))
     if again:
         return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the conversation lasts
     with contextlib.suppress(RavestateError):  # reading may work where writing fails
@@ -223,105 +202,88 @@ def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Tal
     if not topics:
         return replace(talk, formal=False)  # a free statement
     main = NAME if name is not None else _main(meaning, news)
-    latest = (name,) if name is not None else next((f.values for f in meaning.facts if f.topic == main), ())
-    unasked = talk.question is None or talk.question.topic not in topics
-    talk = replace(talk.learning(topics, main, latest), formal=talk.formal and not unasked)
-    if talk.question is not None and (asked := TOPICS.get(talk.question.topic)) and set(asked.besides) & set(topics):
+    latest = next((fact.values for fact in meaning.facts if fact.topic == main), ())
+    question = talk.question.topic if talk.question else ""
+    talk = talk.learning(topics, main, latest).keeping({topic: news.facts.get(topic, ()) for topic in news.topics})
+    if question in TOPICS and set(TOPICS[question].besides) & set(topics):
         talk = replace(talk, question=None)
-    once = {topic: (*talk.once.get(topic, ()), *news.facts.get(topic, ())) for topic in news.topics}
-    once = {topic: tuple(dict.fromkeys(values)) for topic, values in once.items()}
-    return replace(talk, told=talk.told - {NAME}, once={**talk.once, **once})
+    return replace(talk, told=talk.told - {NAME}, formal=talk.formal and question in topics)
 
 
-def _confirming(user: Acquaintance) -> Intent:
-    """Return the greeting of somebody who may be an acquaintance, with a question that tells."""
-    topic = user.talk.doubt
-    if TOPICS[topic].asked:
-        return say(f"vouch_{topic}", {}, name=user.name)
-    noun = f"{topic}'s name" if TOPICS[topic].kind == "people" else topic
-    return say("vouch", {}, name=user.name, topic=noun)
-
-
-def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random.Random, now: float) -> Response:
+def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random.Random) -> Response:
     known = user.known
     if not before.talk.doubt and before.name is not None and same(before.name, name):
         return Response(stating("known_already", NAME, (name,), known), user)
-    remembered = {topic: values for topic, values in user.talk.remembered.items() if values}
-    if remembered:
-        topic = memorable(remembered, chance)
-        return Response(
-            stating("welcome_back", topic, remembered[topic], known),
-            replace(user, talk=replace(user.talk, reminded=True)),
-        )
+    if any(user.talk.remembered.values()):
+        topic = memorable(user.talk.remembered, chance)
+        welcome = stating("welcome_back", topic, user.talk.remembered[topic], known)
+        return Response(welcome, _with(user, reminded=True))
     return Response(say("learned_name" if before.name is None else "renamed", known), user)
 
 
 def _main(meaning: Meaning, news: News) -> str:
     """Return the topic to reply to: the one that the agent asked about, otherwise the first new one."""
-    if meaning.topic in news.topics:
-        return meaning.topic
-    return next((topic for topic in news.topics if topic in news.new), news.topics[0])
+    first = next((topic for topic in news.topics if topic in news.new), news.topics[0])
+    return meaning.topic if meaning.topic in news.topics else first
 
 
 def _of_facts(meaning: Meaning, news: News, before: Acquaintance, user: Acquaintance) -> Intent:
     topic = _main(meaning, news)
     fact = next(fact for fact in meaning.facts if fact.topic == topic)
-    known = user.known
     if fact.gone:
-        return say("struck" if topic in news.changed else "none", known)
+        struck = topic in news.changed and meaning.kind != "none"
+        return say("struck" if struck else "none", user.known)
     if topic in news.changed and (meaning.kind == "corrected" or not TOPICS[topic].many):
-        return stating("corrected", topic, user.facts[topic], known)
+        return stating("corrected", topic, user.facts[topic], user.known)
     if topic not in news.new and before.facts.get(topic):
-        return stating("known_already", topic, fact.values, known)
-    return learned(topic, fact.values, known)
+        return stating("known_already", topic, fact.values, user.known)
+    return learned(topic, fact.values, user.known)
 
 
 # ------------------------------------------------------------------------------------ asked
 
 
 def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
-    known: Mapping[str, tuple[str, ...]] = user.known
-    topic = fact.topic
+    known, topic = user.known, fact.topic
     if topic == EVERYTHING:
         if any(known.values()):
-            return Response(summary(known), replace(user, talk=replace(user.talk, reminded=True)))
+            return Response(say("recall_everything", known, facts=clauses(known)), _with(user, reminded=True))
         return Response(say("recall_nothing", known), user)
     if not topic:  # no topic covers it
         return Response(say("recall_not", known), user)
     answers = {name: known[name] for name in (topic, *TOPICS[topic].besides) if known.get(name)}
     if answers:
+        right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)
+        intent = "recall_name" if topic == NAME else "recall"
         if fact.values:
-            right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)
             intent = "confirm" if right else "deny"
-        else:
-            intent = "recall_name" if topic == NAME else "recall"
         last = next(iter(answers))
         mentioned = replace(user, talk=user.talk.mentioning(last, answers[last]))
         return Response(say(intent, known, fact=clauses(answers)), mentioned)
-    if topic in known:
-        return Response(say("recall_none", known), user)
-    if topic in user.talk.closed:
-        return Response(say("recall_declined", known), user)
-    unknown = "recall_stranger" if topic == NAME else "recall_unknown"
-    return Response(say(unknown, known), replace(user, talk=user.talk.asking(topic, now)))
+    if topic in known or topic in user.talk.closed:
+        return Response(say("recall_none" if topic in known else "recall_declined", known), user)
+    return _ask(topic, "recall_stranger" if topic == NAME else "recall_unknown", user, now)
+
+
+# ------------------------------------------------------------------------------------ forgotten
 
 
 def _struck(meaning: Meaning, user: Acquaintance) -> Response:
     """Forget some of the facts that the user told."""
-    facts = meaning.facts
-    told = {key: one for key, one in user.told.items() if key not in {gone.key for gone in meaning.free}}
-    gone: dict[str, tuple[str, ...]] = {}
-    left = dict(user.facts)
-    for fact in facts:
+    free = {one.key for one in meaning.free}
+    told = {key: one for key, one in user.told.items() if key not in free}
+    left, gone = dict(user.facts), dict[str, tuple[str, ...]]()
+    for fact in meaning.facts:
         for topic in (fact.topic, *TOPICS[fact.topic].besides):
-            known = left.get(topic, ())
-            gone[topic] = tuple(value for value in known if not fact.values or among(value, fact.values))
-            left[topic] = tuple(value for value in known if value not in gone[topic])
-    topics = [topic for topic in gone if gone[topic]]
-    if not topics and len(told) == len(user.told):
+            before = left.pop(topic, ())
+            kept = without(before, fact.values) if fact.values else ()
+            if kept:
+                left[topic] = kept
+            if before != kept:
+                gone[topic] = without(before, kept)
+    if not gone and len(told) == len(user.told):
         return Response(say("strike_unknown", user.known), user)
-    left = {topic: values for topic, values in left.items() if values or topic not in gone}
-    user = replace(user, facts=left, talk=user.talk.striking({topic: gone[topic] for topic in topics}), told=told)
+    user = replace(user, facts=left, talk=user.talk.striking(gone), told=told)
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, None, memory)
@@ -330,18 +292,15 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
     return Response(None, user, write)
 
 
-# ------------------------------------------------------------------------------------ forgotten
-
-
 def _wants_out(user: Acquaintance, now: float) -> Response:
     """Ask back before forgetting everything, or ask who the user is."""
     if user.who is None and not user.known and not user.told:
-        talk = replace(user.talk.asking(NAME, now), wants_out=True)
-        return Response(say("forget_who", {}), replace(user, talk=talk))
-    talk = replace(user.talk, wants_out=False)
-    if user.talk.wants_out and user.talk.newcomer and not user.facts and not user.told:
-        return Response(say("forget_nobody", user.known), replace(user, talk=talk))
-    return Response(say("forget_ask", user.known, what=_removed(user)), replace(user, talk=talk.asking(FORGET, now)))
+        return _ask(NAME, "forget_who", _with(user, wants_out=True), now)
+    unknown = user.talk.wants_out and user.talk.newcomer and not user.facts and not user.told
+    user = _with(user, wants_out=False)
+    if unknown:
+        return Response(say("forget_nobody", user.known), user)
+    return _ask(FORGET, "forget_ask", user, now, what=_removed(user))
 
 
 def _removed(user: Acquaintance) -> str:
@@ -361,12 +320,9 @@ async def _forget(user: Acquaintance, memory: ontology.Memory | None) -> Respons
             graph.forget(found.who)
         return found
 
-    found = user
     try:
-        if user.who is not None:
-            found = await _at_once(memory, forget)
+        found = user if user.who is None else await _at_once(memory, forget)
     except RavestateError as error:
-        talk = replace(user.talk.closing(), trouble=str(error))
-        return Response(say("forget_failed", user.known), replace(user, talk=talk))
+        return Response(say("forget_failed", user.known), _with(_closing(user), trouble=str(error)))
     gone = Acquaintance(None, {}, Talk(tries=dict.fromkeys(TOPICS, TRIES)))
     return Response(say("forgotten", {}, what=_removed(found)), gone, forgotten=True)

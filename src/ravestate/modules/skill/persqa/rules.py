@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, TypeVar
@@ -15,13 +16,12 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from .acquaintance import Acquaintance, Noted
 from .kinds import load as load_examples
 from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
-from .profile import Facts
-from .replies import asking, following, memorable, picking_up, stating
 from .response import respond_to
 from .talk import MORE, TRIES, Talk
-from .told import Told
+from .told import picking_up
 from .topics import NAME, due
 from .understanding import understand
+from .wording import asking, following, memorable, stating
 
 HELLO = 3.0
 """Seconds after the first hello until the agent asks for the name; the user may go on talking meanwhile."""
@@ -32,11 +32,7 @@ T = TypeVar("T")
 @module.rule(
     when=idle.bored,
     reads=(who, facts, told),
-    writes=(
-        verbaliser.intent,
-        rawio.output,
-        talk,
-    ),  # also writes the output, so that no other rule speaks at the same time
+    writes=(verbaliser.intent, rawio.output, talk),  # the output, so that no other rule speaks at the same time
     weight=1.2,
     cooldown=20.0,
     detached=True,  # otherwise the intent could not become words in the same causal group
@@ -54,7 +50,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         now = now.waiting()
     if now.ignored >= settings.ignored:
         return rs.Resign(f"the user left {now.ignored} questions without a word")
-    known = known_of(ctx)
+    known = acquaintance_of(ctx).known
     remembered = {name: had for name, had in now.remembered.items() if had and had == known.get(name)}
     if remembered and not now.reminded:  # only facts that still hold
         topic = memorable(remembered, ctx.random)
@@ -62,26 +58,17 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
-    if (one := news(ctx[told].values(), now)) is not None:
-        ctx[talk] = replace(now.asking(MORE, ctx.now), picked_up=now.picked_up | {one.key})
-        ctx[verbaliser.intent] = picking_up(one, known)
+    if fresh := [one for one in ctx[told].values() if one.key not in now.picked_up]:
+        ctx[talk] = replace(now.asking(MORE, ctx.now), picked_up=now.picked_up | {fresh[-1].key})
+        ctx[verbaliser.intent] = picking_up(fresh[-1], known)
         return None
     topic = due(settings.topics, known, now.closed, now.tries, last=now.last, limit=TRIES)
     if not topic:
         return rs.Resign("there is nothing left to ask")
-    if now.formal:  # two questions about facts in a row would be an interview
-        ctx[talk] = now.asking(MORE, ctx.now)
-        ctx[verbaliser.intent] = following(now.last, known)
-        return None
-    ctx[talk] = now.asking(topic, ctx.now)
-    ctx[verbaliser.intent] = asking(topic, known)
+    # Two questions about facts in a row would be an interview.
+    ctx[talk] = now.asking(MORE if now.formal else topic, ctx.now)
+    ctx[verbaliser.intent] = following(now.last, known) if now.formal else asking(topic, known)
     return None
-
-
-def news(remarks: Iterable[Told], now: Talk) -> Told | None:
-    """Return the last thing that the user told, and to which the agent has not come back."""
-    left = [one for one in remarks if one.key not in now.picked_up]
-    return left[-1] if left else None
 
 
 @module.rule(when=rs.startup, background=True)
@@ -109,7 +96,7 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     if now.quiet or ctx.now - now.spoke < HELLO - 0.1:
         return rs.Resign("the user went on talking")
     ctx[talk] = now.asking(NAME, ctx.now)
-    ctx[verbaliser.intent] = asking(NAME, known_of(ctx))
+    ctx[verbaliser.intent] = asking(NAME, acquaintance_of(ctx).known)
     return None
 
 
@@ -151,11 +138,10 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 async def _is_open(memory: ontology.Memory) -> bool:
     """Return whether memory could be opened; if not, `ontology` logs why."""
-    try:
+    with suppress(RavestateError):
         await memory.opened()
-    except RavestateError:
-        return False
-    return True
+        return True
+    return False
 
 
 @module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, told, interloc.users), background=True)
@@ -248,11 +234,6 @@ async def begin(ctx: rs.RuleContext, user: Acquaintance) -> None:
         ctx.emit(noted, Noted(user, after, after.name))
 
 
-def known_of(ctx: rs.RuleContext) -> Facts:
-    """Return all that is known about the user, with their name."""
-    return acquaintance_of(ctx).known
-
-
 def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
     """Return the user from the slots."""
     return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk], dict(ctx[told]))
@@ -274,3 +255,19 @@ def _update(items: Any, before: Mapping[str, T], after: Mapping[str, T]) -> None
     for key, value in after.items():
         if before.get(key) != value:
             items.add(key, value)
+
+
+@module.rule(
+    when=facts.changed.max_age(None).detached() | who.changed.max_age(None).detached(),
+    reads=(facts, who),
+    writes=interloc.facts,
+    background=True,
+)
+async def publish(ctx: rs.RuleContext) -> None:
+    """Copy the facts about the user, and their name, to `interloc.facts`, for modules that do not need this one."""
+    known = {
+        topic: tuple(values)
+        for topic, values in Acquaintance(ctx[who], dict(ctx[facts]), Talk()).known.items()
+        if values
+    }
+    _update(ctx[interloc.facts], dict(ctx[interloc.facts]), known)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
@@ -26,21 +27,17 @@ CORRECTABLE = 2
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A question of the agent.
-
-    Attributes:
-        topic: Its topic.
-        since: Seconds from the beginning of the context to the question.
-        turns: The number of utterances since, without an answer.
-        heard: Whether it has been said.
-        spoken_over: Whether the agent has said something else since, unasked: a mere no may answer that.
-    """
+    """A question of the agent."""
 
     topic: str
     since: float
+    """Seconds from the beginning of the context to the question."""
     turns: int = 0
+    """The number of utterances since, without an answer."""
     heard: bool = False
+    """Whether it has been said."""
     spoken_over: bool = False
+    """Whether the agent has said something else since, unasked: a mere no may answer that."""
 
     @property
     def fresh(self) -> bool:
@@ -50,90 +47,72 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Talk:
-    """The state of the conversation.
-
-    Attributes:
-        question: The open question.
-        tries: The number of questions about each topic.
-        closed: Topics that this conversation does not ask about any more.
-        ignored: The number of unanswered questions in a row.
-        told: Topics that the user told about in this conversation.
-        last: The topic that was learnt or mentioned last.
-        latest: Its values.
-        age: The number of utterances since then.
-        met: Whether memory was asked about the user.
-        remembered: The facts that memory had.
-        once: All values of this conversation, also those that no longer hold.
-        newcomer: Whether memory did not know the user.
-        reminded: Whether the agent has shown that it remembers.
-        trouble: The last failure of memory; empty while it works.
-        warned: Whether the user knows about the trouble.
-        quiet: Whether the user has said goodbye.
-        doubt: The topic that the user must confirm before the agent takes them for the person of their name.
-        wants_out: Whether they asked to be forgotten before the agent knew who they are.
-        formal: Whether the last question asked for a fact, and nothing personal was said since.
-        spoke: Seconds from the beginning of the context to the user's last words.
-        picked_up: The keys of free statements to which the agent came back.
-    """
+    """The state of the conversation."""
 
     question: Question | None = None
+    """The open question."""
     tries: Mapping[str, int] = field(default_factory=dict[str, int])
+    """The number of questions about each topic."""
     closed: frozenset[str] = frozenset()
+    """Topics that this conversation does not ask about any more."""
     ignored: int = 0
+    """The number of unanswered questions in a row."""
     told: frozenset[str] = frozenset()
+    """Topics that the user told about in this conversation."""
     last: str = ""
+    """The topic that was learnt or mentioned last."""
     latest: tuple[str, ...] = ()
+    """Its values."""
     age: int = 0
+    """The number of utterances since then."""
     met: bool = False
+    """Whether memory was asked about the user."""
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """The facts that memory had."""
     once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """All values of this conversation, also those that no longer hold."""
     newcomer: bool = False
+    """Whether memory did not know the user."""
     reminded: bool = False
+    """Whether the agent has shown that it remembers."""
     trouble: str = ""
+    """The last failure of memory; empty while it works."""
     warned: bool = False
+    """Whether the user knows about the trouble."""
     quiet: bool = False
+    """Whether the user has said goodbye."""
     doubt: str = ""
+    """The topic that the user must confirm before the agent takes them for the person of their name."""
     wants_out: bool = False
+    """Whether they asked to be forgotten before the agent knew who they are."""
     formal: bool = False
+    """Whether the last question asked for a fact, and nothing personal was said since."""
     spoke: float = 0.0
+    """Seconds from the beginning of the context to the user's last words."""
     picked_up: frozenset[str] = frozenset()
+    """The keys of free statements to which the agent came back."""
 
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
-        return replace(
-            self,
-            formal=topic != MORE,
-            question=Question(topic, now),
-            tries={**self.tries, topic: self.tries.get(topic, 0) + 1},
-        )
+        tries = {**self.tries, topic: self.tries.get(topic, 0) + 1}
+        return replace(self, formal=topic != MORE, question=Question(topic, now), tries=tries)
 
     def pending(self, now: float, within: float) -> Question | None:
         """Return the question that the user may answer now; None if it is too old or the user ignored it."""
         question = self.question
-        if question is None or question.turns > 1 or now - question.since > within:
-            return None
-        return question
+        return question if question and question.turns <= 1 and now - question.since <= within else None
 
     def listening(self, now: float, *, leave: bool) -> Talk:
         """Count an utterance of the user; `leave` means a goodbye."""
-        question = self.question
-        return replace(
-            self,
-            question=None if question is None or leave else replace(question, turns=question.turns + 1),
-            ignored=0,
-            age=self.age + 1,
-            quiet=leave,
-            spoke=now,
-        )
+        question = replace(self.question, turns=self.question.turns + 1) if self.question and not leave else None
+        return replace(self, question=question, ignored=0, age=self.age + 1, quiet=leave, spoke=now)
 
     def speaking(self) -> Talk:
         """Count an utterance of the agent: its question, an answer to the user, or something else."""
         question = self.question
-        if question is None or question.spoken_over:
+        if question is None or (question.heard and question.turns):
             return self
-        if not question.heard:
-            return replace(self, question=replace(question, heard=True))
-        return self if question.turns else replace(self, question=replace(question, spoken_over=True))
+        return replace(self, question=replace(question, heard=True, spoken_over=question.heard))
 
     def waiting(self) -> Talk:
         """Give up the question; the user has not answered it."""
@@ -146,14 +125,8 @@ class Talk:
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
         """Note that the user told about `topics`; a correction would concern the `latest` values of `last`."""
         answered = self.question is not None and self.question.topic in topics
-        return replace(
-            self,
-            question=None if answered else self.question,
-            told=self.told | set(topics),
-            last=last,
-            latest=latest,
-            age=0,
-        )
+        told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
+        return told.mentioning(last, latest)
 
     def striking(self, gone: Mapping[str, tuple[str, ...]]) -> Talk:
         """Remove values by topic, and ask for no others."""
@@ -161,10 +134,20 @@ class Talk:
             topic: tuple(value for value in values if value not in gone.get(topic, ()))
             for topic, values in self.remembered.items()
         }
-        once = {topic: (*self.once.get(topic, ()), *values) for topic, values in gone.items()}
-        tries = dict.fromkeys(gone, ENOUGH)
-        talk = self.learning(gone.keys(), "", ())
-        return replace(talk, remembered=remembered, once={**self.once, **once}, tries={**self.tries, **tries})
+        talk = replace(self, remembered=remembered, tries={**self.tries, **dict.fromkeys(gone, ENOUGH)})
+        return talk.keeping(gone).learning(gone.keys(), "", ())
+
+    def keeping(self, values: Mapping[str, tuple[str, ...]]) -> Talk:
+        """Note values that memory may have because of this conversation."""
+        return replace(
+            self, once={**self.once, **{topic: self.once.get(topic, ()) + values[topic] for topic in values}}
+        )
+
+    @property
+    def ever(self) -> Mapping[str, tuple[str, ...]]:
+        """All values that memory had, or may have because of this conversation."""
+        topics = {**self.remembered, **self.once}
+        return {topic: self.remembered.get(topic, ()) + self.once.get(topic, ()) for topic in topics}
 
     def mentioning(self, topic: str, values: tuple[str, ...]) -> Talk:
         """Note that the agent states a topic, which the user may correct."""
@@ -172,11 +155,16 @@ class Talk:
 
     def rebased(self, base: Talk, after: Talk) -> Talk:
         """Return this state with the changes from `base` to `after`, except where it has changed since `base`."""
-        names = [one.name for one in fields(Talk)]
-        changed = [name for name in names if getattr(self, name) == getattr(base, name)]
-        return replace(self, **{name: getattr(after, name) for name in changed})
+        mine, old, new = ({one.name: getattr(talk, one.name) for one in fields(Talk)} for talk in (self, base, after))
+        return Talk(**unless_changed(mine, old, new))
 
     @property
     def correctable(self) -> str:
         """The topic that "no, Bremen" would correct; empty if there is none."""
         return self.last if self.age <= CORRECTABLE else ""
+
+
+def unless_changed(mine: Mapping[str, Any], base: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `mine` with the changes from `base` to `after`, except to entries that have changed since `base`."""
+    kept = {key: value for key, value in mine.items() if value != base.get(key)}
+    return {**{key: value for key, value in after.items() if mine.get(key) == base.get(key)}, **kept}

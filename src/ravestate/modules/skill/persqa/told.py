@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
 from ravestate.modules import nlp
-from ravestate.modules.meta.nlp.phrase import Phrase
+from ravestate.modules.meta.verbaliser.intents import Intent
 
+from .answers import spelled_out
 from .reading import Reader
-from .relations import relations
-from .topics import NAME, TOPICS
+from .topics import NAME, TOPICS, WORDS
 from .values import value_of
-from .wording import among
+from .wording import Facts, among, say
 
 _SAID_BACK = {
     "i": "you", "me": "you", "my": "your", "mine": "yours", "myself": "yourself", "am": "are", "'m": "are",
@@ -50,43 +51,39 @@ def told_in(reader: Reader) -> list[Told]:
     found: list[Told] = []
     last = ""
     for said in reader.seen.statements:
-        pronoun = said.subject.text.lower() in ("he", "she", "they")
-        subject = last if pronoun else _about(reader, said)
+        subject = last if said.subject.text.lower() in ("he", "she", "they") else _about(reader, said)
         if said.subject.names or reader.noun(said.subject):
-            last = said.subject.name or said.subject.text
+            owner = said.subject.owner if said.subject.head == "name" else None  # my wife's name is..., and she...
+            last = (owner or said.subject).name or (owner or said.subject).text
         if subject and _is_worth_keeping(reader, said):
-            predicate = said.triple.predicate
-            found.append(Told(subject, predicate, said.object.text, _retold(reader, said)))
+            found.append(Told(subject, said.triple.predicate, said.object.text, _retold(reader, said)))
     return found
 
 
-def answers_in(reader: Reader, told: Iterable[Told], known: Mapping[str, tuple[str, ...]]) -> list[Told]:
+def answers_in(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return what answers the user's question: *what does Jonas play*, *where does my sister live*."""
     told = list(told)
-    for said in reader.seen.statements:
-        subject = _names_of(reader, said.subject, known) if isinstance(said.triple.subject, str) else ()
-        object = said.object.text if isinstance(said.triple.object, str) else ""
-        if said.question and (subject or object):
-            found = [
-                one
-                for one in told
-                if one.verb == said.triple.predicate
-                and (not subject or among(one.subject, subject))
-                and (not object or among(one.object, (object,)))
-            ]
-            if found:
-                return found
+    for said in filter(lambda one: one.question, reader.seen.statements):
+        subject, object = said.subject, said.object.text if isinstance(said.triple.object, str) else ""
+        # The user may have told about Rosa, or about their sister.
+        names = (
+            ("I",) if subject.person == "I" else (subject.text, *subject.names, *known.get(reader.noun(subject), ()))
+        )
+        names = names if isinstance(said.triple.subject, str) else ()
+        same = (one for one in told if one.verb == said.triple.predicate and (names or object))
+        same = (one for one in same if not names or among(one.subject, names))
+        if found := [one for one in same if not object or among(one.object, (object,))]:
+            return found
     return []
 
 
-def _names_of(reader: Reader, phrase: Phrase, known: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the subjects under which the user may have told about somebody: *my sister*, *Rosa*."""
-    return ("I",) if phrase.person == "I" else (phrase.text, *phrase.names, *known.get(reader.noun(phrase), ()))
-
-
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
-    words, object = relations().words, said.object
-    if said.verb in words["passing"] or " to " in said.triple.predicate or object.person != "other":
+    called = said.triple.predicate in ("be called", "be named")
+    if (
+        (said.verb in WORDS["passing"] and not called)
+        or " to " in said.triple.predicate
+        or said.object.person != "other"
+    ):
         return False
     return isinstance(said.triple.object, str) and not reader.ended(said) and (said.holds or _happened(reader, said))
 
@@ -95,7 +92,7 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
     """Return whether it is an event of the past: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
-    return not flags and verb is not None and verb.tag == "VBD" and said.verb not in relations().words["states"]
+    return not flags and verb is not None and verb.tag == "VBD" and said.verb not in WORDS["states"] | WORDS["pastimes"]
 
 
 def _about(reader: Reader, said: nlp.Statement) -> str:
@@ -103,14 +100,14 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     subject, object = said.subject, said.object
     if subject.person == "I":
         mine = "my" in object.text.lower().split() and not _happened(reader, said)
-        deictic = reader.written(object).lower().startswith(("this ", "that ", "these ", "those "))
+        deictic = re.match(r"(?:this|that|these|those|it|here|there)\b", reader.written(object), re.IGNORECASE)
         fits = object.text and not object.preposition and said.verb not in ("be", "have") and not mine and not deictic
         return "I" if fits and not list(reader.links(said)) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
         naming = said.verb == "be" and ((object.names and not object.preposition) or not object.text)
         return "" if naming or said.triple.predicate in ("be called", "be named") else subject.name or subject.text
-    if relations().words["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
+    if WORDS["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
         return " ".join(words[2:]) if len(words) == 3 else subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
     return subject.text if person and not reader.noun(object) else ""
@@ -124,7 +121,16 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     while top.dep == "xcomp":
         top = tree.head(top)
     words = [top, *(word for child in tree.children(top) if child.dep not in _ASIDE for word in tree.subtree(child))]
-    text = tree.phrase(words)
-    if said.subject.text.split()[-1:] and said.subject.text.split()[-1].lower() not in text.lower().split():
+    text = spelled_out(tree.phrase(words))
+    if said.subject.text.lower().split()[-1:] and said.subject.text.lower().split()[-1] not in re.findall(
+        r"\w+", text.lower()
+    ):
         text = f"{said.subject.text} {text}"
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())
+
+
+def picking_up(one: Told, known: Facts) -> Intent:
+    """Return a question about what the user told."""
+    if one.verb == "be" and one.subject.lower().startswith("my "):
+        return say("how_is", known, person=f"your {one.subject[3:]}")
+    return say("pick_up", known, fact=one.text)

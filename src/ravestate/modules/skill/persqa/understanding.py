@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,11 +12,10 @@ from ravestate.modules import nlp
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader
-from .relations import relations
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, answers_in, told_in
-from .topics import NAME, TOPICS, Fact, is_topic
-from .wording import among
+from .topics import NAME, TOPICS, WORDS, Fact, is_topic
+from .wording import Facts, among
 
 EVERYTHING = "everything"
 """Stands for all topics."""
@@ -44,248 +43,183 @@ Kind = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """The meaning of an utterance.
-
-    Attributes:
-        kind: The act of the user.
-        facts: The facts that they tell, or ask for.
-        topic: The topic of the question that they answer.
-        leave: Whether they say goodbye.
-        aloud: Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns
-            anything else that they say.
-        free: Free statements that they make, ask for, or want forgotten.
-    """
+    """The meaning of an utterance."""
 
     kind: Kind
+    """The act of the user."""
     facts: tuple[Fact, ...] = ()
+    """The facts that they tell, or ask for."""
     topic: str = ""
+    """The topic of the question that they answer."""
     leave: bool = False
+    """Whether they say goodbye."""
     aloud: bool = True
+    """Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns anything
+    else that they say."""
     free: tuple[Told, ...] = ()
+    """Free statements that they make, ask for, or want forgotten."""
 
 
 def understand(
-    seen: nlp.Analysis,
-    talk: Talk,
-    known: Mapping[str, tuple[str, ...]],
-    now: float,
-    within: float,
-    told: Iterable[Told] = (),
+    seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: Iterable[Told] = ()
 ) -> Meaning:
     """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
-    pending = talk.pending(now, within)
-    topic = pending.topic if pending else ""
-    reader = Reader(seen, talk.doubt if topic == CONFIRM else topic if is_topic(topic) else "")
-    acts = _acts(seen)
-    leave = "farewell" in seen.acts
-    wish = _forgetting(seen, reader, known, told)
-    if wish is not None and wish.kind == "forget":
-        return wish
-    if topic == FORGET:
-        fresh = pending is not None and pending.fresh  # a yes to something else must not delete anything
-        return _of_forgetting(seen, leave) if fresh else Meaning("nothing", leave=leave)
-    if wish is not None:
-        return wish
-    if pending is not None and is_topic(topic) and not pending.turns and "refuse" in acts:
-        return Meaning("declined", topic=topic)
-    if topic == CONFIRM and (vouched := _vouched(seen, reader, talk.doubt, acts)):
-        return vouched
-    asks = seen.question is not None
-    if (asks or "ask_everything" in acts) and (inquiry := _inquiry(seen, reader, acts, known, told)):
-        return inquiry
-    facts = [fact for fact in reader.facts(known) if not fact.gone or _matters(fact, known, topic)]
-    free = tuple(told_in(reader))
-    aside = leave or asks
-    if facts or free:
-        return Meaning("told", tuple(facts), topic, leave, aloud=bool(facts) and not aside, free=free)
-    text = spelled_out(seen.tree.text).strip()
-    if talk.correctable not in ("", NAME) and seen.yesno.no and (put_right := _put_right(seen, text, talk, pending)):
-        return put_right
-    if identity := _identity(seen, known):
-        return identity
-    if aside:
-        before = _before_question(text) if asks and topic else ""
-        side = answer(before, topic, seen) if before else []
-        if asks and not side and "ask_own" in acts and _of_user(seen):
-            return Meaning("asked", (Fact("", ()),))
-        return Meaning("told" if side else "nothing", tuple(side), topic, leave, aloud=False)
-    if (relative := reader.without_name()) and not known.get(relative):
-        return Meaning("mentioned", topic=relative)
-    if talk.correctable and (put_right := _put_right(seen, text, talk, pending)):
-        return put_right
-    if pending is None or not is_topic(topic):
-        return Meaning("nothing")
-    return _of_answer(seen, text, topic, acts, fresh=pending.fresh)
+    return _Hearing(seen, talk, known, now, within, tuple(told)).meaning()
 
 
-def _put_right(seen: nlp.Analysis, text: str, talk: Talk, pending: object) -> Meaning | None:
-    """Return the correction of the fact that the user told last."""
-    facts = correction(text, talk.correctable, talk.latest, seen, explicit=pending is not None)
-    return Meaning("corrected", tuple(facts), talk.correctable) if facts else None
+class _Hearing:
+    def __init__(
+        self, seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: tuple[Told, ...]
+    ) -> None:
+        self.seen, self.talk, self.known, self.told = seen, talk, known, told
+        self.pending = talk.pending(now, within)
+        self.fresh = self.pending is not None and self.pending.fresh
+        self.topic = self.pending.topic if self.pending else ""
+        self.waits = is_topic(self.topic)
+        self.reader = Reader(seen, talk.doubt if self.topic == CONFIRM else self.topic if self.waits else "")
+        self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
+        self.text = spelled_out(seen.tree.text)
+        self.leave = "farewell" in seen.acts
 
-
-def _of_answer(seen: nlp.Analysis, text: str, topic: str, acts: set[str], *, fresh: bool) -> Meaning:
-    """Return the meaning of words that may answer the open question."""
-    if fresh and "nothing" in acts:
-        return Meaning("none" if topic != NAME else "declined", topic=topic)
-    answered = answer(text, topic, seen) or (
-        correction(text, topic, (), seen) if seen.yesno.no else []
-    )  # no, from Bremen
-    if answered and may_stand_alone(seen) and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts):
-        return Meaning("told", tuple(answered), topic)
-    if not fresh:
-        return Meaning("nothing")
-    return Meaning(_of_yesno(seen.yesno, topic, text), topic=topic)
-
-
-def _acts(seen: nlp.Analysis) -> set[str]:
-    """Return the acts of the sentences, by the classes of `acts.yaml`."""
-    return {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
-
-
-# --------------------------------------------------------------------------------------------- forgetting
-
-
-def _forgetting(
-    seen: nlp.Analysis, reader: Reader, known: Mapping[str, tuple[str, ...]], told: Iterable[Told]
-) -> Meaning | None:
-    """Return the wish to forget; None if the utterance has none."""
-    table = relations()
-    for said in seen.statements:
-        if said.verb not in table.words["forgetting"] or not _is_wish(seen, said):
-            continue
-        object = said.object
-        if (
-            object.person == "I"
-            or (object.head or object.text.lower()) in table.words["everything"]
-            or object.text.lower().endswith(" data")
-        ):
-            about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", seen.text, re.IGNORECASE)
-            return Meaning("forget") if about_me else None
-        value = object.text
-        facts = [Fact(topic, (value,), gone=True) for topic, values in known.items() if value and among(value, values)]
-        facts = facts or [Fact(topic, (), gone=True) for topic in filter(None, [reader.noun(object)])]
-        facts = facts or [
-            Fact(fact.topic, fact.values, gone=True) for fact in reader.facts() or filter(None, [reader.asks()])
-        ]
-        names = {value or "-", *(name for fact in facts for name in fact.values or known.get(fact.topic, ()))}
-        said_again = {one.key for one in told_in(reader)}
-        free = tuple(one for one in told if {one.subject, one.object} & names or one.key in said_again)
+    def meaning(self) -> Meaning:
+        seen, topic, asks = self.seen, self.topic, self.seen.question is not None
+        wish = self.wish_to_forget()
+        if wish is not None and (wish.kind == "forget" or topic != FORGET):
+            return wish
+        if topic == FORGET:
+            yesno = seen.yesno if self.fresh else None  # a yes to something else must not delete anything
+            no = yesno and (yesno.no or yesno.unsure)
+            return Meaning("forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing", leave=self.leave)
+        if self.waits and self.pending and not self.pending.turns and "refuse" in self.acts:
+            return Meaning("declined", topic=topic)
+        if topic == CONFIRM and (vouched := self.vouched()):
+            return vouched
+        if (asks or "ask_everything" in self.acts) and (inquiry := self.inquiry()):
+            return inquiry
+        facts = self.reader.facts(self.known)
+        told = {fact.topic for fact in facts if not fact.gone}
+        facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
+        free = tuple(told_in(self.reader))
+        aside = self.leave or asks
         if facts or free:
-            return Meaning("strike", tuple(facts), free=free)
-        if object.of("I") or any(other.subject.person == "I" for other in seen.statements):
-            return Meaning("strike")
-    match = seen.act("forget_me")
-    verbs = {said.verb for said in seen.statements}
-    return Meaning("forget") if match and match.score > 0.7 and not verbs & table.words["forgetting"] else None
+            return Meaning("told", tuple(facts), topic, self.leave, aloud=bool(facts) and not aside, free=free)
+        if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
+            return corrected
+        if identity := self.identity():
+            return identity
+        if aside:
+            before = _before_question(self.text) if asks and self.waits else ""
+            side = answer(before, topic, seen) if before else []
+            mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
+            if asks and not side and "ask_own" in self.acts and any(mine):
+                return Meaning("asked", (Fact(""),))
+            return Meaning("told" if side else "nothing", tuple(side), topic, self.leave, aloud=False)
+        if (relative := self.reader.without_name()) and not self.known.get(relative):
+            return Meaning("mentioned", topic=relative)
+        return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
 
+    def corrected(self) -> Meaning | None:
+        """Return the correction of the fact that the user told last."""
+        topic, explicit = self.talk.correctable, self.pending is not None
+        facts = correction(self.text, topic, self.talk.latest, self.seen, explicit=explicit) if topic else ()
+        return Meaning("corrected", tuple(facts), topic) if facts else None
 
-def _is_wish(seen: nlp.Analysis, said: nlp.Statement) -> bool:
-    """Return whether the user asks the agent to do this: *forget me*, *can you forget me*, *I want you to forget me*."""
-    if said.negated or said.hearsay or said.conditional or said.subject.person != "you":
-        return False
-    words = [word.low for word in seen.tree.words]
-    return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
+    def answered(self) -> Meaning | None:
+        """Return the meaning of words that may answer the open question."""
+        seen, topic, yesno = self.seen, self.topic, self.seen.yesno
+        if self.fresh and "nothing" in self.acts:
+            return Meaning("none" if topic != NAME else "declined", topic=topic)
+        facts = answer(self.text, topic, seen) or (
+            yesno.no and correction(self.text, topic, (), seen)
+        )  # no, from Bremen
+        if facts and may_stand_alone(seen) and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts):
+            return Meaning("told", tuple(facts), topic)
+        if not self.fresh or not yesno:
+            return None
+        if yesno.unsure or yesno.no:
+            declined = topic in (NAME, "home", "origin")
+            return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
+        mere = len(self.text.split()) <= 4 and "acknowledgement" not in seen.acts
+        return Meaning("which", topic=topic) if mere else None
 
+    def vouched(self) -> Meaning | None:
+        """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
+        seen, topic = self.seen, self.talk.doubt
+        told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
+        if not told and seen.question is None and may_stand_alone(seen):
+            told = answer(self.text, topic, seen)
+        refused = seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & self.acts
+        return Meaning("vouched", tuple(told[:1])) if told or refused else None
 
-def _of_forgetting(seen: nlp.Analysis, leave: bool) -> Meaning:
-    if seen.yesno.yes:
-        return Meaning("forget_yes", leave=leave)
-    if seen.yesno.no or seen.yesno.unsure:
-        return Meaning("forget_no", leave=leave)
-    return Meaning("nothing", leave=leave)
+    def identity(self) -> Meaning | None:
+        """Return that the user says who they are, or who they are not."""
+        if "deny_identity" in self.seen.acts and self.known.get(NAME):
+            return Meaning("mistaken")
+        other = any(
+            said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
+            for said in self.seen.statements
+        )  # my name is..., who am I talking to
+        if other or "identify" not in self.seen.acts:
+            return None
+        name = Reader(self.seen).remaining_name()
+        return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
 
+    def inquiry(self) -> Meaning | None:
+        """Return a question about the user, or about what they told."""
+        if "ask_everything" in self.acts:
+            return Meaning("asked", (Fact(EVERYTHING),))
+        if asked := self.reader.asks():
+            return Meaning("asked", (asked,))
+        wished = any(said.plan for said in self.seen.statements)  # do you want to know my name
+        for said in () if wished else self.seen.statements:
+            if said.question and said.verb in ("be", *WORDS["knowing"]):
+                named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]
+                people = [topic for topic in self.known if TOPICS[topic].kind == "people"]  # who is Emma
+                people = [topic for topic in people if any(among(name, self.known[topic]) for name in named)]
+                if topic := self.reader.noun(said.object) or next(iter(people), ""):
+                    return Meaning("asked", (Fact(topic),))
+        if "ask_name" in self.acts and not wished:
+            return Meaning("asked", (Fact(NAME),))
+        found = answers_in(self.reader, self.told, self.known)
+        return Meaning("asked_told", free=tuple(found)) if found else None
 
-# ----------------------------------------------------------------------------------------------- identity
+    def wish_to_forget(self) -> Meaning | None:
+        """Return the wish to forget; None if the utterance has none."""
+        wishes = [said for said in self.seen.statements if said.verb in WORDS["forgetting"]]
+        for said in filter(self.is_wish, wishes):
+            object, low = said.object, said.object.text.lower()
+            if object.person == "I" or (object.head or low) in WORDS["everything"] or low.endswith(" data"):
+                about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", self.seen.text, re.IGNORECASE)
+                return Meaning("forget") if about_me else None
+            facts = [Fact(topic, (object.text,)) for topic in self.known if low and among(low, self.known[topic])]
+            facts = facts or [Fact(topic) for topic in [self.reader.noun(object)] if topic]
+            facts = facts or self.reader.facts() or [fact for fact in [self.reader.asks()] if fact]
+            names = {object.text or "-", *(name for f in facts for name in f.values or self.known.get(f.topic, ()))}
+            again = {one.key for one in told_in(self.reader)}
+            free = tuple(one for one in self.told if {one.subject, one.object} & names or one.key in again)
+            if facts or free or object.of("I") or any(one.subject.person == "I" for one in self.seen.statements):
+                return Meaning("strike", tuple(facts), free=free)
+        match = self.seen.act("forget_me")
+        return Meaning("forget") if match and match.score > 0.7 and not wishes else None
 
+    def is_wish(self, said: nlp.Statement) -> bool:
+        """Return whether the user asks the agent to do this: *forget me*, *can you forget me*, *I want you to forget me*."""
+        if said.negated or said.hearsay or said.conditional or said.subject.person != "you":
+            return False
+        words = [word.low for word in self.seen.tree.words]
+        return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
-def _vouched(seen: nlp.Analysis, reader: Reader, topic: str, acts: set[str]) -> Meaning | None:
-    """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
-    told = [fact for fact in reader.facts() if fact.topic == topic and not fact.gone]
-    told = told or (
-        answer(spelled_out(seen.tree.text), topic, seen) if seen.question is None and may_stand_alone(seen) else []
-    )
-    if told or seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & acts:
-        return Meaning("vouched", tuple(told[:1]))
-    return None
-
-
-def _identity(seen: nlp.Analysis, known: Mapping[str, tuple[str, ...]]) -> Meaning | None:
-    """Return that the user says who they are, or who they are not."""
-    if "deny_identity" in seen.acts and known.get(NAME):
-        return Meaning("mistaken")
-    match = seen.act("identify")
-    other = any(
-        said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
-        for said in seen.statements
-    )  # my name is..., who am I talking to
-    if match is None or other:
-        return None
-    name = Reader(seen).remaining_name()
-    return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
-
-
-# ---------------------------------------------------------------------------------------------- questions
-
-
-def _inquiry(
-    seen: nlp.Analysis, reader: Reader, acts: set[str], known: Mapping[str, tuple[str, ...]], told: Iterable[Told]
-) -> Meaning | None:
-    """Return a question about the user, or about what they told."""
-    if "ask_everything" in acts:
-        return Meaning("asked", (Fact(EVERYTHING, ()),))
-    if asked := reader.asks():
-        return Meaning("asked", (asked,))
-    wished = any(said.plan for said in seen.statements)  # do you want to know my name
-    for said in seen.statements:
-        about = said.question and not wished and said.verb in ("be", *relations().words["knowing"])
-        if about and (topic := reader.noun(said.object) or _topic_of(said, known)):
-            return Meaning("asked", (Fact(topic, ()),))
-    if "ask_name" in acts and not wished:
-        return Meaning("asked", (Fact(NAME, ()),))
-    found = answers_in(reader, told, known)
-    return Meaning("asked_told", free=tuple(found)) if found else None
-
-
-def _topic_of(said: nlp.Statement, known: Mapping[str, tuple[str, ...]]) -> str:
-    """Return the topic of a person whom a question names: *who is Emma*."""
-    named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]
-    people = ((topic, value) for topic, values in known.items() if TOPICS[topic].nouns for value in values)
-    return next((topic for topic, value in people if among(value, named)), "")
-
-
-def _of_user(seen: nlp.Analysis) -> bool:
-    """Return whether a question is about the user or their own."""
-    return any(said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
-
-
-def _of_yesno(yesno: nlp.YesNo, topic: str, text: str) -> Kind:
-    if yesno.unsure:
-        return "unsure"
-    if yesno.no:
-        return "declined" if topic in (NAME, "home", "origin") else "none"
-    if (
-        yesno.yes
-        and len(text.split()) <= 4
-        and not re.match(r"\W*(?:fine|good|great|ok|okay|right)\b", text, re.IGNORECASE)
-    ):
-        return "which"
-    return "nothing"
-
-
-def _matters(fact: Fact, known: Mapping[str, tuple[str, ...]], topic: str) -> bool:
-    """Return whether a denial matters: it denies a known fact, or says that there are none."""
-    if fact.topic == NAME:
-        return any(value in known.get(NAME, ()) for value in fact.values)
-    if fact.values:
-        return any(among(value, known.get(fact.topic, ())) for value in fact.values)
-    return fact.topic == topic or TOPICS[fact.topic].kind != "place" or bool(known.get(fact.topic))
+    def matters(self, fact: Fact) -> bool:
+        """Return whether a denial matters: it denies a known fact, or says that there are none."""
+        if fact.values or fact.topic == NAME:
+            return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
+        return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
 
 
 def _before_question(text: str) -> str:
     """Return the words before a question in the same breath: *hannover* in *hannover, and you?*."""
-    parts = _TURNED.split(text.rstrip(" ?"), maxsplit=1)
-    return parts[0].strip() if len(parts) > 1 else ""
+    before, turned, _ = _TURNED.sub("\0", text.rstrip(" ?"), count=1).partition("\0")
+    return before.strip() if turned else ""
 
 
 _TURNED = re.compile(

@@ -1,14 +1,20 @@
-"""The spelling of values, and their wording in sentences."""
+"""The spelling of values, their wording in sentences, and the replies as intents for the verbaliser."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import random
+import re
+from collections.abc import Iterable, Mapping, Sequence
 
-from .relations import relations
-from .topics import TOPICS, Topic
+from ravestate.modules.meta.verbaliser.intents import Intent
 
-BARE = frozenset(["retired", "self-employed", "freelance", "unemployed"])
-"""Occupations without an article."""
+from .topics import NAME, TOPICS, WORDS, Topic, in_order
+
+PACKAGE = __name__.rpartition(".")[0]
+"""The package with the phrases."""
+
+Facts = Mapping[str, tuple[str, ...]]
+"""Values by topic; an empty tuple means that there are none."""
 
 
 def tidy(text: str, topic: Topic) -> str:
@@ -18,39 +24,30 @@ def tidy(text: str, topic: Topic) -> str:
         >>> tidy("new york", TOPICS["home"]), tidy("Nurse", TOPICS["occupation"]), tidy("ibm", TOPICS["employer"])
         ('New York', 'nurse', 'IBM')
     """
-    words = text.split()
-    match topic.kind:
-        case "name" | "people" | "place":
-            shouted = text.isupper() and len(text) > (3 if topic.kind == "place" else 2)  # but USA, and JP
-            if text != text.lower() and not shouted:
-                return text
-            if words[0].lower() in ("a", "an") and len(words) > 1:
-                return text  # a small town
-            return " ".join(
-                _capital(word.lower(), first=not index and word != "the") for index, word in enumerate(words)
-            )
-        case "organisation":
-            if text != text.lower() or words[0] in ("a", "an", "the", "my", "our"):
-                return text
-            if len(text) <= 3:
-                return text.upper()
-            return " ".join(_capital(word, first=not index) for index, word in enumerate(words))
-        case "work":
-            return " ".join(word.lower() if word[1:].islower() else word for word in words)
-        case _:
-            return text
+    if topic.kind == "work":
+        return " ".join(word.lower() if word[1:].islower() else word for word in text.split())
+    group = topic.kind == "organisation"
+    shouted = text.isupper() and not group and len(text) > (3 if topic.kind == "place" else 2)  # but USA, and JP
+    begins = re.match(r"(?:an?|the|my|our)\b" if group else r"an? \w", text, re.IGNORECASE)
+    named = group or topic.kind in ("name", "people", "place")
+    if begins or not named or (text != text.lower() and not shouted):
+        return text
+    return text.upper() if group and len(text) <= 3 else _capitals(text.lower())
 
 
-def _capital(word: str, *, first: bool) -> str:
-    if word in relations().words["small"] and not first:
-        return word
-    # str.title would write "O'Brien'S", and str.capitalize "Mckay"
-    parts = word.split("-")
-    word = "-".join(
-        part if index and part in relations().words["small"] else part[:1].upper() + part[1:]
-        for index, part in enumerate(parts)
-    )
-    return "O'" + word[2:3].upper() + word[3:] if word.startswith("O'") else word
+def _capitals(text: str) -> str:
+    """Return names with capitals. `str.title` would write *O'Brien'S*, and *Frankfurt Am Main*."""
+
+    def cased(found: re.Match[str]) -> str:
+        word = found[0]
+        inner = word in WORDS["small"] and (found.start() or word == "the")
+        return word if inner else word[:1].upper() + word[1:]
+
+    return re.sub(r"\bO'\w", lambda found: found[0].upper(), re.sub(r"[^\s-]+", cased, text))
+
+
+def _key(value: str) -> str:
+    return re.sub(r"^(?:the|an?) (?=.)", "", " ".join(value.casefold().split()))
 
 
 def same(one: str, other: str) -> bool:
@@ -68,15 +65,16 @@ def among(value: str, others: Iterable[str]) -> bool:
     return any(same(value, other) for other in others)
 
 
+def without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
+    """Return the values that are not among `others`."""
+    others = tuple(others)
+    return tuple(value for value in values if not among(value, others))
+
+
 def alike(value: str, others: Iterable[str]) -> bool:
     """Return whether one of `others` means the same, or names a part of it: *Bremen* of *the city of Bremen*."""
     words = set(_key(value).split())
     return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
-
-
-def _key(value: str) -> str:
-    words = value.casefold().split()
-    return " ".join(words[1:] if len(words) > 1 and words[0] in ("the", "a", "an") else words)
 
 
 def joined(values: Sequence[str]) -> str:
@@ -96,15 +94,13 @@ def spoken(topic: str, values: Sequence[str]) -> str:
         >>> spoken("occupation", ["engineer"])
         'an engineer'
     """
-    if TOPICS[topic].kind != "work":
-        return joined(values)
-    return joined([value if value in BARE else f"{_article(value)} {value}" for value in values])
+    return joined([_with_article(value) if TOPICS[topic].kind == "work" else value for value in values])
 
 
-def _article(noun: str) -> str:
-    low = noun.lower()
-    like_you = low.startswith(("uni", "use", "euro")) and not low.startswith("unin")
-    return "an" if low[:1] in "aeiou" and not like_you else "a"
+def _with_article(noun: str) -> str:
+    if noun in WORDS["bare"]:
+        return noun
+    return f"{'an' if re.match(r'(?!uni(?!n)|use|euro)[aeiou]', noun, re.IGNORECASE) else 'a'} {noun}"
 
 
 def clause(topic: str, values: Sequence[str]) -> str:
@@ -116,6 +112,48 @@ def clause(topic: str, values: Sequence[str]) -> str:
     """
     about = TOPICS[topic]
     if about.kind == "people" and about.role and len(values) > 1:
-        plural = "children" if topic == "child" else f"{topic}s"
-        return f"your {plural} are {joined(values)}"
+        return f"your {'children' if topic == 'child' else f'{topic}s'} are {joined(values)}"
     return about.clause.format(spoken(topic, values))
+
+
+def clauses(known: Facts) -> str:
+    """Return all that is known, one clause per topic."""
+    return joined([clause(topic, known[topic]) for topic in in_order(known) if known[topic]])
+
+
+# ------------------------------------------------------------------------------------ replies
+
+
+def say(intent: str, known: Facts, **parameters: str | None) -> Intent:
+    """Return an intent whose phrases may use all known facts, and `parameters`."""
+    mentioned = {topic: spoken(topic, values) for topic, values in known.items() if values}
+    return Intent(intent, {**mentioned, **parameters}, PACKAGE)
+
+
+def asking(topic: str, known: Facts) -> Intent:
+    """Return the question about a topic."""
+    return say(f"ask_{topic}", known)
+
+
+def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
+    """Return a reply that shows which `values` were understood."""
+    if not TOPICS[topic].asked:
+        return stating("learned", topic, values, known)
+    return say(f"learned_{topic}", known, **{topic: spoken(topic, values)})
+
+
+def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> Intent:
+    """Return a reply that states one topic as a clause: ``{fact}``."""
+    return say(intent, known, fact=clause(topic, values))
+
+
+def memorable(remembered: Facts, chance: random.Random) -> str:
+    """Return one of the remembered topics."""
+    return chance.choice([topic for topic, values in remembered.items() if values])
+
+
+def following(topic: str, known: Facts) -> Intent:
+    """Return a personal question between two questions about facts: about the last topic, if there is one for it."""
+    about = TOPICS.get(topic)
+    fit = about is not None and about.asked and not about.only_with and topic != NAME and known.get(topic)
+    return say(f"more_{topic}" if fit else "more", known)

@@ -43,19 +43,18 @@ def folders() -> list[Path]:
         own, home = folder(), Path.home()
     except RuntimeError:  # the user has no home
         return []
-    cache = _from("XDG_CACHE_HOME") or home / ".cache"
-    data = _from("XDG_DATA_HOME") or home / ".local" / "share"
-    applications = home / "Library" / "Application Support" if sys.platform == "darwin" else data
-    hub = _from("HF_HUB_CACHE") or (_from("HF_HOME") or cache / "huggingface") / "hub"
-    llama = home / "Library" / "Caches" / "llama.cpp" if sys.platform == "darwin" else cache / "llama.cpp"
+    cache = _from("XDG_CACHE_HOME", home / ".cache")
+    data, caches = _from("XDG_DATA_HOME", home / ".local" / "share"), cache
+    if sys.platform == "darwin":
+        data, caches = home / "Library" / "Application Support", home / "Library" / "Caches"
     return [
         own,
         home / ".lmstudio" / "models",
         home / ".cache" / "lm-studio" / "models",
-        hub,
-        _from("LLAMA_CACHE") or llama,
-        applications / "nomic.ai" / "GPT4All",
-        applications / "Jan" / "data",
+        _from("HF_HUB_CACHE", _from("HF_HOME", cache / "huggingface") / "hub"),
+        _from("LLAMA_CACHE", caches / "llama.cpp"),
+        data / "nomic.ai" / "GPT4All",
+        data / "Jan" / "data",
     ]
 
 
@@ -77,12 +76,7 @@ def find_models(places: Iterable[Path] | None = None) -> list[FoundModel]:
 
 
 def best_model(models: Iterable[FoundModel], memory: int | None = None) -> FoundModel | None:
-    """Return the largest model that talks fluently, otherwise the smallest; None if none fits into memory.
-
-    Args:
-        models: The models to choose from.
-        memory: Bytes; by default this machine's.
-    """
+    """Return the largest model that talks fluently, otherwise the smallest; None if none fits into `memory` (bytes)."""
     most = (memory or _memory()) * SHARE
     fitting = [model for model in models if model.size <= most]
     fluent = [model for model in fitting if model.parameters <= FLUENT]
@@ -112,6 +106,6 @@ def _memory() -> float:
         return float("inf")
 
 
-def _from(variable: str) -> Path | None:
-    given = os.environ.get(variable, "")
-    return Path(given) if Path(given).is_absolute() else None
+def _from(variable: str, usual: Path) -> Path:
+    given = Path(os.environ.get(variable, ""))
+    return given if given.is_absolute() else usual

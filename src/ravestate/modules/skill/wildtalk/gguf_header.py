@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import functools
 import math
+import mmap
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any
 
 LARGEST = 64 << 20
 """The maximum size of a header in bytes; the largest vocabularies take a quarter of it."""
 
 _STRING, _ARRAY = 8, 9
 _NUMBERS: dict[int, str] = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhIif?Qqd", strict=True))
-_POOLING, _CHAT_TEMPLATE = ".pooling_type", "tokenizer.chat_template"
-_KEPT = ("general.architecture", "general.type")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,67 +44,57 @@ def read_header(path: Path) -> GgufHeader:
 
 @functools.lru_cache(maxsize=256)
 def _read(path: Path, size: int, _: int) -> GgufHeader:
-    with path.open("rb", buffering=1 << 20) as file:
-        try:
-            return _Reader(file, size).header()
-        except (struct.error, KeyError) as error:
-            raise ValueError(f"{path} is not a complete GGUF file") from error
+    try:
+        with path.open("rb") as file, mmap.mmap(file.fileno(), min(size, LARGEST), access=mmap.ACCESS_READ) as data:
+            header, last = _Reader(data).header()
+    except (struct.error, KeyError, OverflowError, ValueError) as error:
+        raise ValueError(f"{path} is not a complete GGUF file") from error
+    if last >= size:
+        raise ValueError(f"{path} is cut short")
+    return header
 
 
 class _Reader:
-    def __init__(self, file: BinaryIO, size: int) -> None:
-        self._file = file
-        self._size = size
-        self._left = LARGEST
+    def __init__(self, data: mmap.mmap) -> None:
+        self._data = data
+        self._at = 0
 
-    def header(self) -> GgufHeader:
-        if self._bytes(4) != b"GGUF" or self._number("I") not in (2, 3):
-            raise ValueError("it is not a GGUF file of version 2 or 3")
-        tensors, keys = self._number("Q"), self._number("Q")
-        facts: dict[str, str] = {}
-        pools = chats = False
-        for _ in range(keys):
-            key, kind = self._text(), self._number("I")
-            if kind == _STRING and key in _KEPT:
-                facts[key] = self._text()
-                continue
-            chats = chats or key == _CHAT_TEMPLATE
-            pools = pools or key.endswith(_POOLING)
-            self._skip(kind)
+    def header(self) -> tuple[GgufHeader, int]:
+        """Return the header, and the place of the last tensor."""
+        magic, version, tensors, keys = self._numbers("4sIQQ")
+        if magic != b"GGUF" or version not in (2, 3) or not tensors:
+            raise ValueError
+        facts = {self._text(): self._value(*self._numbers("I")) for _ in range(keys)}
         parameters = last = 0
         for _ in range(tensors):
-            self._skip(_STRING)
-            parameters += math.prod(self._number("Q") for _ in range(self._number("I")))
-            self._number("I")
-            last = max(last, self._number("Q"))
-        if not tensors or last >= self._size:
-            raise ValueError("the file is cut short")
+            self._text()
+            parameters += math.prod(self._numbers("Q" * self._numbers("I")[0]))
+            last = max(last, self._numbers("IQ")[1])
+        chats = "tokenizer.chat_template" in facts and not any(key.endswith(".pooling_type") for key in facts)
         model = facts.get("general.type", "model") == "model"
-        return GgufHeader(facts.get("general.architecture", ""), parameters, model and chats and not pools)
+        return GgufHeader(facts.get("general.architecture", ""), parameters, model and chats), last
 
-    def _bytes(self, count: int) -> bytes:
-        self._left -= count
-        if self._left < 0:
-            raise ValueError("the header is too large")
-        return self._file.read(count)
-
-    def _number(self, kind: str) -> int:
-        return struct.unpack(f"<{kind}", self._bytes(struct.calcsize(f"<{kind}")))[0]
+    def _numbers(self, form: str) -> tuple[Any, ...]:
+        found = struct.unpack_from(f"<{form}", self._data, self._at)
+        self._at += struct.calcsize(f"<{form}")
+        return found
 
     def _text(self) -> str:
-        return self._bytes(self._number("Q")).decode("utf-8", "replace")
+        (length,) = self._numbers("Q")
+        self._at += length
+        return self._data[self._at - length : self._at].decode("utf-8", "replace")
 
-    def _skip(self, kind: int) -> None:
+    def _value(self, kind: int) -> Any:
+        """Return a value; skip an array."""
         if kind == _STRING:
-            self._bytes(self._number("Q"))
-        elif kind == _ARRAY:
-            each, count = self._number("I"), self._number("Q")
-            if each in _NUMBERS:
-                self._bytes(count * struct.calcsize(f"<{_NUMBERS[each]}"))
-            elif each == _STRING:
-                for _ in range(count):
-                    self._bytes(self._number("Q"))
-            else:
-                raise ValueError("the header has nested arrays")
-        else:
-            self._number(_NUMBERS[kind])
+            return self._text()
+        if kind != _ARRAY:
+            return self._numbers(_NUMBERS[kind])[0]
+        each, count = self._numbers("IQ")
+        if each != _STRING:
+            self._at += count * struct.calcsize(_NUMBERS[each])
+            return None
+        for _ in range(count):
+            (length,) = self._numbers("Q")
+            self._at += length
+        return None

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import difflib
 import importlib.util
 import os
 from collections.abc import AsyncGenerator, Sequence
+from contextlib import aclosing
 from pathlib import Path
+from typing import Any
 
-from ravestate.errors import PlatformError
+from pydantic import SecretStr
+
+from ravestate.errors import PlatformError, nearest
 from ravestate.language.bundled import LANGUAGE_MODEL, folders_of, requirement
 
 from . import llama_process
@@ -24,16 +27,7 @@ _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
 
 class LlamaBackend:
-    """A GGUF file, run by llama.cpp in a process that all contexts with the same file share.
-
-    Example:
-        ```python
-        backend = LlamaBackend("~/models/qwen2.5-1.5b-instruct-q4_k_m.gguf")
-        async for piece in backend.stream([Message("user", "Hello!")]):
-            print(piece, end="", flush=True)
-        await backend.close()
-        ```
-    """
+    """A GGUF file, run by llama.cpp in a process that all contexts with the same file share."""
 
     def __init__(
         self,
@@ -55,7 +49,8 @@ class LlamaBackend:
             read_timeout: Seconds without a word after which the model counts as stuck.
         """
         self._model_path = model_path
-        self._options = (context_tokens, parallel, threads or max(1, _cores() // 2))
+        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        self._options = (context_tokens, parallel, threads or max(1, cores // 2))
         self._read_timeout = read_timeout
         self._process: LlamaProcess | None = None
         self._client: OpenAIBackend | None = None
@@ -80,7 +75,13 @@ class LlamaBackend:
             self._process = llama_process.take(ModelKey(path, *self._options))
             try:
                 address = await asyncio.to_thread(self._process.start, report)
-                self._client = self._make_client(address, self._process.secret)
+                self._client = OpenAIBackend(
+                    f"{address}/v1",
+                    "",
+                    api_key=SecretStr(self._process.secret),
+                    read_timeout=self._read_timeout,
+                    extra={"repeat_penalty": 1.1, "cache_prompt": True},
+                )
                 await self._client.load()
             except BaseException:
                 await asyncio.shield(self._close())
@@ -91,23 +92,15 @@ class LlamaBackend:
         async with self._loading:
             await self._close()
 
-    async def stream(
-        self,
-        messages: Sequence[Message],
-        *,
-        max_tokens: int = 96,
-        temperature: float = 0.7,
-        seed: int | None = None,
-        stop: Sequence[str] = (),
-    ) -> AsyncGenerator[str, None]:
+    async def stream(self, messages: Sequence[Message], **options: Any) -> AsyncGenerator[str, None]:
         """See `Backend.stream`. The chat template is the model's own."""
         await self.load()
         client, process = self._client, self._process
         assert client is not None and process is not None
-        pieces = client.stream(messages, max_tokens=max_tokens, temperature=temperature, seed=seed, stop=stop)
         try:
-            async for piece in pieces:
-                yield piece
+            async with aclosing(client.stream(messages, **options)) as pieces:
+                async for piece in pieces:
+                    yield piece
         except PlatformError as error:
             if self._process is not process:
                 return  # the backend was closed in the middle of an answer
@@ -118,10 +111,6 @@ class LlamaBackend:
                     f"wildtalk: the language model's process ended ({obituary}). It starts again for the next answer"
                 ) from error
             raise
-        finally:
-            await pieces.aclose()
-
-    # ------------------------------------------------------------------------------- internals
 
     async def _close(self) -> None:
         process, self._process = self._process, None
@@ -130,17 +119,6 @@ class LlamaBackend:
             await client.close()
         if process is not None:
             await asyncio.to_thread(llama_process.drop, process)
-
-    def _make_client(self, address: str, key: str) -> OpenAIBackend:
-        from pydantic import SecretStr
-
-        return OpenAIBackend(
-            f"{address}/v1",
-            "",
-            api_key=SecretStr(key),
-            read_timeout=self._read_timeout,
-            extra={"repeat_penalty": 1.1, "cache_prompt": True},
-        )
 
 
 def bundled_model() -> Path:
@@ -156,10 +134,7 @@ def bundled_model() -> Path:
 
 
 def checked_model(path: Path | str) -> Path:
-    """Return the absolute path of the model to load, after a check of the file.
-
-    Args:
-        path: The user's file, ``~`` allowed.
+    """Return the absolute path of the user's model file, ``~`` allowed.
 
     Raises:
         PlatformError: xllamacpp or the file is missing, or it is not a GGUF file.
@@ -172,14 +147,15 @@ def checked_model(path: Path | str) -> Path:
     file = Path(path).expanduser().absolute()
     named = f"wildtalk: the model {str(path)!r}"
     try:
-        if file.is_dir():
-            inside = [entry.name for entry in sorted(file.glob("*.gguf"))[:3]]
-            hint = f"name the file in it: {' or '.join(inside)}" if inside else "no GGUF file is in it"
-            raise PlatformError(f"{named} is a folder: {hint}")
-        if not file.exists():
-            raise PlatformError(f"{named} does not exist{_near(file)}: {_OWN_MODEL}")
         with file.open("rb") as opened:
             magic = opened.read(4)
+    except IsADirectoryError:
+        inside = [entry.name for entry in sorted(file.glob("*.gguf"))[:3]]
+        hint = f"name the file in it: {' or '.join(inside)}" if inside else "no GGUF file is in it"
+        raise PlatformError(f"{named} is a folder: {hint}") from None
+    except FileNotFoundError:
+        near = nearest(str(file), map(str, file.parent.glob("*.gguf")))
+        raise PlatformError(f"{named} does not exist{near}: {_OWN_MODEL}") from None
     except OSError as error:
         raise PlatformError(f"{named} cannot be read: {error.strerror or error}") from error
     if magic != b"GGUF":
@@ -189,15 +165,3 @@ def checked_model(path: Path | str) -> Path:
             f"repository whose name ends in -GGUF) and write {_OWN_MODEL}"
         )
     return file
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _near(file: Path) -> str:
-    if not file.parent.is_dir():
-        return f" (nor does the folder {str(file.parent)!r})"
-    names = [entry.name for entry in file.parent.iterdir() if entry.is_file()]
-    near = difflib.get_close_matches(file.name, names, n=1)
-    return f"; did you mean {str(file.parent / near[0])!r}?" if near else ""

@@ -1,9 +1,7 @@
 """The process of a model: llama.cpp's server on the loopback interface.
 
-`llama_process` runs it as a separate file, so it imports nothing from Ravestate. It reads its configuration as one
-line of JSON from standard input, and writes lines of JSON: ``{"progress": 0.5}``,
-``{"ready": "http://127.0.0.1:40123"}`` or ``{"error": "..."}``. It ends when standard input ends, and so with its
-parent.
+`llama_process` runs this file by itself, so it imports nothing from Ravestate. It reads its configuration as one line of
+JSON, and writes the server's address as one line. It ends when standard input ends, and so with its parent.
 """
 
 from __future__ import annotations
@@ -14,58 +12,35 @@ import os
 import signal
 import sys
 import time
+import traceback
 from typing import Any
-
-_STEP = 4 << 20  # bytes
 
 
 def _main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes this process in order
     config: dict[str, Any] = json.loads(sys.stdin.readline())
-    out = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # llama.cpp's own prints are not messages to the parent
-
-    def say(**message: object) -> None:
-        out.write(json.dumps(message) + "\n")
-        out.flush()
-
+    out = os.dup(1)
+    os.dup2(2, 1)  # llama.cpp's own prints are no address
     try:
-        server = _load(config, say)
+        server = _load(config)
     except BaseException as error:
-        if isinstance(error, RuntimeError):
-            _await_reason()
-        say(error=f"{type(error).__name__}: {error}")
+        for _ in range(100 if isinstance(error, RuntimeError) else 0):  # llama.cpp's logging thread would be cut off
+            before = os.fstat(2).st_size
+            time.sleep(0.02)
+            if before and os.fstat(2).st_size == before:
+                break
+        traceback.print_exc()
         os._exit(1)
-    say(ready=server.listening_address)
+    os.write(out, f"{server.listening_address}\n".encode())
     while os.read(0, 4096):  # the only thing that arrives is the end
         pass
     os._exit(0)
 
 
-def _await_reason() -> None:
-    """Give llama.cpp time to log the reason: its logging thread would be cut off."""
-    for _ in range(100):
-        before = os.fstat(2).st_size
-        time.sleep(0.02)
-        if before and os.fstat(2).st_size == before:
-            return
-
-
-def _load(config: dict[str, Any], say: Any) -> Any:
-    path: str = config["path"]
-    # The slow part of loading is the disk. Reading the file first shows the progress; llama.cpp then maps what is
-    # in memory already.
-    size, done, shown = os.path.getsize(path), 0, 0.0
-    with open(path, "rb", buffering=0) as file:
-        while block := file.read(_STEP):
-            done += len(block)
-            if done / size - shown >= 0.02:
-                shown = done / size
-                say(progress=0.95 * min(shown, 1.0))
-
+def _load(config: dict[str, Any]) -> Any:
     llama: Any = importlib.import_module("xllamacpp")  # it has no types
     parameters = llama.CommonParams()
-    parameters.model.path = path
+    parameters.model.path = config["path"]
     parameters.n_ctx = config["context_tokens"]
     parameters.n_parallel = config["parallel"]
     parameters.kv_unified = True

@@ -9,15 +9,16 @@ from __future__ import annotations
 import atexit
 import contextlib
 import json
+import os
 import secrets
 import subprocess
 import sys
 import tempfile
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from ravestate.errors import PlatformError
 
@@ -57,8 +58,8 @@ class LlamaProcess:
         with self._starting:  # a second caller waits for the first
             if not self.alive:
                 self._end()
-                self._spawn()
-                self._wait(progress)
+                self._warm(progress or (lambda _: None))
+                self._address = self._wait(self._spawn())
             if progress is not None:
                 progress(1.0)
             return self._address
@@ -78,12 +79,11 @@ class LlamaProcess:
 
         The call waits up to `grace` seconds for a process that is about to end.
         """
-        process = self._process
-        if process is None:
+        if (process := self._process) is None:
             return ""
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(grace)
-        if (code := process.poll()) is None:
+        try:
+            code = process.wait(grace)
+        except subprocess.TimeoutExpired:
             return ""
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         if code == -9:
@@ -101,9 +101,18 @@ class LlamaProcess:
 
     # ------------------------------------------------------------------------------- internals
 
-    def _spawn(self) -> None:
-        if self._closed:
-            raise PlatformError("wildtalk: the model was closed while it was loading")
+    def _warm(self, progress: Callable[[float], None]) -> None:
+        """Read the file, which is the slow part of loading. Llama.cpp then maps what is in memory already."""
+        with contextlib.suppress(OSError), self.key.path.open("rb", buffering=0) as file:
+            size, done, shown = os.fstat(file.fileno()).st_size, 0, 0.0
+            while not self._closed and (block := file.read(4 << 20)):
+                done += len(block)
+                if done / size - shown >= 0.02:
+                    shown = done / size
+                    progress(0.95 * min(shown, 1.0))
+
+    def _spawn(self) -> subprocess.Popen[str]:
+        self._refuse_closed()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
         try:
             # -P: the files beside the child must not be imported in place of packages with their names.
@@ -117,38 +126,27 @@ class LlamaProcess:
             )
         except (OSError, ValueError) as error:
             raise PlatformError(f"wildtalk: cannot start Python for the model ({sys.executable!r}): {error}") from error
-        config = {
-            "path": str(self.key.path),
-            "context_tokens": self.key.context_tokens,
-            "parallel": self.key.parallel,
-            "threads": self.key.threads,
-            "key": self.secret,
-        }
-        assert self._process.stdin is not None
-        with contextlib.suppress(OSError):  # it died at once; its exit explains why
-            self._process.stdin.write(json.dumps(config) + "\n")
-            self._process.stdin.flush()
+        return self._process
 
-    def _wait(self, progress: Callable[[float], None] | None) -> None:
-        process = self._process
-        assert process is not None and process.stdout is not None
-        error = ""
-        for line in process.stdout:
-            message: dict[str, Any] = json.loads(line)
-            if "ready" in message:
-                self._address = message["ready"]
-                return
-            if "progress" in message and progress is not None:
-                progress(message["progress"])
-            error = message.get("error", "")
+    def _wait(self, process: subprocess.Popen[str]) -> str:
+        assert process.stdin is not None and process.stdout is not None
+        with contextlib.suppress(OSError):  # it died at once; its exit explains why
+            config = {**asdict(self.key), "path": str(self.key.path), "key": self.secret}
+            process.stdin.write(json.dumps(config) + "\n")
+            process.stdin.flush()
+        if address := process.stdout.readline().strip():
+            return address
         process.wait()
-        if self._closed:
-            raise PlatformError("wildtalk: the model was closed while it was loading")
-        reason = (self._reason() or error or self.obituary()).rstrip(".")
+        self._refuse_closed()
+        reason = (self._reason() or self.obituary()).rstrip(".")
         self._end()
         raise PlatformError(
             f"wildtalk: cannot load the model {str(self.key.path)!r}: {reason}. {_remedy(reason, self.key)}"
         )
+
+    def _refuse_closed(self) -> None:
+        if self._closed:
+            raise PlatformError("wildtalk: the model was closed while it was loading")
 
     def _reason(self) -> str:
         """Return llama.cpp's reason: its first line is the most exact one."""
@@ -166,11 +164,8 @@ class LlamaProcess:
         process, self._process = self._process, None
         if process is not None:
             process.kill()
-            process.wait()
-            for pipe in (process.stdin, process.stdout):
-                if pipe is not None:
-                    with contextlib.suppress(OSError):
-                        pipe.close()
+            with contextlib.suppress(OSError):
+                process.communicate()
         if self._errors is not None:
             self._errors.close()
             self._errors = None
@@ -197,9 +192,7 @@ _sharing = threading.Lock()
 def take(key: ModelKey) -> LlamaProcess:
     """Return the process for `key`, started or not, with one more user. Pair it with `drop`."""
     with _sharing:
-        process = _processes.get(key)
-        if process is None:
-            process = _processes[key] = LlamaProcess(key)
+        process = _processes.setdefault(key, LlamaProcess(key))
         process.users += 1
         return process
 
@@ -216,8 +209,5 @@ def drop(process: LlamaProcess) -> None:
 
 @atexit.register
 def _close_all() -> None:
-    with _sharing:
-        left = list(_processes.values())
-        _processes.clear()
-    for process in left:
+    for process in list(_processes.values()):
         process.close()

@@ -59,11 +59,7 @@ def catalogue() -> dict[str, CatalogueModel]:
 
 
 def named(name: str) -> CatalogueModel:
-    """Return the catalogue's model with this name.
-
-    Raises:
-        UsageError: There is no such model.
-    """
+    """Return the catalogue's model with this name; raise `UsageError` if there is none."""
     if (model := catalogue().get(name.lower())) is None:
         known = ", ".join(catalogue())
         raise UsageError(f"there is no model {name!r}{nearest(name, catalogue())}; there are: {known}")

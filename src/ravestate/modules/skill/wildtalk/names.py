@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, SecretStr
 
 import ravestate as rs
-from ravestate.modules import idle, interloc, nlp, rawio
+from ravestate.modules import interloc, nlp, rawio
 
 from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
@@ -71,15 +71,13 @@ class Settings(rs.Settings):
     """The longest answer, in sentences."""
     temperature: Annotated[float, Field(ge=0, le=2)] = 0.5
     """The randomness: 0 always takes the likeliest word, 1 is the model's own distribution."""
-    come_back_after: Annotated[float, Field(ge=0)] = 600.0
-    """Seconds after which the agent asks, in a silence, about unfinished matters (*How is your mother?*)."""
     history_turns: Annotated[int, Field(ge=1)] = 6
     """The number of turns in the prompt."""
     history_characters: Annotated[int, Field(ge=100)] = 4000
     """The number of characters of these turns; four make about a token."""
 
 
-module = rs.Module("wildtalk", requires=[rawio, idle, interloc, nlp], settings=Settings)
+module = rs.Module("wildtalk", requires=[rawio, interloc, nlp], settings=Settings)
 
 history: rs.Collection[Message] = module.collection("history")
 """The last messages of all speakers, oldest first; the keys begin with the time."""
@@ -94,7 +92,7 @@ trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. The log has it once."""
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
-"""The memory of the listening skill: the last phrases, the tone, unfinished matters, opinions, a game."""
+"""The memory of the listening skill: the last phrases, the tone, opinions, a game."""
 
 overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
 """The tone and the persons of the last utterances, whichever module answered them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import aclosing
+from typing import Any
 
 from ravestate.errors import PlatformError
 
@@ -37,19 +38,9 @@ class PendingBackend:
         """See `Backend.load`."""
         await (await asyncio.shield(self._chosen)).load(progress)
 
-    async def stream(
-        self,
-        messages: Sequence[Message],
-        *,
-        max_tokens: int = 96,
-        temperature: float = 0.7,
-        seed: int | None = None,
-        stop: Sequence[str] = (),
-    ) -> AsyncGenerator[str, None]:
+    async def stream(self, messages: Sequence[Message], **options: Any) -> AsyncGenerator[str, None]:
         """See `Backend.stream`."""
-        chosen = await asyncio.shield(self._chosen)
-        answer = chosen.stream(messages, max_tokens=max_tokens, temperature=temperature, seed=seed, stop=stop)
-        async with aclosing(answer) as pieces:
+        async with aclosing((await asyncio.shield(self._chosen)).stream(messages, **options)) as pieces:
             async for piece in pieces:
                 yield piece
 

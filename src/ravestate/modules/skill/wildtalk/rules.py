@@ -10,7 +10,7 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
-from ravestate.modules import idle, interloc, nlp, rawio
+from ravestate.modules import interloc, nlp, rawio
 
 from .backend import Backend, Message, Role
 from .choosing import choose
@@ -22,7 +22,7 @@ from .names import OLLAMA, Settings, chosen, clock, history, listening, model, m
 from .openai import OpenAIBackend
 from .pending import PendingBackend
 from .progress import ProgressBar
-from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, remark, traces
+from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, traces
 from .transformers import TransformersBackend
 from .utterance import Utterance
 
@@ -220,16 +220,6 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     said = "" if seen is None else await follow_up(ctx, heard_in(ctx, seen.text, seen))
     if not said:
         return rs.Resign("it is neither a move in a game nor a short answer")
-    ctx[rawio.output] = said
-    return None
-
-
-@module.rule(when=idle.bored, reads=history, writes=(rawio.output, listening), weight=1.5, cooldown=30.0)
-async def come_back(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Come back to what was said, in a silence, before other modules begin something new."""
-    said = remark(ctx)
-    if said is None:
-        return rs.Resign("there is nothing to come back to")
     ctx[rawio.output] = said
     return None
 

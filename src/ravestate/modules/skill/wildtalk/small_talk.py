@@ -49,7 +49,7 @@ def learn_all() -> None:
 def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard:
     """Return the utterance as the skill takes it."""
     users = [item for item in ctx[interloc.users].values() if isinstance(item, str)]
-    return Heard(text, seen, users[0] if len(users) == 1 else "", ctx.now)
+    return Heard(text, seen, users[0] if len(users) == 1 else "")
 
 
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
@@ -93,26 +93,6 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
 def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
     """Return the records of the last two utterances, newest last: their tone and person, also where another module answers."""
     return (*ctx[overheard][-1:], listener().overhear(seen, ctx[listening].being))
-
-
-def remark(ctx: rs.RuleContext) -> str | None:
-    """Return a remark about an unfinished matter, or about what was said last; None if there is nothing.
-
-    If another module has answered since, the talk has moved to another subject. Then the remark takes up old matters only.
-    """
-    state = ctx[listening]
-    old = [matter for matter in state.matters if ctx.now - matter.since >= ctx.settings.come_back_after]
-    if old:
-        ctx[listening] = replace(state, matters=tuple(one for one in state.matters if one is not old[0]))
-        return old[0].text
-    answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
-    if not state.said or answers[-1:] != [state.said[-1]]:
-        return None
-    answer = listener().pick_up(state, ctx.random)
-    if answer is None:
-        return None
-    ctx[listening] = answer.state
-    return answer.text
 
 
 def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:

@@ -10,18 +10,16 @@ import asyncio
 import concurrent.futures
 import logging
 import threading
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, ClassVar, TypeVar, cast
+from typing import Any, ClassVar, cast
 from weakref import WeakValueDictionary
 
 from ravestate.errors import PlatformError
 from ravestate.language.loading import LOADING
 
 from .backend import Message, Progress
-
-T = TypeVar("T")
 
 ANSWERS = "Agent:"
 """The beginning of the line that a model without a chat template continues."""
@@ -33,15 +31,7 @@ SPEAKERS = {"user": "User:", "assistant": ANSWERS}
 
 
 class TransformersBackend:
-    """A causal model in a thread of this process; contexts with the same model share it.
-
-    Example:
-        ```python
-        backend = TransformersBackend("gpt2")
-        async for piece in backend.stream([Message("user", "Hello!")]):
-            print(piece, end="", flush=True)
-        ```
-    """
+    """A causal model in a thread of this process; contexts with the same model share it."""
 
     def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
         """This does not look for or load anything yet.
@@ -57,7 +47,7 @@ class TransformersBackend:
     async def load(self, progress: Progress | None = None) -> None:
         """See `Backend.load`. The library reports no progress, only the end."""
         if self._model is None:
-            self._model = await _in_background(_Model.shared, self._name)
+            self._model = await _loaded(self._name)
         if progress is not None:
             progress(1.0)
 
@@ -78,49 +68,39 @@ class TransformersBackend:
         await self.load()
         model = self._model
         assert model is not None  # `load` has set it
-        loop = asyncio.get_running_loop()
-        pieces: asyncio.Queue[str | BaseException | None] = asyncio.Queue()
         left = threading.Event()
-
-        def tell(piece: str | BaseException | None) -> None:
-            try:
-                loop.call_soon_threadsafe(pieces.put_nowait, piece)
-            except RuntimeError:  # the loop is closed: no task is listening any more
-                left.set()
-
         try:
             prompt, ends = await asyncio.to_thread(model.prompt, messages)
+            pieces = model.streamer(self._read_timeout)
+            writing = asyncio.create_task(
+                asyncio.to_thread(model.write, prompt, max_tokens, temperature, seed, pieces, left)
+            )
         except Exception as error:  # a template may refuse a conversation, e.g. one with a system's turn
             raise self._failed(error) from error
 
-        def write() -> None:
-            try:
-                model.write(prompt, max_tokens, temperature, seed, tell, left)
-                tell(None)
-            except Exception as error:  # any exception goes to the caller
-                tell(error)
+        def end(_: object) -> None:
+            pieces.text_queue.put_nowait(None)
+            _ = writing.cancelled() or writing.exception()  # otherwise asyncio complains if the caller has left
 
-        threading.Thread(target=write, name="ravestate-model").start()
-        stops = (*stop, *ends)
-        written, shown = "", 0
+        writing.add_done_callback(end)
+        written, shown, over = "", 0, False
         try:
-            while True:
+            while not over:
                 try:
-                    piece = await asyncio.wait_for(pieces.get(), self._read_timeout)
+                    piece = await anext(pieces, None)
                 except TimeoutError:
                     raise PlatformError(
                         f"wildtalk: the model {self._name!r} wrote nothing for {self._read_timeout:g} s: give it more time "
                         "(--set wildtalk.read_timeout=300) or take a smaller one"
                     ) from None
-                if isinstance(piece, BaseException):
-                    raise self._failed(piece) from piece
+                if piece is None and (error := writing.done() and writing.exception()):
+                    raise self._failed(error) from error
                 written += piece or ""
-                safe, over = cut(written, stops, last=piece is None)
+                safe, over = cut(written, (*stop, *ends), last=piece is None)
                 if safe[shown:]:
                     yield safe[shown:]
                     shown = len(safe)
-                if over or piece is None:
-                    return
+                over = over or piece is None
         finally:
             left.set()
 
@@ -128,14 +108,14 @@ class TransformersBackend:
         return PlatformError(f"wildtalk: the model {self._name!r} failed: {_first_line(error)}")
 
 
-async def _in_background(work: Callable[[str], T], argument: str) -> T:
-    """Run `work` in a thread that the end of the loop does not wait for: a download may take an hour."""
-    outcome: concurrent.futures.Future[T] = concurrent.futures.Future()
+async def _loaded(name: str) -> _Model:
+    """Load a model in a thread that the end of the loop does not wait for: a download may take an hour."""
+    outcome: concurrent.futures.Future[_Model] = concurrent.futures.Future()
     outcome.set_running_or_notify_cancel()  # the thread cannot be cancelled, but its caller can
 
     def job() -> None:
         try:
-            outcome.set_result(work(argument))
+            outcome.set_result(_Model.shared(name))
         except BaseException as error:  # any exception belongs to the caller
             outcome.set_exception(error)
 
@@ -155,23 +135,22 @@ class _Model:
                 f"wildtalk needs {' and '.join(missing)} for this model: pip install 'ravestate[transformers]'"
             )
         with LOADING:
+            import torch
             import transformers
 
-        library = cast("Any", transformers)
-        library.utils.logging.disable_progress_bar()
+        self.library = cast("Any", transformers)
+        self.library.utils.logging.disable_progress_bar()
         logging.getLogger("transformers").setLevel(logging.ERROR)
         folder = Path(name).expanduser()
         place = str(folder) if folder.is_dir() else name
         try:
-            self.tokenizer: Any = library.AutoTokenizer.from_pretrained(place)
-            self.model: Any = library.AutoModelForCausalLM.from_pretrained(place)
+            self.tokenizer: Any = self.library.AutoTokenizer.from_pretrained(place)
+            self.model: Any = self.library.AutoModelForCausalLM.from_pretrained(place)
         except Exception as error:  # the library raises all kinds of exceptions
             raise PlatformError(
                 f"wildtalk: the model {name!r} cannot be loaded: {_first_line(error)}. Name a folder that holds one, or "
                 "a model's name on the hub: --set wildtalk.model=gpt2"
             ) from error
-        import torch
-
         self.model.eval().to("cuda" if torch.cuda.is_available() else "cpu")
         self._writing = threading.Lock()
 
@@ -191,35 +170,28 @@ class _Model:
         turns = [{"role": message.role, "content": message.text} for message in messages]
         return self.tokenizer.apply_chat_template(turns, add_generation_prompt=True, tokenize=False), ()
 
+    def streamer(self, timeout: float) -> Any:
+        """Return an iterator over the pieces that `write` writes, for the running loop."""
+        return self.library.AsyncTextIteratorStreamer(
+            self.tokenizer, skip_prompt=True, timeout=timeout, skip_special_tokens=True
+        )
+
     def write(
-        self,
-        prompt: str,
-        max_tokens: int,
-        temperature: float,
-        seed: int | None,
-        tell: Callable[[str], None],
-        left: threading.Event,
+        self, prompt: str, max_tokens: int, temperature: float, seed: int | None, pieces: Any, left: threading.Event
     ) -> None:
-        """Write an answer, and report each piece; stop when it is `left`."""
+        """Write an answer into the streamer `pieces`; stop when it is `left`."""
         import torch as real_torch
-        import transformers
 
-        library, torch = cast("Any", transformers), cast("Any", real_torch)
+        torch = cast("Any", real_torch)
 
-        class Teller(library.TextStreamer):
-            def on_finalized_text(self, text: str, stream_end: bool = False) -> None:
-                tell(text)
-
-        class Left(library.StoppingCriteria):
-            def __call__(self, input_ids: Any, scores: Any, **_: Any) -> Any:
-                return torch.full((input_ids.shape[0],), left.is_set(), dtype=torch.bool)
+        def ended(input_ids: Any, scores: Any, **_: Any) -> Any:
+            return torch.full((input_ids.shape[0],), left.is_set(), dtype=torch.bool)
 
         tokens: Any = self.tokenizer(prompt, return_tensors="pt", add_special_tokens=False).to(self.model.device)
         room = getattr(self.model.config, "max_position_embeddings", 0) or 0
         if room:  # for the prompt and the answer together
             max_tokens = min(max_tokens, room - 1)
             tokens = {key: value[:, max_tokens - room :] for key, value in tokens.items()}
-        sampling = {"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}
         # One answer at a time: two would be no faster, and the library's random numbers belong to the whole process.
         with self._writing:
             if left.is_set():
@@ -229,25 +201,17 @@ class _Model:
             with torch.inference_mode():
                 self.model.generate(
                     **tokens,
-                    **sampling,
+                    **({"do_sample": True, "temperature": temperature} if temperature > 0 else {"do_sample": False}),
                     max_new_tokens=max_tokens,
                     repetition_penalty=1.1,
                     pad_token_id=self.tokenizer.pad_token_id or self.tokenizer.eos_token_id,
-                    streamer=Teller(self.tokenizer, skip_prompt=True, skip_special_tokens=True),
-                    stopping_criteria=library.StoppingCriteriaList([Left()]),
+                    streamer=pieces,
+                    stopping_criteria=[ended],
                 )
 
 
 def transcript(messages: Sequence[Message]) -> str:
-    """Return a conversation as text, for models without turns.
-
-    Example:
-        >>> print(transcript([Message("system", "A talk."), Message("user", "Hello!")]))
-        A talk.
-        <BLANKLINE>
-        User: Hello!
-        Agent:
-    """
+    """Return a conversation as text, for models without turns."""
     lines: list[str] = []
     for message in messages:
         text = " ".join(message.text.split())
@@ -263,18 +227,13 @@ def cut(text: str, stops: Sequence[str], *, last: bool) -> tuple[str, bool]:
     Example:
         >>> cut("Hello.\\nUser", ["\\nUser:"], last=False)
         ('Hello.', False)
-        >>> cut("Hello.\\nUser: Hm", ["\\nUser:"], last=False)
-        ('Hello.', True)
     """
     begun = len(text) - len(text.lstrip())  # models begin with a space, or with an empty line
     ends = [text.index(stop, begun) for stop in stops if stop in text[begun:]]
     if ends:
         return text[: min(ends)], True
-    held = 0
-    if not last:
-        for stop in stops:
-            held = max([held, *(size for size in range(1, len(stop)) if text.endswith(stop[:size]))])
-    return text[: len(text) - held], False
+    half = (size for stop in stops for size in range(1, len(stop)) if text.endswith(stop[:size]))
+    return text[: len(text) - (0 if last else max(half, default=0))], False
 
 
 def _first_line(error: BaseException) -> str:

@@ -11,21 +11,21 @@ SHOWS = material().shows
 
 
 def test_there_is_enough_of_everything() -> None:
-    assert len(SHOWS["jokes"]) >= 40
-    assert len(SHOWS["stories"]) >= 8
+    assert len(SHOWS["told"]["joke"]) >= 40
+    assert len(SHOWS["told"]["story"]) >= 8
     assert len(SHOWS["riddles"]) >= 25
-    assert len(SHOWS["songs"]) >= 5
+    assert len(SHOWS["told"]["song"]) >= 5
 
 
 def test_no_joke_comes_twice_before_all_were_told(talk: Any) -> None:
-    told = [talk.say("tell me a joke") for _ in SHOWS["jokes"]]
-    assert sorted(told) == sorted(SHOWS["jokes"])
-    assert talk.say("tell me a joke") in SHOWS["jokes"]
+    told = [talk.say("tell me a joke") for _ in SHOWS["told"]["joke"]]
+    assert sorted(told) == sorted(SHOWS["told"]["joke"])
+    assert talk.say("tell me a joke") in SHOWS["told"]["joke"]
 
 
-@pytest.mark.parametrize(("text", "kind"), [("sing a song", "songs"), ("tell me a story", "stories")])
+@pytest.mark.parametrize(("text", "kind"), [("sing a song", "song"), ("tell me a story", "story")])
 def test_it_performs_on_request(text: str, kind: str, talk: Any) -> None:
-    assert talk.say(text) in SHOWS[kind]
+    assert talk.say(text) in SHOWS["told"][kind]
 
 
 def asked(text: str) -> Any:
@@ -42,7 +42,7 @@ def test_a_wrong_guess_gets_a_hint_and_then_the_answer(talk: Any) -> None:
     riddle = asked(talk.say("riddle"))
     assert riddle["hint"] in talk.say("a banana")
     assert riddle["answers"][0] in talk.say("a teapot")
-    assert talk.say("no") in SHOWS["over"]
+    assert talk.say("no") in SHOWS["play"]["over"]
 
 
 def test_a_riddle_can_be_given_up(talk: Any) -> None:
@@ -72,7 +72,7 @@ def test_word_chain_goes_by_the_last_letter(talk: Any) -> None:
 
 
 def test_it_guesses_an_animal_by_its_questions(talk: Any) -> None:
-    known, questions = SHOWS["animals"]["known"], SHOWS["animals"]["questions"]
+    known, questions = SHOWS["animal"]["known"], SHOWS["animal"]["questions"]
     answer = talk.say("guess my animal")
     for _ in range(len(questions) + 1):
         asked = next((name for name, text in questions.items() if text in answer), None)
@@ -80,7 +80,7 @@ def test_it_guesses_an_animal_by_its_questions(talk: Any) -> None:
             break
         answer = talk.say("yes" if asked in known["a shark"] else "no")
     assert "a shark" in answer
-    assert talk.say("yes") in SHOWS["animal_words"]["right"]
+    assert talk.say("yes") in SHOWS["animal"]["right"]
 
 
 def test_knock_knock(talk: Any) -> None:
@@ -94,7 +94,7 @@ def test_stop_ends_every_game(game: str, begin: Callable[[int], Any]) -> None:
     talk = begin(2)
     talk.say(game)
     assert talk.state.game is not None
-    assert talk.say("stop the game") in SHOWS["over"]
+    assert talk.say("stop the game") in SHOWS["play"]["over"]
     assert talk.state.game is None
 
 
@@ -105,5 +105,19 @@ def test_another_subject_ends_a_game(talk: Any) -> None:
 
 
 def test_play_offers_a_choice(talk: Any) -> None:
-    assert talk.say("let us play a game") in SHOWS["offer"]
+    assert talk.say("let us play a game") in SHOWS["play"]["start"]
     assert "chain" in talk.say("the word game").lower()
+
+
+def test_a_story_about_something_unknown_is_announced_as_another_one(talk: Any) -> None:
+    assert "a unicorn" in talk.say("can you tell me a story with a unicorn").split(".")[0]
+    assert talk.say("and then?") in [line.text for line in material().plain["after_show"].groups["say"]]
+
+
+def test_a_story_about_something_known_is_told(talk: Any) -> None:
+    assert "snail" in talk.say("tell me a story about a snail").split(".")[0].lower()
+
+
+def test_a_farewell_in_a_game_is_answered_as_such(talk: Any) -> None:
+    talk.say("riddle")
+    assert talk.say("goodbye") not in SHOWS["play"]["over"]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from .backend import ListeningBackend
-from .listener import Answer, Heard, Listener
+from .hearing import Heard
+from .listener import Answer, Listener
 from .state import Overheard, State
 
 __all__ = ["Answer", "Heard", "Listener", "ListeningBackend", "Overheard", "State"]

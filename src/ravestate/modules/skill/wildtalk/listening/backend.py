@@ -7,7 +7,8 @@ from collections.abc import AsyncGenerator, Sequence
 
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
 
-from .listener import Heard, Listener
+from .hearing import Heard
+from .listener import Listener
 from .state import State
 
 

@@ -12,186 +12,154 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .state import Game, State
 
-TOLD = {"joke": "jokes", "song": "songs", "story": "stories"}
-"""The lists of performances without a game, by the user's request."""
 LONGEST = 6
 """The words of an utterance that may belong to a game."""
+CHAINED = 2
+"""The words of a move in word chain: *a tiger*."""
 
 Played = tuple[str, State]
 
 
-class Games:
-    """The performances of the listener."""
+def named(shows: Mapping[str, Any], text: str, *, most: int = 3) -> str:
+    """Return the performance that a text of at most so many words names: *word chain*, *a riddle please*."""
+    words = re.findall(r"[a-z]+", text.lower())
+    said = f" {' '.join(words)} "
+    if not words or len(words) > most or words[0] == "no":
+        return ""
+    return next((kind for kind, names in shows["names"].items() if any(f" {one} " in said for one in names)), "")
 
-    def __init__(self, shows: Mapping[str, Any]) -> None:
+
+class Turn:
+    """One turn of a performance: the user's words, and the methods that answer them."""
+
+    def __init__(
+        self, shows: Mapping[str, Any], text: str, seen: Analysis | None, state: State, chance: random.Random
+    ) -> None:
         """`shows`: the jokes, songs, stories, riddles and words of the games."""
-        self._shows = shows
-        self._riddles = {one["ask"]: one for one in shows["riddles"]}
+        self._shows, self._seen, self._state, self._chance = shows, seen, state, chance
+        self._words = re.findall(r"[^\W\d_]+", text.lower())
+        answer = None if seen is None else seen.yesno
+        self._yes, self._no = answer is not None and bool(answer.yes), answer is not None and bool(answer.no)
+        self._unsure = answer is not None and bool(answer.unsure)
 
-    def start(self, kind: str, state: State, chance: random.Random) -> Played:
+    def start(self, kind: str) -> Played:
         """Begin a joke, a song, a story or a game; ``play`` offers a choice."""
-        if kind in TOLD:
-            return self._new(kind, self._shows[TOLD[kind]], state, chance)
+        if kind in self._shows["told"]:
+            return self._tell(kind, self._shows["told"][kind])
         if kind == "riddle":
-            text, state = self._new(kind, tuple(self._riddles), state, chance)
+            text, state = self._new(kind, [one["ask"] for one in self._shows["riddles"]])
             return text, replace(state, game=Game("riddle", text))
         if kind == "chain":
-            word = chance.choice(self._shows["chain"])
-            text = chance.choice(self._shows["chain_words"]["start"]).format(word=word)
-            return text, replace(state, game=Game("chain", word, (word,)), show=kind)
+            word = self._chance.choice(self._shows["chain"]["words"])
+            return self._say("chain", "start", Game("chain", word, (word,)), word=word)
         if kind == "animal":
-            question = next(iter(self._shows["animals"]["questions"]))
-            text = chance.choice(self._shows["animal_words"]["start"]).format(question=self._question(question))
-            return text, replace(state, game=Game("animal", question), show=kind)
-        return chance.choice(self._shows["offer"]), replace(state, game=Game("choice"))
+            question, text = next(iter(self._shows["animal"]["questions"].items()))
+            return self._say("animal", "start", Game("animal", question), question=text)
+        return self._say(kind, "start", Game(kind))
 
-    def named(self, text: str, *, most: int = 3) -> str:
-        """Return the performance that a text of at most so many words names: *word chain*, *a riddle please*."""
-        words = re.findall(r"[a-z]+", text.lower()) or [""]
-        said = f" {' '.join(words)} "
-        names = self._shows["names"].items()
-        return next(
-            (
-                kind
-                for kind, listed in names
-                if len(words) <= most and words[0] != "no" and any(f" {one} " in said for one in listed)
-            ),
-            "",
-        )
-
-    def knocks(self, text: str) -> bool:
-        """Return whether the user begins a knock-knock joke."""
-        return " ".join(re.findall(r"[a-z]+", text.lower())) in self._shows["knock"]["call"]
-
-    def knock(self, state: State) -> Played:
-        """Ask who is there."""
-        return self._shows["knock"]["there"], replace(state, game=Game("knock"))
-
-    def stop(self, state: State, chance: random.Random) -> Played:
+    def stop(self) -> Played:
         """End the game."""
-        return chance.choice(self._shows["over"]), replace(state, game=None)
+        return self._say("play", "over", None)
 
-    def play(self, text: str, seen: Analysis | None, state: State, chance: random.Random) -> Played | None:
+    def move(self) -> Played | None:
         """Return the next move; None if the utterance does not belong to the game."""
-        game = state.game
-        words = re.findall(r"[^\W\d_]+", text.lower())
-        if game is None or not words or (len(words) > LONGEST and game.kind != "knock"):
+        game = self._state.game
+        if game is None or not self._words or (len(self._words) > LONGEST and game.kind != "knock"):
             return None
-        return getattr(self, f"_play_{game.kind}")(game, words, seen, state, chance)
+        if not game.word and game.kind != "play" and not (game.kind == "knock" or game.turn == 2):  # "Another one?"
+            return self.start(game.kind) if self._yes else self.stop() if self._no else self._learnt(game)
+        moves = {"play": self._choice, "riddle": self._riddle, "chain": self._chain, "animal": self._animal}
+        return moves.get(game.kind, self._knock)(game)
 
-    def _play_choice(
-        self, game: Game, words: Sequence[str], seen: Analysis | None, state: State, chance: random.Random
-    ) -> Played | None:
-        wanted = {"riddle": "riddle", "riddles": "riddle", "chain": "chain", "word": "chain", "words": "chain"}
-        wanted |= {"animal": "animal", "animals": "animal", "guess": "animal", "guessing": "animal"}
-        wanted |= {"first": "riddle", "second": "chain", "third": "animal", "last": "animal"}
-        for word in words:
-            if word in wanted:
-                return self.start(wanted[word], state, chance)
-        if _yes(seen) or "any" in words or "choose" in words:
-            return self.start(chance.choice(("riddle", "chain", "animal")), state, chance)
-        return self.stop(state, chance) if _no(seen) else None
+    def _learnt(self, game: Game) -> Played | None:
+        return self._say("animal", "learnt", None) if game.kind == "animal" else None
 
-    def _play_riddle(
-        self, game: Game, words: Sequence[str], seen: Analysis | None, state: State, chance: random.Random
-    ) -> Played | None:
-        if not game.word:  # "Another one?"
-            if _yes(seen):
-                return self.start("riddle", state, chance)
-            return self.stop(state, chance) if _no(seen) else None
-        riddle, say = self._riddles[game.word], self._shows["riddle_words"]
-        answer = riddle["answers"][0]
-        lemmas = {word.lemma.lower() for word in seen.tree.words} if seen else set[str]()
-        after = replace(state, game=Game("riddle"))
-        if lemmas.union(words).intersection(riddle["answers"]):
-            return chance.choice(say["right"]).format(answer=answer), after
-        if seen is not None and (seen.yesno.unsure or _no(seen) or "give" in lemmas or "tell" in lemmas):
-            return chance.choice(say["tell"]).format(answer=answer, Answer=answer.capitalize()), after
-        if seen is not None and seen.question is not None and len(words) > 4:
+    def _choice(self, game: Game) -> Played | None:
+        kinds: Mapping[str, Sequence[str]] = self._shows["play"]["kinds"]
+        wanted = next((kind for kind, names in kinds.items() if set(names).intersection(self._words)), "")
+        if wanted or self._yes or {"any", "choose"}.intersection(self._words):
+            return self.start(wanted or self._chance.choice(list(kinds)))
+        return self.stop() if self._no else None
+
+    def _riddle(self, game: Game) -> Played | None:
+        riddle = next(one for one in self._shows["riddles"] if one["ask"] == game.word)
+        answer, over, seen = riddle["answers"][0], Game("riddle"), self._seen
+        lemmas = set(self._words) | ({word.lemma.lower() for word in seen.tree.words} if seen else set())
+        if lemmas.intersection(riddle["answers"]):
+            return self._say("riddle", "right", over, answer=answer)
+        if self._unsure or self._no or lemmas & {"give", "tell"}:
+            return self._say("riddle", "tell", over, answer=answer, Answer=answer.capitalize())
+        if seen is not None and seen.question is not None and len(self._words) > 4:
             return None
         if game.turn:
-            return chance.choice(say["again"]).format(answer=answer), after
-        text = chance.choice(say["wrong"]).format(hint=riddle["hint"])
-        return text, replace(state, game=replace(game, turn=1))
+            return self._say("riddle", "again", over, answer=answer)
+        return self._say("riddle", "wrong", replace(game, turn=1), hint=riddle["hint"])
 
-    def _play_chain(
-        self, game: Game, words: Sequence[str], seen: Analysis | None, state: State, chance: random.Random
-    ) -> Played | None:
-        say, letter = self._shows["chain_words"], game.word[-1]
-        if len(words) > 2 or (_no(seen) and words[0][0] != letter):
-            return self.stop(state, chance) if _no(seen) else None
-        word = words[-1]
-        if word[0] != letter:
-            if game.turn:
+    def _chain(self, game: Game) -> Played | None:
+        word, letter = self._words[-1], game.word[-1]
+        if len(self._words) > CHAINED or word[0] != letter:
+            if self._no:
+                return self.stop()
+            if game.turn or len(self._words) > CHAINED:
                 return None
-            text = chance.choice(say["wrong"]).format(letter=letter.upper())
-            return text, replace(state, game=replace(game, turn=1))
+            return self._say("chain", "wrong", replace(game, turn=1), letter=letter.upper())
         if word in game.used:
-            return chance.choice(say["used"]).format(letter=letter.upper()), state
+            return self._say("chain", "used", game, letter=letter.upper())
         used = (*game.used, word)
-        mine = [one for one in self._shows["chain"] if one[0] == word[-1] and one not in used]
+        mine = [one for one in self._shows["chain"]["words"] if one[0] == word[-1] and one not in used]
         if not mine:
-            return chance.choice(say["lost"]).format(letter=word[-1].upper()), replace(state, game=None)
-        own = chance.choice(mine)
-        text = chance.choice(say["next"]).format(word=own.capitalize())
-        return text, replace(state, game=Game("chain", own, (*used, own)))
+            return self._say("chain", "lost", None, letter=word[-1].upper())
+        own = self._chance.choice(mine)
+        return self._say("chain", "next", Game("chain", own, (*used, own)), word=own.capitalize())
 
-    def _play_animal(
-        self, game: Game, words: Sequence[str], seen: Analysis | None, state: State, chance: random.Random
-    ) -> Played | None:
-        say, known = self._shows["animal_words"], self._shows["animals"]["known"]
-        yes, no = _yes(seen), _no(seen)
-        if not game.word:  # it was guessed, or given up
-            if game.turn == 2 or not (yes or no):
-                return chance.choice(say["learnt"]), replace(state, game=None)
-            return self.start("animal", state, chance) if yes else self.stop(state, chance)
-        unsure = seen is not None and bool(seen.yesno.unsure)
-        if not (yes or no or unsure):
+    def _animal(self, game: Game) -> Played | None:
+        known, questions = self._shows["animal"]["known"], self._shows["animal"]["questions"]
+        if not game.word:  # the user has named the animal
+            return self._learnt(game)
+        if not (self._yes or self._no or self._unsure):
             return None
         if game.word in known:  # "Is it a cat?"
-            if yes:
-                return chance.choice(say["right"]), replace(state, game=Game("animal", turn=1))
-            return chance.choice(say["lost"]), replace(state, game=Game("animal", turn=2))
-        used = (*game.used, f"{'+' if yes else '-' if no else '?'}{game.word}")
+            return self._say("animal", *(("right", Game("animal")) if self._yes else ("lost", Game("animal", turn=2))))
+        used = (*game.used, f"{'+' if self._yes else '-' if self._no else '?'}{game.word}")
         left = [
             animal
             for animal, traits in known.items()
             if all(one[0] == "?" or (one[1:] in traits) == (one[0] == "+") for one in used)
         ]
-        asked = {one[1:] for one in used}
-        best = [name for name in self._shows["animals"]["questions"] if name not in asked]
+        best = [name for name in questions if name not in {one[1:] for one in used}]
         best.sort(key=lambda name: abs(2 * sum(name in known[one] for one in left) - len(left)))
         if len(left) > 1 and best:
-            text = chance.choice(say["next"]).format(question=self._question(best[0]))
-            return text, replace(state, game=Game("animal", best[0], used))
+            return self._say("animal", "next", Game("animal", best[0], used), question=questions[best[0]])
         if left:
-            text = chance.choice(say["guess"]).format(animal=left[0])
-            return text, replace(state, game=Game("animal", left[0], used))
-        return chance.choice(say["lost"]), replace(state, game=Game("animal", turn=2))
+            return self._say("animal", "guess", Game("animal", left[0], used), animal=left[0])
+        return self._say("animal", "lost", Game("animal", turn=2))
 
-    def _play_knock(
-        self, game: Game, words: Sequence[str], seen: Analysis | None, state: State, chance: random.Random
-    ) -> Played | None:
-        say = self._shows["knock"]
+    def _knock(self, game: Game) -> Played:
         if game.word:
-            return chance.choice(say["laugh"]), replace(state, game=None)
-        name = " ".join(words[:4])
-        return say["who"].format(name=name.capitalize()), replace(state, game=Game("knock", name))
+            return self._say("knock", "laugh", None)
+        name = " ".join(self._words[:4])
+        return self._say("knock", "who", Game("knock", name), name=name.capitalize())
 
-    def _question(self, name: str) -> str:
-        return self._shows["animals"]["questions"][name]
+    def _say(self, kind: str, group: str, game: Game | None, **roles: str) -> Played:
+        """Return a phrase of the performance `kind`, and the state with the game after it."""
+        show = self._state.show if kind in ("play", "knock") else kind
+        return self._chance.choice(self._shows[kind][group]).format(**roles), replace(self._state, game=game, show=show)
 
-    def _new(self, kind: str, listed: Sequence[str], state: State, chance: random.Random) -> Played:
+    def _tell(self, kind: str, listed: Sequence[str]) -> Played:
+        """Tell one about what the user wants: *a story with a snail*."""
+        tree = None if self._seen is None else self._seen.tree
+        about = [word for word in tree.words if word.low in ("about", "with", "of")] if tree else []
+        wanted = tree.children_of(about, "pobj")[:1] if tree else []
+        fit = [one for one in listed if any(word.lemma.lower() in one.lower() for word in wanted)]
+        text, state = self._new(kind, fit or listed)
+        if tree and wanted and not fit:
+            thing = tree.phrase(tree.subtree(wanted[0]))
+            text = f"{self._chance.choice(self._shows['without']).format(thing=thing)} {text}"
+        return text, state
+
+    def _new(self, kind: str, listed: Sequence[str]) -> Played:
         """Return one that was not shown yet, as long as there is one."""
-        left = [one for one in listed if one not in state.shown]
-        text = chance.choice(left or listed)
-        shown = state.shown if left else tuple(one for one in state.shown if one not in listed)
-        return text, replace(state, shown=(*shown, text), show=kind, game=None)
-
-
-def _yes(seen: Analysis | None) -> bool:
-    return seen is not None and bool(seen.yesno.yes)
-
-
-def _no(seen: Analysis | None) -> bool:
-    return seen is not None and bool(seen.yesno.no)
+        left = [one for one in listed if one not in self._state.shown]
+        text = self._chance.choice(left or listed)
+        shown = self._state.shown if left else tuple(one for one in self._state.shown if one not in listed)
+        return text, replace(self._state, shown=(*shown, text), show=kind, game=None)

@@ -18,7 +18,9 @@ from .state import LASTING
 
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "matter", "lasts"))
+MOMENTS = ("about_the_talk", "advice", "everyday", "life", "moments")
+"""The files of situations in a talk."""
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +31,7 @@ class Line:
     roles: frozenset[str]
     """The roles that must be known, in lower case."""
     then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """Answers to the user's answer, by ``yes``, ``no`` and ``any``."""
+    """Answers to the user's answer, by ``yes``, ``no``, ``unsure`` and ``any``."""
     start: str = ""
     """The joke, riddle... that a *yes* begins."""
 
@@ -46,8 +48,6 @@ class Moment:
     name: str
     groups: Mapping[str, tuple[Line, ...]]
     tone: str = ""
-    matter: str = ""
-    """A question for later."""
     lasts: int = LASTING
     """The turns for which its tone lasts."""
     examples: tuple[str, ...] = ()
@@ -59,23 +59,33 @@ class Moment:
         return [self.groups[name] for name in groups if name in self.groups]
 
 
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of the table of answers."""
+
+    needs: frozenset[str]
+    without: frozenset[str]
+    group: str
+    lists: tuple[str, ...] = ()
+    weak: bool = False
+
+
 class Material:
     """All phrases. Made once for all contexts; the matcher learns at its first use."""
 
     def __init__(self) -> None:
         self.feelings = _moments("feelings")
         self.acts = {**self.feelings, **_moments("acts")}
-        self.moments = _moments("moments")
+        self.moments = {name: one for file in MOMENTS for name, one in _moments(file).items()}
         self.none = self.moments.pop("none").examples
         """Sentences that belong to none of the moments and topics."""
-        self.topics = _moments("topics")
+        self.topics = {**_moments("subjects"), **_moments("topics")}
         self.verbs = _moments("verbs")
         self.plain = _moments("plain")
+        self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
-        self.tongues: Mapping[str, frozenset[str]] = {
-            name: frozenset(words) for name, words in _read("tongues").items()
-        }
-        self.beings = {
+        self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}
+        self.beings: Mapping[str, tuple[str, str]] = {
             noun: (kind, gender)
             for kind, genders in _read("beings").items()
             for gender, nouns in genders.items()
@@ -85,7 +95,7 @@ class Material:
     @cached_property
     def matcher(self) -> Matcher:
         """The matcher of moments and topics."""
-        examples = {one.name: one.examples for one in (*self.moments.values(), *self.topics.values())}
+        examples = {one.name: one.examples for one in (*self.moments.values(), *self.topics.values()) if one.examples}
         return Matcher(examples, (*self.none, *bundled("none").none), least=0.45)
 
 
@@ -100,14 +110,19 @@ def roles_in(text: str) -> frozenset[str]:
     return frozenset(role.lower() for role in ROLE.findall(text))
 
 
+def _row(row: Mapping[str, str]) -> Row:
+    tags, (group, *lists) = row["if"].split(), row["say"].split()
+    without = frozenset(tag[1:] for tag in tags if tag.startswith("-"))
+    return Row(frozenset(tag for tag in tags if tag[0] != "-"), without, group, tuple(lists), "weak" in row)
+
+
 def _moments(name: str) -> dict[str, Moment]:
     found: dict[str, Moment] = {}
     for key, value in _read(name).items():
         groups = {group: _lines(lines, key) for group, lines in value.items() if group not in _NOT_GROUPS}
         words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
-        examples = tuple(value.get("examples", ()))
         lasts = int(value.get("lasts", LASTING))
-        found[key] = Moment(key, groups, value.get("tone", ""), value.get("matter", ""), lasts, examples, words)
+        found[key] = Moment(key, groups, value.get("tone", ""), lasts, tuple(value.get("examples", ())), words)
     return found
 
 
@@ -118,12 +133,12 @@ def _lines(listed: Any, key: str) -> tuple[Line, ...]:
         if "say" not in value:
             raise DeclarationError(f"listening: a phrase of {key!r} lacks its text: {value!r}")
         text = str(value["say"])
-        then = {name: tuple(value[name]) for name in ("yes", "no", "any") if name in value}
+        then = {name: tuple(value[name]) for name in ("yes", "no", "unsure", "any") if name in value}
         found.append(Line(text, roles_in(text), then, value.get("start", "")))
     return tuple(found)
 
 
-def _read(name: str) -> dict[str, Any]:
+def _read(name: str) -> Any:
     file = files(__package__ or "") / f"{name}.yaml"
     return _plain(compose_yaml(file.read_text(encoding="utf-8"), file.name))
 

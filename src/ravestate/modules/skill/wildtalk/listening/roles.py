@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ravestate.modules.meta.nlp.analysis import Analysis
@@ -13,16 +13,28 @@ from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .material import AGREEING, ROLE, Material
 from .state import Being
-from .turning import clause, turned, turned_text
 
-LONGEST = 48
+LONGEST = 32
 """The characters of a role."""
 
 _THEY = {"f": ("she", "her", "her"), "m": ("he", "him", "his")}
 _IT, _PLURAL = ("it", "it", "its"), ("they", "them", "their")
 _PRONOUNS = {"she": "f", "her": "f", "hers": "f", "he": "m", "him": "m", "his": "m"}
+_POINTING = frozenset(("it", "that", "this", "there"))
 _SINGULAR = {"are": "is", "were": "was", "have": "has", "do": "does"}
 _ASIDES = frozenset(("think", "guess", "suppose", "believe"))
+_BESIDE = frozenset(("relcl", "prep", "pobj", "cc", "conj", "appos", "punct", "advcl", "acl"))
+_NOMINAL = frozenset(("NOUN", "PROPN", "ADJ", "NUM", "DET", "PRON", "PART"))
+_TURNED = {
+    "my": "your",
+    "our": "your",
+    "mine": "yours",
+    "ours": "yours",
+    "me": "you",
+    "us": "you",
+    "your": "my",
+    "you": "me",
+}
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -41,12 +53,11 @@ class Roles:
 
     def fill(self, text: str) -> str:
         """Return a phrase with its roles filled; one written with a capital begins with a capital."""
-        known = self.values
         parts = ROLE.split(text)  # text, role, text, role, ...
         for place in range(1, len(parts), 2):
             role = parts[place]
             low = role.lower()
-            value = self._agreed(low, parts, place) if low in AGREEING else known[low]
+            value = self._agreed(low, parts, place) if low in AGREEING else self.values[low]
             parts[place] = value[:1].upper() + value[1:] if role[0].isupper() else value
         filled = "".join(parts)
         return filled[:1].upper() + filled[1:]
@@ -55,10 +66,7 @@ class Roles:
         """Return a verb that agrees with the role next to it."""
         near = [parts[place - 2].lower()] if place > 2 and parts[place - 1] == " " else []
         near += [parts[place + 2].lower()] if place + 2 < len(parts) and parts[place + 1] == " " else []
-        subject = next((role for role in near if role in ("who", "they")), "who")
-        plural = self.being is not None and self.being.plural
-        if subject == "they":
-            plural = self.values.get("they") == "they"
+        plural = self.values.get("they") == "they" if "they" in near else self.being is not None and self.being.plural
         return verb if plural else _SINGULAR[verb]
 
 
@@ -72,50 +80,33 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
         material: The nouns for living beings.
     """
     statement = _statement(seen, sentence)
-    roles = Roles(statement=statement)
     being = _being(seen, material)
     pronouns = {word.low for word in seen.tree.words}
     genders = {_PRONOUNS[word] for word in pronouns if word in _PRONOUNS}
-    if being is None and focus is not None and (genders or pronouns & {"they", "them", "it", "its", "their"}):
-        being = focus
+    others = {"they", "them", "their"} | ({"it", "its"} if focus is not None and focus.kind == "pet" else set())
+    if being is None and focus is not None and (genders or pronouns & others):
+        being = focus if {focus.gender} | genders != {"f", "m"} else None
+    words = _THEY[next(iter(genders))] if genders else _IT if pronouns & {"it", "its"} else None
     if being is not None:
         if len(genders) == 1 and being.gender == "n" and not being.plural:
             being = replace(being, gender=next(iter(genders)))
-        they, them, their = (
-            _PLURAL if being.plural else _THEY.get(being.gender, _IT if being.kind == "pet" else _PLURAL)
-        )
-        if statement is not None and statement.subject.text.lower() == "they":
-            they, them, their = _PLURAL
-        roles = replace(roles, being=being).having(who=being.text, they=they, them=them, their=their)
-        roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
-    elif genders or pronouns & {"it", "its"}:
-        they, them, their = _THEY[next(iter(genders))] if genders else _IT
-        roles = roles.having(they=they, them=them, their=their)
-        if genders:
-            roles = roles.having(**dict.fromkeys(AGREEING, "yes"))
-    if statement is not None and not statement.question:
-        root = _root(seen.tree, statement)
-        mood = root is not None and statement.subject_person == "I" and bool(seen.tree.children(root, "acomp"))
-        said = "" if root is None or mood else clause(seen.tree, root)  # "You are angry?" would be no news
-        if said and len(said) <= 2 * LONGEST and _REPEATABLE.fullmatch(said):
-            roles = roles.having(clause=said)
-    thing = "" if statement is None else _thing(seen.tree, statement)
-    return roles.having(thing=thing)
+        words = _PLURAL if being.plural else _THEY.get(being.gender, _IT if being.kind == "pet" else _PLURAL)
+    if statement is not None and statement.subject.text.lower() == "they":
+        words = _PLURAL
+    roles = Roles(being=being, statement=statement).having(who="" if being is None else being.text)
+    if words is not None:
+        roles = roles.having(they=words[0], them=words[1], their=words[2])
+        roles = roles.having(**dict.fromkeys(AGREEING, "yes")) if being is not None or genders else roles
+    return roles.having(thing="" if statement is None else _thing(seen.tree, statement))
 
 
-def fragment(seen: Analysis) -> str:
-    """Return a short answer without a verb, from the agent's view; empty for anything else."""
-    tree = seen.tree
-    asides = {
-        part.index for word in tree.words if _is_aside(tree, word) for part in (word, *tree.children(word, "nsubj"))
-    }
-    words = [
-        word for word in tree.words if word.index not in asides and word.pos not in ("PUNCT", "INTJ", "SPACE", "SYM")
-    ]
-    while words and words[0].low in ("and", "but", "so", "or", "just", "well"):
-        words = words[1:]
-    text = turned(seen.tree, words)
-    return text if words and len(text) <= LONGEST and len(words) <= 6 and _REPEATABLE.fullmatch(text) else ""
+def turned(tree: Tree, words: Sequence[Word]) -> str:
+    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty for odd ones."""
+    found = ""
+    for word in words:
+        text = _TURNED.get(word.low, word.text)
+        found += text if not found or text.startswith(("'", "’")) or text == "," else f" {text}"
+    return found if len(found) <= LONGEST and _REPEATABLE.fullmatch(found) else ""
 
 
 def has_verb(seen: Analysis) -> bool:
@@ -128,8 +119,7 @@ def has_verb(seen: Analysis) -> bool:
 def is_request(seen: Analysis) -> bool:
     """Return whether the user demands something: *prove it*."""
     first = next((word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")), None)
-    bare = first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
-    return bare or any(statement.request for statement in seen.statements)
+    return first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
 
 
 def _is_aside(tree: Tree, verb: Word) -> bool:
@@ -138,51 +128,29 @@ def _is_aside(tree: Tree, verb: Word) -> bool:
 
 
 def _statement(seen: Analysis, sentence: str) -> Statement | None:
+    """Return the statement of the sentence that matters most, by default of the last one."""
     told = [
         one for one in seen.statements if isinstance(one.triple.subject, str) and isinstance(one.triple.object, str)
     ]
-    inside = [one for one in told if one.verb and _mentions(sentence, one)] or told
+    low = (sentence or (seen.sentences[-1] if seen.sentences else "")).lower()
+    inside = [
+        one for one in told if one.verb and one.subject.text.lower() in low and one.object.text.lower() in low
+    ] or told
     first = [one for one in inside if not one.hearsay and not one.conditional] or inside
-    return first[0] if first else None
-
-
-def _mentions(sentence: str, statement: Statement) -> bool:
-    low = sentence.lower()
-    return all(part.lower() in low for part in (statement.subject.text, statement.object.text) if part)
-
-
-def _root(tree: Tree, statement: Statement) -> Word | None:
-    """Return the first verb of the statement's clause."""
-    subject = statement.subject.text.lower()
-    for word in tree.words:
-        if word.pos not in ("VERB", "AUX"):
-            continue
-        for child in tree.children(word, "nsubj", "nsubjpass", "expl"):
-            if tree.phrase(tree.subtree(child)).lower().startswith(subject[:4]) or child.low in subject:
-                chain = {
-                    word.lemma,
-                    *(part.lemma for part in tree.subtree(word) if part.dep in ("xcomp", "attr", "acomp")),
-                }
-                if statement.verb in chain or statement.verb == word.lemma:
-                    return word
-    return None
+    telling = [one for one in first if one.subject.head or one.subject.text.lower() not in _POINTING] or first
+    return telling[0] if telling else None
 
 
 def _thing(tree: Tree, statement: Statement) -> str:
     """Return the object with its articles, from the agent's view."""
     phrase = statement.object
-    if not phrase.text or phrase.person != "other" or not (phrase.head or phrase.names):
-        return ""
-    last = phrase.text.split()[-1].lower()
-    for word in tree.words:
-        if word.low == last and word.pos in ("NOUN", "PROPN", "VERB", "NUM"):
-            words = [
-                part
-                for part in tree.subtree(word)
-                if part.dep not in ("relcl", "prep", "pobj", "cc", "conj", "appos", "punct", "advcl", "acl")
-            ]
-            text = turned(tree, words)
-            return text if text and len(text) <= LONGEST and _REPEATABLE.fullmatch(text) else ""
+    if phrase.text and phrase.person == "other" and (phrase.head or phrase.names):
+        last = phrase.text.split()[-1].lower()
+        for word in tree.words:
+            if word.low == last and word.pos in ("NOUN", "PROPN"):
+                words = [part for part in tree.subtree(word) if part.dep not in _BESIDE]
+                odd = words[-1:] != [word] or any(part.pos not in _NOMINAL for part in words)
+                return "" if odd else turned(tree, words)
     return ""
 
 
@@ -212,10 +180,16 @@ def _owners(phrase: Phrase) -> Iterator[Phrase]:
 
 def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool) -> Being:
     plural = any(word.tag in ("NNS", "NNPS") and word.lemma.lower() == phrase.head for word in tree.words)
-    if phrase.names and kind == "pet":
+    if phrase.names and (kind == "pet" or phrase.owner is None):
         return Being(phrase.name, kind, gender)
-    words = phrase.text.split()
-    owned = phrase.owner is not None
     noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
-    text = turned_text(words) if owned else f"your {noun}" if mine and kind == "pet" else f"the {noun}"
+    words = [_TURNED.get(word.lower(), word) for word in phrase.text.split()]
+    owned = phrase.owner is not None and len(words) <= 3
+    text = (
+        " ".join(words)
+        if owned
+        else f"your {noun}"
+        if phrase.owner is not None or (mine and kind == "pet")
+        else f"the {noun}"
+    )
     return Being(text, kind, gender, plural or (phrase.amount or 1) > 1)

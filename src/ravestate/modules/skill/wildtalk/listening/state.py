@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-RECENT = 24
+RECENT = 40
 """The last phrases, of which none is said again."""
-MATTERS = 8
-"""The number of unfinished matters that are kept."""
 LASTING = 2
 """The number of turns for which a tone lasts."""
-
 
 _OPEN = frozenset(("who", "what", "what's", "when", "where", "why", "which", "how", "whose", "or"))
 
@@ -35,7 +32,7 @@ class Pending:
 
     text: str
     then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """By ``yes``, ``no`` and ``any``."""
+    """By ``yes``, ``no``, ``unsure`` and ``any``."""
     start: str = ""
     """The joke, riddle... that a *yes* begins."""
 
@@ -44,16 +41,6 @@ class Pending:
         """Whether it can be answered with yes or no."""
         words = self.text.replace(",", " ").split(". ")[-1].split("! ")[-1].split("? ")[-1].lower().split()
         return not any(word in _OPEN for word in words[:3])
-
-
-@dataclass(frozen=True, slots=True)
-class Matter:
-    """Something unfinished that the agent may ask about later."""
-
-    text: str
-    """The question: ``How is your mother today?``"""
-    since: float
-    """Seconds on the context's clock."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +58,7 @@ class Game:
     """A game in progress."""
 
     kind: str
-    """``riddle``, ``chain``, ``animal``, ``knock`` or ``choice``."""
+    """``riddle``, ``chain``, ``animal``, ``knock`` or ``play``."""
     word: str = ""
     """The riddle's question, the last word of the chain, or the last question about the animal."""
     used: tuple[str, ...] = ()
@@ -95,9 +82,6 @@ class State:
     tone: str = ""
     turns: int = 0
     """The number of turns for which the tone still lasts."""
-    clause: str = ""
-    """The last thing that the user told, to come back to in a silence."""
-    matters: tuple[Matter, ...] = ()
     stances: Mapping[str, str] = field(default_factory=dict[str, str])
     """The agent's opinions, each chosen once."""
     game: Game | None = None
@@ -105,9 +89,13 @@ class State:
     """The jokes, songs, stories and riddles of this talk."""
     show: str = ""
     """The kind of the last of them."""
+    asks: bool = True
+    """Whether it may ask; not once the user wants no questions."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
-        """Return the state after an utterance with this tone, or one without."""
+        """Return the state after an utterance with this tone, or one without. Anger and tiredness do not end sadness."""
+        if self.tone == "sad" and tone in ("angry", "tired"):
+            tone, lasts = "sad", self.turns
         if tone:
             return replace(self, tone=tone, turns=max(lasts, self.turns - 1) if tone == self.tone else lasts)
         left = max(0, self.turns - 1)
@@ -116,8 +104,3 @@ class State:
     def having_said(self, template: str, text: str) -> State:
         """Return the state after the agent's answer."""
         return replace(self, recent=(*self.recent, template)[-RECENT:], said=(*self.said, text)[-RECENT:])
-
-    def noting(self, matter: Matter) -> State:
-        """Return the state with one more unfinished matter."""
-        others = tuple(one for one in self.matters if one.text != matter.text)
-        return replace(self, matters=(*others, matter)[-MATTERS:])

@@ -1,0 +1,319 @@
+"""What an utterance is for the listener: tags for the table of answers, roles for the phrases, and meanings."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field
+
+from ravestate.language.feelings import clauses
+from ravestate.language.matcher import Match
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.question_word import QuestionWord
+from ravestate.modules.meta.nlp.statement import Statement
+from ravestate.modules.skill.wildtalk.facts import facts_matcher
+
+from .material import Material, Moment
+from .roles import Roles, has_verb, is_request, roles_of, turned
+from .state import State
+from .tongue import is_nonsense, is_number, tongue_of
+
+SUBJECT, SURE, MEANT = 0.45, 0.52, 0.6
+"""The confidence in a subject, a moment and an act from which they decide."""
+FINER = 0.1
+"""The advantage of a moment over a feeling or an act, which are broader."""
+FELT, GLAD, AMAZED = 0.55, 0.7, 0.8
+"""The confidence in a sad feeling from which it decides, in another one, and in astonishment."""
+TURNED = 0.95
+"""The confidence from which a glad feeling or a light moment ends a sad tone."""
+ASKED = 0.8
+"""The confidence in a request from which it is met."""
+FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.7
+"""The words of a sentence that resembles many others, and the confidence that it needs."""
+SHORT = 4
+"""The words of a short answer."""
+ENDINGS = ("stop", "quiet")
+"""Acts that are only taken for sure ones."""
+_SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
+_THIRD = frozenset(("he", "she", "they"))
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """An utterance of the user."""
+
+    text: str
+    seen: Analysis | None = None
+    user: str = ""
+    """The user's name, if it is known."""
+
+
+@dataclass(slots=True)
+class Hearing:
+    """An utterance as the table of answers sees it.
+
+    The tags are: number, foreign, nonsense, signs, unparsed, asking (it ends with a question mark); pending (the agent has
+    asked), closed (with yes or no), answering; shown (the agent has just told a joke...), more (the user wants more); yes, no, unsure, few, short and single (words), verb, acting (an act),
+    felt (a feeling), sure (a moment), topical, others (it tells of others), fragment; question, polar, why, fact, choice,
+    opinion, hypothetical, may (*can I*), should (*what must I*), agree (*isn't it*), you_think, are_you, told (of what the user told),
+    agent (it has *you*), to_agent and of_user (by its subject); request, called (somebody has a
+    name), correcting, age; of the statement: mine, living, about_me, thing_told, described, past, used, plan, negated,
+    imagined, asserting (more than yes or no); the tone; and coin, which one half of the utterances have.
+    """
+
+    tags: set[str]
+    roles: Roles = field(default_factory=Roles)
+    tongue: str = ""
+    meanings: list[Moment] = field(default_factory=list[Moment])
+    """The feelings, acts and moments, best first."""
+    moment: str = ""
+    """The name of the moment that it resembles most, even a little."""
+    verb: Moment | None = None
+    topic: Moment | None = None
+    thing: str = ""
+    """The thing that the agent's opinion is asked for."""
+
+
+def hear(phrases: Material, heard: Heard, state: State, chance: random.Random) -> Hearing:
+    """Return what an utterance is."""
+    seen, text = heard.seen, heard.text
+    tongue = tongue_of(text, phrases.tongues)
+    signs = {"number": is_number(text), "foreign": tongue != "", "nonsense": is_nonsense(text)}
+    signs |= {"signs": not any(map(str.isalnum, text)), "asking": text.rstrip().endswith("?")}
+    signs |= {"coin": chance.random() < 0.5, "unparsed": seen is None, state.tone: True}
+    found = Hearing({tag for tag, holds in signs.items() if holds}, tongue=tongue)
+    if seen is not None:
+        _understand(found, phrases, heard, seen, state)
+    return found
+
+
+def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis, state: State) -> None:
+    asking = asking_sentence(seen)
+    moment, sentence, score = moment_of(phrases, seen, asking)
+    feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
+    roles = roles_of(seen, asking or sentence, state.being, phrases)
+    roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
+    statement = roles.statement
+    found.moment = "" if moment is None else moment.name
+    found.meanings = _ranked(phrases, seen, state, asking, moment, score, feeling)
+    about = moment if moment is not None and moment.name in phrases.topics else None
+    size = sum(word.pos != "PUNCT" for word in seen.tree.words)
+    pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
+    low = {word.low for word in seen.tree.words}
+    others = bool(low & {*_THIRD, "we"}) or any(one.subject.head for one in seen.statements)
+    answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
+    kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
+    called = _called_in(seen, statement)
+    starts_no = bool(seen.tree.words) and seen.tree.words[0].low in ("no", "nah", "nope", "not")
+    choice = _choice_in(seen)
+    tags = {
+        kind: True,
+        "pending": pending is not None,
+        "closed": pending is not None and pending.closed,
+        "answering": answering,
+        "shown": bool(state.said and state.shown) and state.said[-1].endswith(state.shown[-1]),
+        "more": "tell_more" in seen.acts or "then" in low,
+        "few": size <= FEW_WORDS,
+        "short": size <= SHORT,
+        "single": size <= 1,
+        "verb": verb and seen.question is None,
+        "acting": bool(seen.acts.keys() - {"contradiction"}),
+        "felt": feeling is not None,
+        "sure": score >= SURE,
+        "topical": moment is not None and size > 2,
+        "others": others,
+        "asserting": verb and others,
+        "fragment": size <= SHORT + 2,
+        "called": called != "",
+        "request": is_request(seen) and seen.question is None,
+        "correcting": starts_no and verb and size > SHORT and bool(state.said) and seen.question is None
+        and not (pending is not None and pending.closed),
+    }  # fmt: skip
+    if seen.question is not None:
+        tags |= _question_tags(found, phrases, seen, low) | {"choice": choice[0] != ""}
+    elif statement is not None:
+        tags |= _statement_tags(phrases, seen, statement, roles, low)
+        name = f"not {statement.verb}" if statement.negated else statement.verb
+        found.verb = next((one for one in phrases.verbs.values() if name in one.words), None)
+        heads = {statement.object.head, statement.subject.head, *(phrase.head for phrase in statement.phrases)}
+        about = next((one for one in phrases.topics.values() if heads & one.words), None) or about
+    found.topic = about
+    found.tags |= {tag for tag, holds in tags.items() if holds}
+    found.roles = roles.having(called=called, first=choice[0], second=choice[1])
+
+
+def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[str]) -> dict[str, bool]:
+    asked = next((one for one in seen.statements if one.question), None)
+    subject = "" if asked is None else asked.subject_person
+    about = _about_in(seen)
+    found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
+    owned = asked is not None and asked.subject.of("you") and about != ""
+    opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opinion"].words
+    polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
+    return {
+        "question": True,
+        "polar": polar,
+        "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
+        "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
+        "should": not polar and subject == "I" and bool(modal),
+        "agree": polar and subject != "you" and asked is not None and asked.negated,
+        "you_think": polar and subject == "you" and any(word.dep == "ccomp" for word in seen.tree.words),
+        "told": (not polar and "my" in low and subject != "I")
+        or bool(low & {"remember", "my"} and low & {"remember", "know"}),
+        "why": seen.question is QuestionWord.REASON,
+        "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
+        "hypothetical": bool(low & {"would", "could", "if", "imagine"}),
+        "agent": seen.about_agent,
+        "to_agent": seen.about_agent and (asked is None or subject == "you" or asked.subject.of("you")),
+        "of_user": subject == "I",
+        "opinion": found.thing != "" and (owned or opining),
+    }
+
+
+def _statement_tags(
+    phrases: Material, seen: Analysis, statement: Statement, roles: Roles, low: set[str]
+) -> dict[str, bool]:
+    mine = statement.subject_person == "I" and statement.object.person != "you"
+    return {
+        "mine": mine,
+        "living": is_living(phrases, statement) and "they" in roles.values,
+        "about_me": statement.subject_person == "you",
+        "thing_told": statement.subject_person == "other" and statement.subject.head != "",
+        "described": statement.verb in ("be", "have"),
+        "past": is_past(statement.verb, seen),
+        "used": statement.past and "used" in low,
+        "plan": statement.plan,
+        "negated": statement.negated,
+        "imagined": statement.conditional,
+        "age": statement.verb == "be" and statement.object.head.isdigit(),
+    }
+
+
+def _ranked(
+    phrases: Material,
+    seen: Analysis,
+    state: State,
+    asking: str,
+    moment: Moment | None,
+    score: float,
+    feeling: Moment | None,
+) -> list[Moment]:
+    """Return the feelings, acts and moments that decide, best first."""
+    ranked: list[tuple[float, Moment]] = []
+    if moment is not None and state.tone == "sad" and moment.tone != "sad" and "sad" not in moment.groups:
+        score = score if score >= TURNED else 0.0  # no light talk in grief
+    if moment is not None and moment.name in phrases.moments and score >= SURE:
+        ranked.append((score + FINER, moment))
+    if feeling is not None and (not asking or feeling.tone == "sad"):
+        ranked.append((seen.feelings[feeling.name].score, feeling))
+    for act in seen.acts.values():
+        leaves = act.name == "farewell" and act.text == seen.sentences[-1]
+        few = len(act.text.split()) <= FEW_WORDS
+        least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
+        beside = (
+            act.text != asking or act.name == "greeting" if asking else few and len(seen.sentences) > 1 and not leaves
+        )
+        if act.name in phrases.acts and act.score >= least and not beside:
+            ranked.append((act.score + leaves, phrases.acts[act.name]))
+    return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
+
+
+def asking_sentence(seen: Analysis) -> str:
+    """Return the question among the sentences of an utterance; empty if it asks nothing."""
+    if seen.question is None or not seen.sentences:
+        return ""
+    marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
+    return marked[-1] if marked else seen.sentences[-1]
+
+
+def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Moment | None, str, float]:
+    """Return the moment or topic that a sentence resembles most, with the sentence and the confidence.
+
+    If the user asks something, only the question and sad moments count.
+    """
+    best, sentence, score = None, "", 0.0
+    whole = seen.sentences[:4]
+    for match in phrases.matcher.match_all([*whole, *clauses(whole, ())]):
+        if match is None:
+            continue
+        found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
+        if few and len(seen.sentences) > 1:
+            continue
+        if match.score < (SUBJECT if found is None else SURE_OF_FEW if few else 0.0):
+            continue
+        if asking and match.text not in asking and (found is None or found.tone != "sad"):
+            continue
+        weight = match.score if found is not None else match.score / 2  # a topic is less telling
+        if weight > score:
+            best, sentence, score = found or phrases.topics[match.name], match.text, weight
+    return best, sentence, score
+
+
+def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
+    """Return the strongest feeling, sad ones first, with its sentence."""
+    matches = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
+    if not matches:
+        return None, sentence
+    best = max(matches, key=lambda match: (match.name in _SAD, match.score))
+    return phrases.feelings[best.name], best.text
+
+
+def _least(match: Match, tone: str) -> float:
+    """Return the confidence from which a feeling decides."""
+    least = (
+        FELT
+        if match.name in _SAD
+        else TURNED
+        if tone in ("sad", "angry")
+        else AMAZED
+        if match.name == "astonishing"
+        else GLAD
+    )
+    return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
+
+
+def is_living(phrases: Material, statement: Statement) -> bool:
+    """Return whether a statement is about somebody other than the user and the agent."""
+    subject = statement.subject
+    if subject.of("you") or subject.person != "other":
+        return False
+    return subject.head in phrases.beings or bool(subject.names) or subject.text.lower() in _THIRD
+
+
+def is_past(verb: str, seen: Analysis) -> bool:
+    """Return whether the clause of a verb is in the past tense."""
+    return any(
+        "VBD" in (word.tag, *(part.tag for part in seen.tree.children(word, "aux", "auxpass")))
+        for word in seen.tree.words
+        if word.lemma == verb
+    )
+
+
+def _called_in(seen: Analysis, statement: Statement | None) -> str:
+    """Return the name in *his name is Rex* and *the boat was called Rex*."""
+    if statement is None or statement.question or (statement.subject.of("I") and statement.subject.head == "name"):
+        return ""
+    if statement.subject.head == "name":
+        return statement.object.text
+    named = [word for word in seen.tree.words if word.low in ("called", "named") and word.dep == "ROOT"]
+    passive = [word for word in named if seen.tree.children(word, "auxpass")]
+    return seen.tree.phrase(seen.tree.children_of(passive, "oprd")) if statement.subject_person == "other" else ""
+
+
+def _about_in(seen: Analysis) -> str:
+    """Return the noun of *what do you think of jazz*."""
+    for word in seen.tree.words:
+        if word.dep in ("pobj", "pcomp") and seen.tree.head(word).low in ("of", "about", "on"):
+            return turned(seen.tree, [part for part in seen.tree.subtree(word) if part.dep != "punct"])
+    return ""
+
+
+def _choice_in(seen: Analysis) -> tuple[str, str]:
+    """Return the alternatives of *cats or dogs?*."""
+    tree = seen.tree
+    for word in tree.words:
+        first, seconds = tree.head(word), tree.children(tree.head(word), "conj")
+        if word.low == "or" and word.dep == "cc" and seconds and first.pos in ("NOUN", "PROPN", "ADJ", "NUM"):
+            left = {"cc", "conj", "punct"}
+            kept = [part for part in tree.subtree(first) if part.dep not in left and tree.head(part).dep != "conj"]
+            return turned(tree, kept), turned(tree, tree.subtree(seconds[0]))
+    return "", ""
