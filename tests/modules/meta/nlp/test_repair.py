@@ -1,4 +1,4 @@
-"""What the small pipelines mistake is repaired before clauses are read."""
+"""The repair of trees, and what clauses and questions gain by it."""
 
 import pytest
 

@@ -138,10 +138,9 @@ class Clause:
             if word.low == "neither" or (word.low == "no" and word.dep == "det" and after and after.low != "one"):
                 return True
         head = self.head_clause  # I don't smoke or drink
-        joined = self.verb.dep == "conj" and head is not None and not self.own_subjects
-        return (
-            joined and head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
-        )
+        if self.verb.dep != "conj" or head is None or self.own_subjects:
+            return False
+        return head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
 
     @cached_property
     def passive(self) -> Word | None:

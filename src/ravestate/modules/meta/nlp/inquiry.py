@@ -119,7 +119,9 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
     addressed = second == "you" or (
         kind_at(part, 0) is QuestionWord.AMOUNT and low[2:3] == ["you"] and "are" not in low
     )
-    if addressed and (clause is None or clause.verb.dep == "ROOT") and not (part[2:] and part[2].pos == "AUX"):
+    exclaimed = clause is not None and clause.tree.text[part[-1].end :].startswith("!")  # how much you have grown!
+    ends = clause is None or clause.verb.dep == "ROOT"
+    if addressed and ends and not exclaimed and not (part[2:] and part[2].pos == "AUX"):
         return True  # where you live
     nice = (
         len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) in (QuestionWord.FORM, QuestionWord.OBJECT)
