@@ -135,7 +135,9 @@ class Clause:
                 return True  # but "decide not to go" denies the going alone
             if before is not None and (before.low, word.low) == ("no", "longer"):
                 return True
-            if word.low == "neither" or (word.low == "no" and word.dep == "det" and after and after.low != "one"):
+            if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
+                return True
+            if word.low == "no" and word.dep == "det" and after and after.low != "one":
                 return True
         head = self.head_clause  # I don't smoke or drink
         if self.verb.dep != "conj" or head is None or self.own_subjects:
@@ -322,6 +324,8 @@ class Clause:
             if not direct:  # it makes me happy
                 small = [word for word in tree.children(verb, "ccomp") if word.index not in self._clauses]
                 direct = tree.children_of(small, *SUBJECTS)
+            if [word.dep for word in direct[:2]] == ["dobj", "dobj"]:  # she told her friends the truth
+                del direct[0]
             given = lemma_of(verb) in _GIVING and direct and direct[0].pos == "PRON"  # the book you gave me
             if direct and not (relative and (given or direct[0].low in _RELATIVE)):
                 strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos in _NOMINAL]
@@ -337,7 +341,8 @@ class Clause:
         after = tree.after(verbs[0]) if subjects else None  # my name is Tom I live in Berlin
         if after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).pos in VERBAL:
             return [(phrase_of(tree, after, [after]), False)] if tree.head(after).index > after.index else []
-        for head in (*verbs, *subjects):
+        beside = [word for subject in subjects for word in conjuncts(tree, subject, self._clauses)]
+        for head in (*verbs, *beside):
             if found := self._in_phrases(head, of=head in verbs):
                 return found
         for word in tree.children_of(verbs, "advmod", "npadvmod", "dep"):
