@@ -324,9 +324,10 @@ class Clause:
             if not direct:  # it makes me happy
                 small = [word for word in tree.children(verb, "ccomp") if word.index not in self._clauses]
                 direct = tree.children_of(small, *SUBJECTS)
-            if [word.dep for word in direct[:2]] == ["dobj", "dobj"]:  # she told her friends the truth
+            gives = lemma_of(verb) in _GIVING
+            if gives and [word.dep for word in direct[:2]] == ["dobj", "dobj"]:  # she told her friends the truth
                 del direct[0]
-            given = lemma_of(verb) in _GIVING and direct and direct[0].pos == "PRON"  # the book you gave me
+            given = gives and direct and direct[0].pos == "PRON"  # the book you gave me
             if direct and not (relative and (given or direct[0].low in _RELATIVE)):
                 strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos in _NOMINAL]
                 return self._written([direct[0], *(word for word in strays if word.index > direct[0].index)], verb)
