@@ -37,7 +37,7 @@ def built_in(texts: Sequence[str], size: int) -> dict[str, NDArray[np.float32]]:
     known = np.flatnonzero(table["keys"][places] == keys)
     rows = table["rows"][places[known]].astype(np.float32)
     rows /= np.linalg.norm(rows, axis=1, keepdims=True)
-    return {texts[number]: row for number, row in zip(known, rows, strict=True)}
+    return {texts[int(number)]: row for number, row in zip(known, rows, strict=True)}
 
 
 @cache
@@ -46,7 +46,7 @@ def _table() -> dict[str, NDArray[Any]]:
     import numpy as np
 
     try:
-        with (files(__package__ or "") / FILE).open("rb") as file, np.load(file, allow_pickle=False) as found:
+        with (files("ravestate.language") / FILE).open("rb") as file, np.load(file, allow_pickle=False) as found:
             return {name: found[name] for name in found.files}
     except FileNotFoundError:  # before the tool has run
         return {"keys": np.zeros(0, np.uint64), "rows": np.zeros((0, 1), np.int8), "size": np.array(0)}
