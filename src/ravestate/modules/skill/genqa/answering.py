@@ -36,8 +36,8 @@ LEVEL = 0.8
 """Scores that differ by less count as equal."""
 COMMON, COMMON_KIND = 20_000, 2_000
 """The maximum number of passages for a word to be searched, unless there is no rarer word; and for a word of kinds."""
-NAMES = 0.35
-"""The share that counts for a follow-up without words besides names."""
+NAMES, KINDS = 0.4, 0.7
+"""The share that counts for a follow-up without words besides names; `KINDS` if the passage has a word of its kind."""
 WORDS = 24
 """The maximum number of words to search for."""
 
@@ -204,7 +204,13 @@ class Answerer:
         retrieved: list[tuple[float, Found]] = []
         stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
         for each, have in zip(found, stems_of, strict=True):
-            covered = sum(weight for forms, weight, _ in weights if has(have, forms)) / total if total else NAMES
+            covered = (
+                sum(weight for forms, weight, _ in weights if has(have, forms)) / total
+                if total
+                else KINDS
+                if has(have, question.kinds)
+                else NAMES
+            )
             fits = (
                 (covered >= ENOUGH or not total or each in in_view)
                 and have.isdisjoint(avoided)
