@@ -35,7 +35,7 @@ def test_praise_brings_a_smile_and_leaves_the_answer_to_others() -> None:
 
 
 def test_moods_pass() -> None:
-    with simulate(inn, settings={"idle": {"bored_after": 4}}) as sim:
+    with simulate(inn, settings={"idle": {"bored_after": 4, "answer_time": 12}}) as sim:
         sim.say("What an awful inn.")
         assert sim.read(inn.face) == "frowning"
         sim.advance(20)  # she has asked something, and gives it its time

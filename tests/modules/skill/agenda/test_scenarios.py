@@ -11,7 +11,7 @@ from ravestate.testing import Simulation, simulate
 
 PATIENT = {"idle": {"remarks": 100}}
 """Pursue goals however long the user is silent."""
-AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"answer_time": 0.0, "remarks": 100}}
+AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"bored_after": 5.0, "answer_time": 0.0, "remarks": 100}}
 
 
 def agent(name: str = "guide") -> rs.Module:
@@ -307,7 +307,7 @@ def test_an_intent_is_worded_by_the_verbaliser_and_excludes_others_just_as_well(
     async def ask(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = "Are you there?"
 
-    with simulate(guide, lonely, settings={"idle": {"answer_time": 0.0, "remarks": 100}}) as sim:
+    with simulate(guide, lonely, settings={"idle": {"bored_after": 5.0, "answer_time": 0.0, "remarks": 100}}) as sim:
         sim.advance(5.0)
         assert len(sim.said) == 1
         assert sim.said[0] not in ("Lovely weather.", "Are you there?")

@@ -51,7 +51,10 @@ def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
     where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
     chosen = {"confirm": False, "gap": 0.0, **settings}
     return simulate(
-        persqa, chatter(), *others, settings={"ontology": where, "persqa": chosen, "idle": {"bored_after": 5.0}}
+        persqa,
+        chatter(),
+        *others,
+        settings={"ontology": where, "persqa": chosen, "idle": {"bored_after": 5.0, "answer_time": 12.0}},
     )
 
 

@@ -17,6 +17,7 @@ from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
+from .clause import Clause
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
@@ -95,7 +96,8 @@ def analyse(
     normal = pipeline.normalise(text, (*names, *users))
     tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
-    statements = statements_of(tree, entities)
+    parsed = Clause.all_in(tree)
+    statements = statements_of(tree, entities, parsed)
     bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names)])  # one run of the encoder for all matchers
     return Analysis(
         text=text,
@@ -104,7 +106,7 @@ def analyse(
         entities=entities,
         triples=tuple(statement.triple for statement in statements),
         yesno=yesno_of(normal.text if "?" in text else normal.text.replace("?", ".")),  # an added mark is a guess
-        question=question_of(tree),
+        question=question_of(tree, parsed),
         about_agent=_is_about_agent(tree, names),
         sentences=sentences,
         statements=statements,

@@ -47,14 +47,16 @@ def triples_of(tree: Tree) -> tuple[Triple, ...]:
     return tuple(statement.triple for statement in statements_of(tree))
 
 
-def statements_of(tree: Tree, entities: Sequence[Entity] = ()) -> tuple[Statement, ...]:
+def statements_of(
+    tree: Tree, entities: Sequence[Entity] = (), clauses: Sequence[Clause] | None = None
+) -> tuple[Statement, ...]:
     """Return the triples of the text, at most `MOST`, each once, with what their clauses say about them.
 
     Example:
         The only statement of *my sister used to live in Rome* has the subject's head ``sister``, and it is past.
     """
     found: dict[Triple, Statement] = {}
-    for clause in Clause.all_in(tree):
+    for clause in Clause.all_in(tree) if clauses is None else clauses:
         assertion = _Assertion(clause, entities)
         for triple, subject, object in clause.readings():
             if triple not in found and len(found) < MOST:

@@ -1,0 +1,19 @@
+"""Short silences for the scenarios, which count in them."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from ravestate.modules import idle
+
+
+@pytest.fixture(autouse=True)
+def short_silences() -> Iterator[None]:
+    """Set the defaults of idle to 5 and 12 seconds."""
+    fields = idle.Settings.model_fields
+    before = fields["bored_after"].default, fields["answer_time"].default
+    for values in ((5.0, 12.0), before):
+        fields["bored_after"].default, fields["answer_time"].default = values
+        idle.Settings.model_rebuild(force=True)
+        if values != before:
+            yield
