@@ -47,7 +47,7 @@ class Encoder:
         self._lasting: dict[str, NDArray[np.float16]] = {}
 
     def load(self) -> None:
-        """Load the model now; otherwise the first `encode` does.
+        """Load the model now; otherwise the first call of another method does, with the same errors.
 
         Raises:
             PlatformError: A package or the model is missing or broken. The message says what to do.
@@ -58,9 +58,6 @@ class Encoder:
         """Return a row for each text: shape (n, d), float32, each of length 1.
 
         A new sentence takes about 3 ms on one core, one of the latest nothing. The model reads the first 512 tokens.
-
-        Raises:
-            PlatformError: See `load`.
         """
         model = self._loaded()  # first: it says what to install
         import numpy as np
@@ -78,11 +75,7 @@ class Encoder:
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the vectors of texts that stay the same from start to start, such as examples, from a file.
 
-        The first call encodes those that no other call had, and writes the file to the user's cache. A file that is
-        missing or broken does no harm.
-
-        Raises:
-            PlatformError: See `load`.
+        The first call encodes those that no other call had, and writes the file to the user's cache.
         """
         model = self._loaded()
         import numpy as np

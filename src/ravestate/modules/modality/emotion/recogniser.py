@@ -56,5 +56,6 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     found = feelings(said, names)
     if not SPOILERS.isdisjoint(found):
         found.pop("joy", None)
-    shown = (feeling for name, feeling in SHARED.items() if name in found)
-    return next(shown, None) or next((f for f, picture in PICTURES if picture.search(text[:LONGEST])), None)
+    shown: list[Feeling] = [feeling for name, feeling in SHARED.items() if name in found]
+    shown += [feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])]
+    return shown[0] if shown else None
