@@ -56,6 +56,7 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     found = feelings(said, names)
     if not SPOILERS.isdisjoint(found):
         found.pop("joy", None)
-    shown: list[Feeling] = [feeling for name, feeling in SHARED.items() if name in found]
-    shown += [feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])]
-    return shown[0] if shown else None
+    for name, feeling in SHARED.items():
+        if name in found:
+            return feeling
+    return next((feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])), None)

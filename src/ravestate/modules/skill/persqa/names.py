@@ -29,8 +29,8 @@ class Settings(rs.Settings):
 
     topics: Annotated[tuple[str, ...], AfterValidator(_known)] = ASKED
     """Topics to ask about, in this order. The agent learns about the others as well, if the user mentions them."""
-    gap: Annotated[float, Field(ge=0)] = 30.0
-    """Seconds from one question to the next."""
+    gap: Annotated[float, Field(ge=0)] = 180.0
+    """Seconds from one question in a silence to the next."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True
@@ -59,5 +59,5 @@ reply = module.signal("reply", payload=Intent)
 noted = module.signal("noted", payload=Noted)
 """Memory has looked up the user, or has saved what they told."""
 
-forgotten = module.signal("forgotten")
-"""The user has been forgotten; other modules wipe what they keep of them."""
+forgotten = interloc.forgotten
+"""The user has been forgotten; other modules wipe what they keep of them. They need only `interloc` to listen to it."""
