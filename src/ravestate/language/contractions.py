@@ -30,7 +30,7 @@ def _written(table: Any) -> dict[str, str]:
     return written | {contraction.replace("'", " "): contraction for contraction in CONTRACTIONS if "'" in contraction}
 
 
-_TABLE: Any = load_yaml((files(__package__) / "slips.yaml").read_text(encoding="utf-8"), "slips.yaml")
+_TABLE: Any = load_yaml((files("ravestate.language") / "slips.yaml").read_text(encoding="utf-8"), "slips.yaml")
 
 CONTRACTIONS = _contractions(_TABLE["contractions"])
 """The contractions of written English, in lower case, with their words."""

@@ -47,7 +47,7 @@ class Encoder:
         self._latest: dict[str, NDArray[np.float32]] = {}
 
     def load(self) -> None:
-        """Load the model now; otherwise the first `encode` does.
+        """Load the model now; otherwise the first call of another method does, with the same errors.
 
         Raises:
             PlatformError: A package or the model is missing or broken. The message says what to do.
@@ -58,9 +58,6 @@ class Encoder:
         """Return a row for each text: shape (n, d), float32, each of length 1.
 
         A new sentence takes about 3 ms on one core, one of the latest nothing. The model reads the first 512 tokens.
-
-        Raises:
-            PlatformError: See `load`.
         """
         model = self._loaded()  # first: it says what to install
         import numpy as np
@@ -80,9 +77,6 @@ class Encoder:
 
         Those of the built-in examples come with the package. The first call encodes the others, and writes a file to the
         user's cache. A file that is missing or broken does no harm.
-
-        Raises:
-            PlatformError: See `load`.
         """
         model = self._loaded()
         import numpy as np

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -19,12 +19,10 @@ NONE = "none"
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """Example sentences of several classes."""
+    """Example sentences of several classes, and sentences that belong to none of them."""
 
     classes: Mapping[str, tuple[str, ...]]
     none: tuple[str, ...] = ()
-    """Sentences that belong to none of the classes."""
-    source: str = field(default="", compare=False)
 
 
 def read_examples(file: Path | Traversable) -> Examples:
@@ -55,8 +53,7 @@ def parse_examples(found: Any, source: str) -> Examples:
         if not listed or not all(isinstance(text, str) and text.strip() for text in listed):
             raise DeclarationError(f"{source}: {name!r} needs a list of sentences; quote yes, no and numbers")
         classes[str(name)] = tuple(listed)
-    none = classes.pop(NONE, ())
-    return Examples(classes, none, source)
+    return Examples(classes, classes.pop(NONE, ()))
 
 
 @cache

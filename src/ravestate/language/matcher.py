@@ -286,17 +286,20 @@ def _margins(scores: NDArray[Any]) -> NDArray[Any]:
     return two[:, -1] - two[:, 0]
 
 
-def _calibrated(margins: NDArray[np.float64], right: NDArray[np.bool_]) -> tuple[float, float]:
+def _calibrated(margins: NDArray[Any], right: NDArray[Any]) -> tuple[float, float]:
     """Return slope and centre of the logistic curve from a margin to the share of right answers (Platt scaling)."""
     import numpy as np
 
-    features = np.stack([margins, np.ones_like(margins)], axis=1)
-    target = np.where(right, (right.sum() + 1.0) / (right.sum() + 2.0), 1.0 / ((~right).sum() + 2.0))
-    prior, curve = np.array([6.0, 0.0]), np.array([6.0, 0.0])
+    features: NDArray[Any] = np.stack([margins, np.ones_like(margins)], axis=1)
+    hits, misses = int(right.sum()), int((~right).sum())
+    target: NDArray[Any] = np.where(right, (hits + 1.0) / (hits + 2.0), 1.0 / (misses + 2.0))
+    prior = np.array([6.0, 0.0])
+    curve: NDArray[Any] = prior
     for _ in range(30):  # Newton's method, with a weak prior on both parameters
         share = 1 / (1 + np.exp(-np.clip(features @ curve, -30, 30)))
         weighted = features * np.maximum(share * (1 - share), 1e-6)[:, None]
-        gradient = features.T @ (share - target) + 0.01 * (curve - prior)
-        curve = curve - np.linalg.solve(weighted.T @ features + 0.01 * np.eye(2), gradient)
+        gradient: NDArray[Any] = features.T @ (share - target) + 0.01 * (curve - prior)
+        step: NDArray[Any] = np.linalg.solve(weighted.T @ features + 0.01 * np.eye(2), gradient)
+        curve = curve - step
     slope = max(float(curve[0]), 1.0)
     return slope, -float(curve[1]) / slope

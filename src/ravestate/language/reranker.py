@@ -18,7 +18,8 @@ BUNDLED = "reranker_en"
 class Reranker:
     """A cross-encoder: it scores how well a passage answers a question.
 
-    Making one is free: the process shares its model, which the first use loads. Any thread may use it.
+    Making one is free: the process shares its model, which the first use loads. Any thread may use it. Errors are those of
+    `Encoder`.
 
     Example:
         ::
@@ -37,11 +38,7 @@ class Reranker:
         self._folder = folder
 
     def load(self) -> None:
-        """Load the model now; otherwise the first `score` does.
-
-        Raises:
-            PlatformError: A package or the model is missing or broken. The message says what to do.
-        """
+        """Load the model now; otherwise the first `score` does."""
         model_in(self._folder, BUNDLED)
 
     def score(self, query: str, passages: Sequence[str]) -> NDArray[np.float32]:
@@ -49,9 +46,6 @@ class Reranker:
 
         Scores are logits: for the bundled model from about -11 (unrelated) to +11 (an answer). A pair of short sentences
         takes about 3 ms. The model reads the first 512 tokens of a pair.
-
-        Raises:
-            PlatformError: See `load`.
         """
         model = model_in(self._folder, BUNDLED)  # first: it says what to install
         import numpy as np

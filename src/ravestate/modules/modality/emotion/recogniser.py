@@ -56,5 +56,7 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     found = feelings(said, names)
     if not SPOILERS.isdisjoint(found):
         found.pop("joy", None)
-    shown = (feeling for name, feeling in SHARED.items() if name in found)
-    return next(shown, None) or next((f for f, picture in PICTURES if picture.search(text[:LONGEST])), None)
+    for name, feeling in SHARED.items():
+        if name in found:
+            return feeling
+    return next((feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])), None)

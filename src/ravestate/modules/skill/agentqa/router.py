@@ -17,7 +17,7 @@ from ravestate.language.bundled import ModelMissing
 
 from .life import Life
 
-LEAST = 0.6
+LEAST = 0.5
 """The confidence from which a question belongs to a topic."""
 WORDS = 20
 """The maximum number of words in a question about the agent."""
