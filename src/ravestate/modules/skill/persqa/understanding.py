@@ -72,7 +72,7 @@ def understand(
     hearing = _Hearing(seen, talk, known, now, within, tuple(told))
     touched = touched_by([word.lemma for word in seen.tree.words])
     relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
-    person = next(filter(None, map(hearing.reader.relative, relatives)), "")
+    person = next((topic for topic in map(hearing.reader.relative, relatives) if topic), "")
     return replace(hearing.meaning(), touched=touched, person=person)
 
 
