@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import threading
-from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .cache import cached
 from .model import SentenceModel, model_in
+from .vectors import built_in
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,8 +44,7 @@ class Encoder:
         self._model: SentenceModel | None = None
         self._mean: bool | None = None
         self._lock = threading.Lock()
-        self._latest: OrderedDict[str, NDArray[np.float32]] = OrderedDict()
-        self._lasting: dict[str, NDArray[np.float16]] = {}
+        self._latest: dict[str, NDArray[np.float32]] = {}
 
     def load(self) -> None:
         """Load the model now; otherwise the first `encode` does.
@@ -71,19 +70,16 @@ class Encoder:
         new = [text for text in dict.fromkeys(texts) if text not in known]
         if new:
             known.update(zip(new, self._encode(new), strict=True))
-        with self._lock:
-            for text in dict.fromkeys(texts):
-                self._latest[text] = known[text]
-                self._latest.move_to_end(text)
-            while len(self._latest) > REMEMBERED:
-                self._latest.popitem(last=False)
+        with self._lock:  # the latest last
+            others = {text: vector for text, vector in self._latest.items() if text not in known}
+            self._latest = dict([*others.items(), *known.items()][-REMEMBERED:])
         return np.stack([known[text] for text in texts]) if texts else np.zeros((0, model.width), dtype=np.float32)
 
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        """Return the vectors of texts that stay the same from start to start, such as examples, from a file.
+        """Return the vectors of texts that stay the same from start to start, such as examples.
 
-        The first call encodes those that no other call had, and writes the file to the user's cache. A file that is
-        missing or broken does no harm.
+        Those of the built-in examples come with the package. The first call encodes the others, and writes a file to the
+        user's cache. A file that is missing or broken does no harm.
 
         Raises:
             PlatformError: See `load`.
@@ -91,22 +87,25 @@ class Encoder:
         model = self._loaded()
         import numpy as np
 
-        def rows() -> dict[str, NDArray[Any]]:
-            new = [text for text in dict.fromkeys(texts) if text not in self._lasting]
-            self._lasting.update(zip(new, self._encode(new).astype(np.float16), strict=True))
-            found = [self._lasting[text] for text in texts]
-            return {"rows": np.array(found, dtype=np.float16).reshape(len(texts), model.width)}
+        known = built_in(texts, self.size) if self._folder is None else {}
+        new = [text for text in dict.fromkeys(texts) if text not in known]
+        if new:
+            rows = cached(["vectors", self.identity, new], lambda: {"rows": self._encode(new).astype(np.float16)})[
+                "rows"
+            ]
+            known.update(zip(new, rows.astype(np.float32), strict=True))
+        return np.array([known[text] for text in texts], dtype=np.float32).reshape(len(texts), model.width)
 
-        found = cached(["vectors", self.identity, list(texts)], rows)["rows"]
-        self._lasting.update(zip(texts, found, strict=True))
-        return found.astype(np.float32)
+    @property
+    def size(self) -> int:
+        """The bytes of the model's file."""
+        return (self._loaded().folder / "model.onnx").stat().st_size
 
     @property
     def identity(self) -> list[object]:
         """The place, size and date of the model: no other model has the same."""
         folder = self._loaded().folder
-        about = (folder / "model.onnx").stat()
-        return [str(folder), about.st_size, about.st_mtime_ns]
+        return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns]
 
     def _loaded(self) -> SentenceModel:
         if self._model is None:

@@ -10,8 +10,9 @@ import ravestate as rs
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio, wildtalk
 from ravestate.modules.skill.wildtalk.backend import Message, Progress
-from ravestate.modules.skill.wildtalk.listening import ListeningBackend
+from ravestate.modules.skill.wildtalk.listening import ListeningBackend, State
 from ravestate.modules.skill.wildtalk.listening.state import Game
+from ravestate.modules.skill.wildtalk.names import overheard
 from ravestate.modules.skill.wildtalk.small_talk import learn_all
 from ravestate.testing import Simulation, simulate
 
@@ -160,3 +161,13 @@ def test_the_prompt_knows_the_user(sim: Simulation) -> None:
     assert system.startswith("You are Ravestate")
     assert "home: Hannover" in system
     assert "It is " in system
+
+
+def test_forgetting_the_user_wipes_the_talk(sim: Simulation) -> None:
+    sim.say("my mother is ill")
+    sim.advance(1.0)
+    sim.emit(interloc.forgotten)
+    sim.advance(1.0)
+    assert not sim.read(wildtalk.history)
+    assert sim.read(wildtalk.listening) == State()
+    assert sim.read(overheard) == ()

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .names import agent, facts, module, users
+from .names import agent, facts, forgotten, module, users
 
-__all__ = ["agent", "facts", "module", "users"]
+__all__ = ["agent", "facts", "forgotten", "module", "users"]

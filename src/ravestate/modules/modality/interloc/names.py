@@ -16,3 +16,6 @@ users: rs.Collection[Any] = module.collection("users", input=True)
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """Known facts about the user: values by topic, such as ``home`` or ``sister``. A module that learns them writes them."""
+
+forgotten: rs.Signal[None] = module.signal("forgotten", input=True)
+"""The user has been forgotten: modules wipe what they keep of them. `persqa` raises it."""

@@ -59,5 +59,5 @@ reply = module.signal("reply", payload=Intent)
 noted = module.signal("noted", payload=Noted)
 """Memory has looked up the user, or has saved what they told."""
 
-forgotten = module.signal("forgotten")
-"""The user has been forgotten; other modules wipe what they keep of them."""
+forgotten = interloc.forgotten
+"""The user has been forgotten; other modules wipe what they keep of them. They need only `interloc` to listen to it."""

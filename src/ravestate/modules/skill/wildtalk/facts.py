@@ -17,19 +17,14 @@ def facts_matcher() -> Matcher:
 
 
 def asks_for_fact(text: str, *, question: bool = True) -> bool:
-    """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?".
+    """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?". Without the sentence model: no.
 
-    Modules that know better have rules that come before small talk. Without the sentence model the guess is no.
-
-    Args:
-        text: The utterance.
-        question: Whether the parse finds a question in it; a statement asks for nothing.
+    `question`: whether the parse finds a question in it; a statement asks for nothing.
     """
     if not (question or text.rstrip().endswith("?")):
         return False
-    matcher = facts_matcher()
     try:
-        matcher.load()
+        facts_matcher().load()
     except PlatformError:
         return False
-    return any(matcher.match_all([one for one in sentences(text[:2000]) if len(one.split()) > 1]))
+    return any(facts_matcher().match_all([one for one in sentences(text[:2000]) if len(one.split()) > 1]))

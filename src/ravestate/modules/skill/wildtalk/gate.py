@@ -27,10 +27,14 @@ SURE = 0.85
 TELLING = 3
 """The words of an utterance from which an answer can be compared with it."""
 
-_LINK = re.compile(r"https?:|\bwww\.|\w\.(?:com|org|net|io|edu|gov)\b|\S@\S")
-_MARKUP = re.compile(r"[<>{}\[\]|\\`*#_~^]|\w\(\)|=|;\s*$|^\s*(?:[-•]|\d+[.)])\s")
-_ROLE = re.compile(r"^\W*(?:user|human|assistant|system|bot|ai|robot|question|answer|[qa])\s*:", re.IGNORECASE)
-_JUNK = re.compile(r"\ufffd|\S{31,}|(\w)\1{3}|([^\w\s])\2{3}")
+_FORMS = {
+    "a link": re.compile(r"https?:|\bwww\.|\w\.(?:com|org|net|io|edu|gov)\b|\S@\S"),
+    "the mark of a speaker": re.compile(
+        r"^\W*(?:user|human|assistant|system|bot|ai|robot|question|answer|[qa])\s*:", re.IGNORECASE
+    ),
+    "markup or code": re.compile(r"[<>{}\[\]|\\`*#_~^]|\w\(\)|=|;\s*$|^\s*(?:[-•]|\d+[.)])\s"),
+    "junk": re.compile(r"\ufffd|\S{31,}|(\w)\1{3}|([^\w\s])\2{3}"),
+}
 
 
 class Gate:
@@ -59,8 +63,8 @@ class Gate:
             heard: The utterance to be answered.
             said: The agent's last answers; none is to be repeated.
             before: The last utterances of both, which an answer may also refer to.
-            known: Facts about the user: values by topic, such as ``home`` or ``name``.
-            pipeline: The parser; without a loaded one, claims about the user are not checked.
+            known: Facts about the user by topic.
+            pipeline: The parser of claims about the user.
         """
         self._name = name
         self._heard = heard
@@ -101,17 +105,9 @@ class Gate:
     # ---------------------------------------------------------------------------------- the checks
 
     def _form(self, sentence: str) -> str:
-        if _LINK.search(sentence):
-            return "a link"
-        if _ROLE.search(sentence):
-            return "the mark of a speaker"
-        if _MARKUP.search(sentence):
-            return "markup or code"
-        if _JUNK.search(sentence) or is_nonsense(sentence):
-            return "junk"
-        if tongue_of(sentence, material().tongues):
-            return "another language"
-        return ""
+        found = next((reason for reason, pattern in _FORMS.items() if pattern.search(sentence)), "")
+        junk = "junk" if is_nonsense(sentence) else ""
+        return found or junk or ("another language" if tongue_of(sentence, material().tongues) else "")
 
     def _repetition(self, sentence: str) -> str:
         text = plain(sentence)
@@ -149,12 +145,11 @@ class Gate:
         """Return whether the sentence says of the user what is known to be otherwise."""
         subject, told = statement.subject, statement.object
         value = plain(told.text)
-        if subject.person == "you":
-            if statement.verb == "live":
-                return self._differs("home", value)
-            if statement.verb == "be" and told.amount is not None:
-                return self._differs("age", f"{told.amount:g}")
-            return statement.verb == "be" and bool(told.names) and not told.head and self._differs("name", value)
+        if statement.verb == "live" and subject.person == "you":
+            return self._differs("home", value)
+        if statement.verb == "be" and subject.person == "you":
+            age = "" if told.amount is None else f"{told.amount:g}"
+            return self._differs("age", age) or (bool(told.names) and not told.head and self._differs("name", value))
         if subject.of("you") and statement.verb == "be" and told.names:
             return self._differs(subject.head, value)
         names = [phrase for phrase in (subject, told, *statement.phrases) if phrase.of("you") and phrase.names]

@@ -39,7 +39,8 @@ class History:
 
     Example:
         >>> history = History()
-        >>> history.heard("Hello!"); history.said("Hi, how are you?"); history.heard("Fine.")
+        >>> for role, text in ("user", "Hello!"), ("assistant", "Hi, how are you?"), ("user", "Fine."):
+        ...     history.add(Message(role, text))
         >>> [message.text for message in history.prompt("You are {name}.", "Rosie")]
         ['You are Rosie.', 'Hello!', 'Hi, how are you?', 'Fine.']
     """
@@ -57,14 +58,6 @@ class History:
         self._turns = turns
         self._characters = characters
         self._messages: deque[Message] = deque()
-
-    def heard(self, text: str) -> None:
-        """Add an utterance of the user."""
-        self.add(Message("user", text))
-
-    def said(self, text: str) -> None:
-        """Add an utterance of the agent, from any module."""
-        self.add(Message("assistant", text))
 
     def add(self, message: Message) -> None:
         """Add a message."""

@@ -12,15 +12,14 @@ from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
 from ravestate.modules import interloc, nlp, rawio
 
-from .backend import Backend, Message, Role
+from .backend import Backend, Message, PendingBackend, Role
 from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
-from .listening import ListeningBackend
+from .listening import ListeningBackend, State
 from .llama import LlamaBackend, checked_model
 from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
 from .openai import OpenAIBackend
-from .pending import PendingBackend
 from .progress import ProgressBar
 from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, traces
 from .transformers import TransformersBackend
@@ -222,6 +221,14 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("it is neither a move in a game nor a short answer")
     ctx[rawio.output] = said
     return None
+
+
+@module.rule(when=interloc.forgotten.max_age(None).detached(), writes=(history, listening, overheard), background=True)
+async def forget(ctx: rs.RuleContext) -> None:
+    """Wipe the messages and the memory of the talk: the user has been forgotten."""
+    for key in list(ctx[history]):
+        ctx[history].remove(key)
+    ctx[listening], ctx[overheard] = State(), ()
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:

@@ -10,6 +10,9 @@ import pytest
 
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
+from ravestate.modules.skill.wildtalk.listening.roles import roles_of
+
+from .conftest import seen
 
 PLAIN = [
     "the bus came late",
@@ -58,14 +61,18 @@ def test_it_never_says_a_whole_clause_back(text: str, begin: Callable[[int], Any
         assert len(words & set(re.findall(r"[a-z]+", begin(seed).say(text).lower()))) < len(words)
 
 
-def test_it_takes_up_the_thing_with_the_persons_turned(begin: Callable[[int], Any]) -> None:
-    assert any("your old maps" in begin(seed).say("I love my old maps.") for seed in range(10))
+@pytest.mark.parametrize(
+    ("text", "thing"),
+    [("I love my old maps.", "your old maps"), ("she found your red ball", "my red ball"), ("he likes it lol", None)],
+)
+def test_the_thing_is_a_noun_phrase_with_the_persons_turned(text: str, thing: str | None) -> None:
+    assert roles_of(seen(text), "", None, material()).values.get("thing") == thing
 
 
 @pytest.mark.parametrize(
     ("text", "group"),
     [
-        ("May I sit here?", "may"),
+        ("May I lean my ladder here?", "may"),
         ("Isn't the tower tall?", "agree"),
         ("What must I bring to the castle?", "should"),
         ("Do you think that the tower will stand?", "you_think"),

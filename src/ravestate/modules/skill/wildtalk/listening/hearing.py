@@ -17,8 +17,10 @@ from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
-SUBJECT, SURE, MEANT = 0.45, 0.52, 0.6
-"""The confidence in a subject, a moment and an act from which they decide."""
+SURE, MEANT = 0.6, 0.6
+"""The confidence in a moment and an act from which they decide."""
+HALF = 0.5
+"""The confidence in a moment that needs a second sign: a word in common with its example."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 FELT, GLAD, AMAZED = 0.55, 0.7, 0.8
@@ -231,21 +233,23 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
     If the user asks something, only the question and sad moments count.
     """
     best, sentence, score = None, "", 0.0
-    whole = seen.sentences[:4]
-    for match in phrases.matcher.match_all([*whole, *clauses(whole, ())]):
-        if match is None:
+    content = {word.low for word in seen.tree.words if word.pos in ("NOUN", "VERB", "ADJ", "PROPN")}
+    texts = list(dict.fromkeys((*seen.sentences[:4], *clauses(seen.sentences[:4]))))
+    for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
+        if match is None or (asking and match.text not in asking and not _is_sad(phrases, match)):
             continue
         found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
-        if few and len(seen.sentences) > 1:
+        if few and match.score < SURE_OF_FEW:
             continue
-        if match.score < (SUBJECT if found is None else SURE_OF_FEW if few else 0.0):
-            continue
-        if asking and match.text not in asking and (found is None or found.tone != "sad"):
-            continue
-        weight = match.score if found is not None else match.score / 2  # a topic is less telling
+        second = not asking and match.score >= HALF and bool(content & set(match.example.split()))  # a word in common
+        weight = (max(match.score, SURE) if second else match.score) if found else match.score / 2
         if weight > score:
             best, sentence, score = found or phrases.topics[match.name], match.text, weight
     return best, sentence, score
+
+
+def _is_sad(phrases: Material, match: Match) -> bool:
+    return match.name in phrases.moments and phrases.moments[match.name].tone == "sad"
 
 
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:

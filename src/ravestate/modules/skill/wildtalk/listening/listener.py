@@ -59,7 +59,8 @@ class Listener:
         Raises:
             PlatformError: The sentence model is missing or broken.
         """
-        self._phrases.matcher.load()
+        for matcher in self._phrases.matchers:
+            matcher.load()
 
     def performs(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance asks for a performance, or belongs to one: no language model should answer it."""
@@ -146,8 +147,7 @@ class Listener:
             fit = [line for line in lines if line.roles <= roles.values.keys() and line.text not in state.recent]
             fit = [line for line in fit if roles.fill(line.text) not in state.said]
             if fit:
-                most = max(min(len(line.roles), 1) for line in fit)
-                return chance.choice([line for line in fit if min(len(line.roles), 1) == most])
+                return chance.choice([line for line in fit if line.refers] or fit)
         return None
 
     def _sources(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cache
 from importlib.resources import files
 from typing import Any
 
@@ -18,8 +18,9 @@ from .state import LASTING
 
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
-MOMENTS = ("about_the_talk", "advice", "everyday", "life", "moments")
+MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "moments")
 """The files of situations in a talk."""
+_POINTING = re.compile(r"\b(?:it|that|they|them)\b", re.IGNORECASE)
 _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts"))
 
 
@@ -39,6 +40,11 @@ class Line:
     def asks(self) -> bool:
         """Whether it ends with a question."""
         return self.text.endswith("?")
+
+    @property
+    def refers(self) -> bool:
+        """Whether it takes up what was said, by a role or a pronoun."""
+        return bool(self.roles or _POINTING.search(self.text))
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +82,17 @@ class Material:
     def __init__(self) -> None:
         self.feelings = _moments("feelings")
         self.acts = {**self.feelings, **_moments("acts")}
-        self.moments = {name: one for file in MOMENTS for name, one in _moments(file).items()}
-        self.none = self.moments.pop("none").examples
+        files = {file: _moments(file) for file in (*MOMENTS, "topics")}
+        self.none = files["moments"].pop("none").examples
         """Sentences that belong to none of the moments and topics."""
-        self.topics = {**_moments("subjects"), **_moments("topics")}
+        self.topics = {**_moments("subjects"), **files["topics"]}
+        self.moments = {name: one for file in MOMENTS for name, one in files[file].items()}
+        none = (*self.none, *bundled("none").none)
+        self.matchers = [
+            Matcher({one.name: one.examples for one in moments.values()}, none, least=0.45)
+            for moments in files.values()
+        ]
+        """One matcher a file: all of them together learn faster than one of all examples."""
         self.verbs = _moments("verbs")
         self.plain = _moments("plain")
         self.order = [_row(row) for row in _read("order")]
@@ -91,12 +104,6 @@ class Material:
             for gender, nouns in genders.items()
             for noun in nouns
         }
-
-    @cached_property
-    def matcher(self) -> Matcher:
-        """The matcher of moments and topics."""
-        examples = {one.name: one.examples for one in (*self.moments.values(), *self.topics.values()) if one.examples}
-        return Matcher(examples, (*self.none, *bundled("none").none), least=0.45)
 
 
 @cache

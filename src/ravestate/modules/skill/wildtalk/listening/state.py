@@ -93,7 +93,7 @@ class State:
     """Whether it may ask; not once the user wants no questions."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
-        """Return the state after an utterance with this tone, or one without. Anger and tiredness do not end sadness."""
+        """Return the state after an utterance with this tone. Anger and tiredness do not end sadness."""
         if self.tone == "sad" and tone in ("angry", "tired"):
             tone, lasts = "sad", self.turns
         if tone:

@@ -1,0 +1,89 @@
+"""Write the vectors of all built-in examples, so that a first start need not compute them.
+
+python tools/vectors.py            write the file; about half a minute
+python tools/vectors.py --check    exit code 1 if an example has no vector or a vector no example; the tests do the same
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+from unittest.mock import patch
+
+import numpy as np
+
+from ravestate import modules
+from ravestate.cli.complete import COMPLETE
+from ravestate.language import matcher, vectors
+from ravestate.language.encoder import Encoder
+from ravestate.language.matcher import Match
+from ravestate.testing import simulate
+
+if TYPE_CHECKING:
+    pass
+
+FILE = Path(vectors.__file__).with_name(vectors.FILE)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write or check the file."""
+    wanted = {vectors.key_of(text): text for text in examples()}
+    known = set[int]()
+    if FILE.exists():
+        with np.load(FILE, allow_pickle=False) as found:
+            known = set(found["keys"].tolist())
+    missing, stale = wanted.keys() - known, known - wanted.keys()
+    if "--check" in arguments:
+        if missing or stale:
+            some = "; ".join(sorted(wanted[key] for key in missing)[:5])
+            print(
+                f"{len(missing)} examples have no vector ({some}), {len(stale)} vectors no example: python tools/vectors.py"
+            )
+        return int(bool(missing or stale))
+    if missing or stale:
+        write(sorted(wanted.values()))
+    print(f"{len(wanted)} vectors, {FILE.stat().st_size / 1e6:.1f} MB")
+    return 0
+
+
+def examples() -> list[str]:
+    """Return the examples of all matchers that the complete agent loads when it starts."""
+    seen: dict[str, None] = {}
+
+    class Learnt:
+        """A classifier that only notes its examples."""
+
+        def __init__(self, pairs: Sequence[tuple[str, str]], *_: object) -> None:
+            seen.update((text, None) for text, _ in pairs)
+
+        def ranked(self, sentences: Sequence[str], _: int | None) -> list[list[Match]]:
+            return [[] for _ in sentences]
+
+    parts = [getattr(modules, name) for name in COMPLETE]
+    settings = {"wildtalk": {"backend": "listen"}}
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        patch.object(matcher, "_Learnt", Learnt),
+        patch.dict(os.environ, XDG_DATA_HOME=folder),
+        simulate(*parts, settings=settings) as sim,
+    ):
+        sim.advance(1.0)
+    return sorted(seen)
+
+
+def write(texts: Sequence[str]) -> None:
+    """Compute the vectors and write the file."""
+    encoder = Encoder()
+    rows = np.concatenate([encoder.encode(texts[at : at + 256]) for at in range(0, len(texts), 256)])
+    small = np.rint(rows * (127 / np.abs(rows).max(axis=1, keepdims=True))).astype(np.int8)
+    keys = np.array([vectors.key_of(text) for text in texts], dtype=np.uint64)
+    order = np.argsort(keys)
+    np.savez_compressed(FILE, keys=keys[order], rows=small[order], size=encoder.size)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
