@@ -170,7 +170,7 @@ class _Hearing:
             declined = topic in (NAME, "home", "origin")
             return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
         mere = (
-            len(self.text) < 40
+            len(seen.text) < 40
             and len(self.text.split()) <= 4
             and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         )
