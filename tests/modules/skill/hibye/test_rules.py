@@ -3,7 +3,7 @@
 import pytest
 
 import ravestate as rs
-from ravestate.modules import hibye, interloc, rawio
+from ravestate.modules import hibye, idle, interloc, rawio
 from ravestate.modules.meta.verbaliser import PhraseBook
 from ravestate.testing import Simulation, simulate
 
@@ -98,3 +98,10 @@ def test_a_user_who_goes_to_bed_hears_good_night(text: str, intent: str) -> None
     with simulate(hibye) as sim:
         sim.say(text)
         assert only(sim) in phrases(intent)
+
+
+def test_a_sad_user_hears_no_cheerful_goodbye() -> None:
+    with simulate(hibye) as sim:
+        sim.put(idle.sorrow, 3)
+        sim.say("see you later")
+        assert only(sim) in phrases("solace")

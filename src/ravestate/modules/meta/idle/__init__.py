@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from . import rules
-from .names import Settings, asked, bored, hushed, impatient, module, remarked, unanswered
+from .names import Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "remarked", "rules", "unanswered"]
+__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "remarked", "rules", "sorrow", "unanswered"]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ravestate as rs
-from ravestate.modules import interloc, rawio, verbaliser
+from ravestate.modules import idle, interloc, rawio, verbaliser
 
-module = rs.Module("hibye", requires=[rawio, interloc, verbaliser])
+module = rs.Module("hibye", requires=[rawio, idle, interloc, verbaliser])
 
 hello = module.signal("hello")
 """The user greets the agent, and says little else."""

@@ -10,7 +10,7 @@ import ravestate as rs
 from ravestate.language.acts import heard, only
 from ravestate.language.examples import read_examples
 from ravestate.language.matcher import Matcher, bundled_matcher
-from ravestate.modules import interloc, rawio, verbaliser
+from ravestate.modules import idle, interloc, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .names import goodbye, greeted, hello, module, parted
@@ -59,12 +59,15 @@ async def answer_hello(ctx: rs.RuleContext) -> None:
     ctx[verbaliser.intent] = Intent("returned" if returned else "hello", package=__package__)
 
 
-@module.rule(when=goodbye, reads=rawio.input, writes=(verbaliser.intent, parted), weight=0.9 * GENERAL)
+@module.rule(
+    when=goodbye, reads=(rawio.input, idle.sorrow), writes=(verbaliser.intent, parted), weight=0.9 * GENERAL
+)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
-    """Answer a goodbye; wish a good night to a user who goes to bed."""
+    """Answer a goodbye; wish a good night to a user who goes to bed, and say nothing cheerful to a sad one."""
     ctx[parted] = ctx.now
     night = await asyncio.to_thread(_goes_to_bed, ctx[rawio.input])
-    ctx[verbaliser.intent] = Intent("goodnight" if night else "goodbye", package=__package__)
+    intent = "goodnight" if night else "solace" if ctx[idle.sorrow] else "goodbye"
+    ctx[verbaliser.intent] = Intent(intent, package=__package__)
 
 
 def _only_act(text: str) -> str:

@@ -114,7 +114,7 @@ class Acquaintance:
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
 
-        Whatever has changed since `base` stays as it is, because the user has kept talking."""
+        Parts that have changed since `base` stay as they are, because the user has kept talking."""
         facts = unless_changed(self.facts, base.facts, after.facts)
         if (self.who, self.talk.met) != (base.who, base.talk.met):  # another user
             return replace(self, facts=facts)

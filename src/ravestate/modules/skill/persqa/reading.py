@@ -91,15 +91,11 @@ class Reader:
     def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
         """Return whether a negation covers a phrase: *Bonn* in *I live in Ulm, not in Bonn* and *I don't live in Bonn, but
         in Ulm*, but not *Ulm*."""
-        turn = _TURN.search(self.tree.text)
-        if (
-            turn is None
-            or not said.negated
-            or phrase is None
-            or (turn[1] and _NOT.search(self.tree.text[: turn.start()]))
-        ):
+        text, turn = self.tree.text, _TURN.search(self.tree.text)
+        twice = turn and turn[1] and _NOT.search(text[: turn.start()])
+        if turn is None or twice or not said.negated or phrase is None:
             return said.negated
-        return (phrase.text in self.tree.text[turn.end() :]) == bool(turn[1])
+        return (phrase.text in text[turn.end() :]) == bool(turn[1])
 
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""

@@ -120,8 +120,8 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    Prefer the topic with the fewest tries, then the follow-up of the `last` topic, then what the user's words have
-    touched, then the order of `wanted`; but the name goes first.
+    Prefer the topic with the fewest tries, and of those the name, then the follow-up of the `last` topic, then one that the
+    user's words have touched.
 
     Args:
         wanted: Names of topics.

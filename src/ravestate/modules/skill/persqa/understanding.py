@@ -72,7 +72,7 @@ def understand(
     hearing = _Hearing(seen, talk, known, now, within, tuple(told))
     touched = touched_by([word.lemma for word in seen.tree.words])
     relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
-    person = next(filter(None, map(hearing.reader.relative, relatives)), "")
+    person = next((topic for topic in map(hearing.reader.relative, relatives) if topic), "")
     return replace(hearing.meaning(), touched=touched, person=person)
 
 
@@ -170,7 +170,7 @@ class _Hearing:
             declined = topic in (NAME, "home", "origin")
             return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
         mere = (
-            len(self.text) < 40
+            len(seen.text) < 40
             and len(self.text.split()) <= 4
             and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         )

@@ -46,7 +46,7 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     if kind == "number":
         return text if text.isdecimal() and 0 < int(text) < 120 else None
     named = kind in ("name", "people")
-    never = WORDS["function"] | (WORDS["determiners"] if named else set())
+    never = WORDS["function"] | (WORDS["determiners"] if named else frozenset[str]())
     tells = any(unicodedata.category(letter)[0] in "L" or unicodedata.category(letter) == "So" for letter in text)
     if never & set(words[named and words[0] == "will" :]) or not tells or text[0].isdigit():
         return None

@@ -138,7 +138,7 @@ def asking(topic: str, known: Facts) -> Intent:
 def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
     """Return a reply that shows which `values` were understood."""
     if not TOPICS[topic].asked:
-        return stating("learned", topic, values, known)
+        return say("learned", known, value=spoken(topic, values))
     return say(f"learned_{topic}", known, **{topic: spoken(topic, values)})
 
 
