@@ -67,10 +67,7 @@ def load_settings(
 ) -> dict[str, Any]:
     """Return module's name → the module's settings: values of `given` first, then the environment's, then the defaults.
 
-    Args:
-        modules: The modules of a policy.
-        given: Module's name → the values of fields, or an instance of the module's settings class.
-        environment: Environment variables; by default those of the process.
+    For a module, `given` has the values of fields, or an instance of the module's settings class.
 
     Raises:
         DeclarationErrors: There are unknown modules, unknown fields or values of a wrong type; one error for each.

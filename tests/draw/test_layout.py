@@ -9,7 +9,7 @@ from ravestate.draw.build import build
 from ravestate.draw.graph import Diagram
 from ravestate.draw.layout import Box, Layout, lay_out
 from ravestate.draw.routing import Point
-from ravestate.draw.sizes import label_size, node_size
+from ravestate.draw.text import label_size, node_size
 
 NEAR = 0.05
 

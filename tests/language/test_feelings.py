@@ -3,7 +3,7 @@
 import pytest
 
 from ravestate.language import feelings as room
-from ravestate.language.feelings import addressed, feelings
+from ravestate.language.feelings import feelings
 from ravestate.language.matcher import Matcher
 
 EXAMPLES = {
@@ -36,19 +36,3 @@ def lexicon(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_each_clause_counts_unless_it_is_asked_or_a_condition(text: str, found: str) -> None:
     assert " ".join(sorted(feelings([text]))) == found
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("Rosie is clever", "you are clever"),
-        ("rosie's so cute", "you are so cute"),
-        ("Rosie's voice", "your voice"),
-        ("I love Rosie.", "I love you."),
-        ("Rosalie is clever", "Rosalie is clever"),
-        ("this little robot is great", "you are great"),
-        ("Rosie has won", "you have won"),
-    ],
-)
-def test_the_agents_names_mean_you(text: str, said: str) -> None:
-    assert addressed(text, ["Rosie", ""]) == said

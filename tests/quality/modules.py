@@ -1,4 +1,4 @@
-"""What the modules understand, for the sets; and genqa on its own set."""
+"""Functions that show how nlp understands a text, for the sets; and genqa on its own set."""
 
 from __future__ import annotations
 

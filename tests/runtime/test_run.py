@@ -16,7 +16,7 @@ import pytest
 import ravestate as rs
 from ravestate.modules import rawio
 from ravestate.runtime.agent import Agent
-from ravestate.runtime.run import run_context, run_servers
+from ravestate.runtime.run import run_context, run_servers, until_first_ends
 from runtime.on_loop import on_loop, turns
 
 LIMIT = 20
@@ -238,6 +238,26 @@ async def test_run_in_a_running_loop_is_refused_and_leaves_no_coroutine() -> Non
         with pytest.raises(rs.EngineError, match=r"rs.run starts an event loop.*async with rs.Context"):
             rs.run(rs.Module("m"))
         gc.collect()  # a coroutine that nobody awaits complains when it is deleted
+
+
+async def _for_ever(ended: list[str]) -> None:
+    try:
+        await asyncio.Event().wait()
+    finally:
+        ended.append("for ever")
+
+
+async def _fail() -> None:
+    await asyncio.sleep(0)
+    raise rs.PlatformError("too slow")
+
+
+def test_when_one_of_several_ends_the_others_do_and_its_fault_is_not_lost() -> None:
+    ended: list[str] = []
+    asyncio.run(until_first_ends(_for_ever(ended), asyncio.sleep(0)))
+    with pytest.raises(rs.PlatformError, match="too slow"):
+        asyncio.run(until_first_ends(_fail(), _for_ever(ended), _for_ever(ended)))
+    assert ended == ["for ever"] * 3
 
 
 AGENT = """

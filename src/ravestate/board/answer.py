@@ -10,7 +10,12 @@ from ravestate.engine.reasons import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Raiser:
-    """A rule that may raise a missing signal, and the outcome of its run in this causal group."""
+    """A rule that may raise a missing signal, and the outcome of its run in this causal group.
+
+    Attributes:
+        outcome, words: The outcome of the rule's run, ``running``, or ``not run``; the same as text.
+        time: The time of the outcome (seconds); None if there is none.
+    """
 
     rule: str
     outcome: str

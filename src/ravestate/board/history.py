@@ -23,15 +23,8 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    Attributes:
-        records: All records of the activation, in order.
-        held: The records of the spikes that it took, in order.
-        lacks: The signals that it lacked before it ended.
-        complete: The time at which it had all its spikes (seconds); None if it never had.
-        waits: The records of its waits.
-        gave_up: The records of the spikes that it gave up at its end.
-        started: The record of the start of its run; None without a run.
-        settled: The record of the end of its run; None before.
+    It `lacks` these signals before it ends. Times are in seconds: `complete` is when it had all its spikes, None if never.
+    Without a run, `started` is None; before the end of the run, `settled` is None.
     """
 
     id: int

@@ -18,6 +18,7 @@ from ravestate.board.wire import data_of
 from ravestate.errors import RavestateError
 from ravestate.modules.platform.webio.channel import Bucket, Channel
 from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.runtime.run import until_first_ends
 
 if TYPE_CHECKING:
     from ravestate.modules.platform.webio.access import Access
@@ -29,7 +30,7 @@ from dataclasses import astuple
 from ravestate.draw.fold import fold
 from ravestate.draw.graph import Diagram
 from ravestate.draw.layout import lay_out
-from ravestate.draw.sizes import label_size, node_size
+from ravestate.draw.text import label_size, node_size
 
 FRAME = 0.05  # the least number of seconds between two frames of records
 
@@ -104,14 +105,12 @@ class Inspector:
             state = source.description, *source.clock()
             await self._send(protocol.Welcome(protocol.VERSION, title, source.live, visitor, whole, *state))
             await self._send(source.look())
-            await self._channel.both(self._read(source), self._write(source, session, seen, title))
+            await until_first_ends(self._read(source), self._write(source, session, seen, title))
         finally:
             if session is not None:
                 self._sessions.exit(session, self)
                 if isinstance(source, LiveSource) and not any(isinstance(o, Inspector) for o in session.onlookers):
                     source.leave()
-
-    # ------------------------------------------------------------------------------------ the first frame
 
     async def _hello(self) -> protocol.Hello:
         text = await self._channel.first(HELLO)
@@ -145,8 +144,6 @@ class Inspector:
         if session is None:
             raise ProtocolError("gone", "this conversation has ended")
         return session
-
-    # ------------------------------------------------------------------------------------ from the page
 
     async def _read(self, source: Source) -> None:
         now = asyncio.get_running_loop().time
@@ -190,8 +187,6 @@ class Inspector:
 
     def _reply(self, frame: protocol.ServerFrame) -> None:
         self._channel.reply(protocol.serialise(frame))
-
-    # ------------------------------------------------------------------------------------ to the page
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
         """Send the page new records, at most some twenty times a second, and answers."""

@@ -43,7 +43,12 @@ PAUSE = 0.1  # seconds for which a recorder stops listening after too many recor
 
 @dataclass(slots=True)
 class Gap:
-    """A gap in the records from `time` (seconds) on: the recorder missed so many spikes; -1 while that is unknown."""
+    """A gap in the records.
+
+    Attributes:
+        time: The start of the gap (seconds on the context's clock).
+        spikes: How many spikes the recorder missed; -1 while that is unknown.
+    """
 
     time: float
     spikes: int = -1

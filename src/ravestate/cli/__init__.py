@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import logging
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -57,7 +58,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if first not in COMMANDS and (hint := nearest(first, COMMANDS)):
         parser.error(f"there is no command {first!r}{hint}")
     options = parser.parse_args(arguments)
-    _log(options.verbose)
+    verbosity: int = options.verbose
+    level = [logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)]
+    logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
     try:
         return import_module(f"ravestate.cli.{options.command}").run(options)
     except UsageError as error:
@@ -118,12 +121,3 @@ class CommandParser(argparse.ArgumentParser):
                 hint = f"; write --set webio.{name[2:]}={value}"
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return options, unknown
-
-
-def _log(verbosity: int) -> None:
-    import logging
-
-    logging.basicConfig(
-        level=[logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)],
-        format="%(levelname)s %(name)s: %(message)s",
-    )

@@ -7,7 +7,6 @@ import asyncio
 import os
 import sys
 import webbrowser
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -65,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
 
 async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool, browser: bool | None) -> None:
     from ravestate.modules.platform.webio.server import Server
-    from ravestate.runtime.run import asked_by_signals
+    from ravestate.runtime.run import asked_by_signals, until_first_ends
 
     stopped = asyncio.Event()
     with asked_by_signals(stopped.set):
@@ -73,17 +72,7 @@ async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool,
             server.announce({"agent": "", "board": inside} if talks else {"board": inside})
             if browser or (browser is None and _has_browser()):
                 await asyncio.to_thread(webbrowser.open, server.link("" if talks else inside))
-            await _first(stopped.wait, server.until_failed)
-
-
-async def _first(*waits: Callable[[], Awaitable[object]]) -> None:
-    """Wait until the first of several awaitables ends; raise its exception, if there is one."""
-    tasks = [asyncio.ensure_future(wait()) for wait in waits]
-    done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    for task in tasks:
-        task.cancel()
-    for task in done:
-        task.result()
+            await until_first_ends(stopped.wait(), server.until_failed())
 
 
 def _has_browser() -> bool:

@@ -112,9 +112,6 @@ def _settings(options: argparse.Namespace) -> Settings:
     return load_settings([ontology.module], {"ontology": given})["ontology"]
 
 
-# ------------------------------------------------------------------------------------ actions
-
-
 def _list(memory: Memory, options: argparse.Namespace) -> int:
     type = options.type
     if type and type not in memory.types:
@@ -219,9 +216,6 @@ def _confirmed(question: str) -> bool:
     except EOFError:
         print()
         return False
-
-
-# ------------------------------------------------------------------------------------ nodes as text
 
 
 def _everything(memory: Memory) -> list[Node]:

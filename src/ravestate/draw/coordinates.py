@@ -2,7 +2,7 @@
 
 Each layer in turn moves as near as possible to its neighbours. Within one layer, the best coordinates under minimum
 distances are a weighted isotonic regression, solved by pooling adjacent violators. Forward and backward sweeps repeat this
-for all layers. In the end, `straighten` removes small steps.
+for all layers. In the end, `Straightener` removes small steps.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from itertools import pairwise
 from math import inf
 
 from ravestate.draw.layered import LayeredGraph
-from ravestate.draw.straighten import straighten
+from ravestate.draw.straighten import Straightener
 
 _SWEEPS = 24  # sweeps over all layers, forwards and backwards in turn
 _AHEAD = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
@@ -56,7 +56,7 @@ def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[f
                 weights.append(total if pulls else 0.01)
             for v, y in zip(layer, _isotonic(wishes, weights, gaps[at], half), strict=True):
                 middle[v] = y
-    straighten(graph, middle)
+    Straightener(graph, middle).run()
     return middle
 
 

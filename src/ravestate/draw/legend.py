@@ -9,8 +9,7 @@ from functools import partial
 from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, EdgeKind, NodeKind, used
 from ravestate.draw.layout import Box
 from ravestate.draw.shapes import line, number, outline
-from ravestate.draw.sizes import SMALL
-from ravestate.draw.text import width
+from ravestate.draw.text import SMALL, width
 
 NARROWEST = 560.0  # the width in pixels that a legend may use even if the picture is narrower
 _ROW = 26.0  # pixels: height of a row

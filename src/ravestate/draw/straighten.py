@@ -15,12 +15,9 @@ _ROUNDS = 4  # the maximum number of passes over all segments
 _LEVEL = 0.01  # pixels: a smaller step counts as none
 
 
-def straighten(graph: LayeredGraph, middle: list[float]) -> None:
-    """Move the vertices so that lines become straight; this changes `middle`, their vertical middles, in place."""
-    _Straightener(graph, middle).run()
+class Straightener:
+    """Moves the vertices of a graph so that lines become straight; it changes `middle`, their vertical middles."""
 
-
-class _Straightener:
     def __init__(self, graph: LayeredGraph, middle: list[float]) -> None:
         self.graph = graph
         self.middle = middle
@@ -34,10 +31,10 @@ class _Straightener:
             p, q = graph.ports[low], graph.ports[high]
             self.lines[p.vertex].append((q.vertex, q.offset - p.offset))
             self.lines[q.vertex].append((p.vertex, p.offset - q.offset))
-        self.block = list(range(len(middle)))
-        self.members = [[v] for v in range(len(middle))]
+        self.block = [[v] for v in range(len(middle))]  # vertex → the vertices that move together with it
 
     def run(self) -> None:
+        """Straighten as many lines as possible."""
         graph = self.graph
         for _ in range(_ROUNDS):
             for segment in range(len(graph.segments)):
@@ -56,7 +53,7 @@ class _Straightener:
                 ]
                 if choices:
                     _, vertex, by = max(choices, key=lambda choice: choice[0])
-                    for member in self.members[self.block[vertex]]:
+                    for member in self.block[vertex]:
                         self.middle[member] += by
                     self.join(u, v)
                     moved = True
@@ -73,29 +70,25 @@ class _Straightener:
         """Return the cost saved by moving a vertex's block down by `by` pixels; negative if there is no room."""
         block = self.block[vertex]
         saved = 0.0
-        for v in self.members[block]:
+        for v in block:
             other = self.below[v] if by > 0 else self.above[v]
-            if other >= 0 and self.block[other] != block:
+            if other >= 0 and self.block[other] is not block:
                 upper, lower = (v, other) if by > 0 else (other, v)
                 room = abs(self.middle[other] - self.middle[v]) - self.graph.separation(upper, lower)
                 if room < abs(by) - 1e-6:
                     return -1.0
             for w, offset in self.lines[v]:
-                if self.block[w] != block:
+                if self.block[w] is not block:
                     step = self.middle[w] + offset - self.middle[v]
                     saved += _cost(step) - _cost(step - by)
         return saved
 
     def join(self, u: int, v: int) -> None:
         a, b = self.block[u], self.block[v]
-        if a == b:
-            return
-        if len(self.members[a]) < len(self.members[b]):
-            a, b = b, a
-        for member in self.members[b]:
-            self.block[member] = a
-        self.members[a].extend(self.members[b])
-        self.members[b] = []
+        if a is not b:
+            a += b
+            for member in b:
+                self.block[member] = a
 
 
 def _cost(step: float) -> float:

@@ -10,9 +10,8 @@ from ravestate.draw.graph import EDGES, JUNCTIONS, NODES, Diagram, Edge, Node, N
 from ravestate.draw.layout import Box, lay_out
 from ravestate.draw.legend import NARROWEST, legend
 from ravestate.draw.shapes import heads, line, number, outline
-from ravestate.draw.sizes import LABEL, NAME, SMALL, label_size, node_size, shown
 from ravestate.draw.style import stylesheet
-from ravestate.draw.text import clean
+from ravestate.draw.text import LABEL, NAME, SMALL, clean, label_size, node_size, shown
 
 _MARGIN = 24.0  # pixels around the picture and its legend
 _SENTENCES = 60  # the maximum number of edges in the description

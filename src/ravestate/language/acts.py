@@ -11,7 +11,7 @@ from .normal import normalise, plain
 from .sentences import sentences as sentences_of
 from .shape import shape
 
-LONGEST = 1000
+LONGEST = 2000
 """The characters of an utterance that count."""
 
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
@@ -31,7 +31,7 @@ _GOES_ON = word_set("is was are were be means of for to that which by in on at s
 
 
 def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
-    """Return the sentences of an utterance in the normal form; the first 1000 characters count.
+    """Return the sentences of an utterance in the normal form; the first 2000 characters count.
 
     Args:
         text: The user's words.

@@ -7,7 +7,6 @@ import json
 import os
 import tempfile
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
@@ -46,13 +45,8 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
         with os.fdopen(handle, "wb") as out:
             np.savez(out, allow_pickle=False, **arrays)
         os.replace(name, file)
-        _remove_stale(file.parent)
+        for old in sorted(file.parent.glob("*.np[yz]"), key=lambda old: old.stat().st_mtime, reverse=True)[FILES:]:
+            old.unlink(missing_ok=True)
     except OSError:
         pass  # it only costs time
     return arrays
-
-
-def _remove_stale(folder: Path) -> None:
-    """Remove the files that nobody has read for longest, beyond the latest `FILES`."""
-    for file in sorted(folder.glob("*.np[yz]"), key=lambda file: file.stat().st_mtime, reverse=True)[FILES:]:
-        file.unlink(missing_ok=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import threading
-from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -45,7 +44,7 @@ class Encoder:
         self._model: SentenceModel | None = None
         self._mean: bool | None = None
         self._lock = threading.Lock()
-        self._latest: OrderedDict[str, NDArray[np.float32]] = OrderedDict()
+        self._latest: dict[str, NDArray[np.float32]] = {}
 
     def load(self) -> None:
         """Load the model now; otherwise the first `encode` does.
@@ -71,12 +70,9 @@ class Encoder:
         new = [text for text in dict.fromkeys(texts) if text not in known]
         if new:
             known.update(zip(new, self._encode(new), strict=True))
-        with self._lock:
-            for text in dict.fromkeys(texts):
-                self._latest[text] = known[text]
-                self._latest.move_to_end(text)
-            while len(self._latest) > REMEMBERED:
-                self._latest.popitem(last=False)
+        with self._lock:  # the latest last
+            others = {text: vector for text, vector in self._latest.items() if text not in known}
+            self._latest = dict([*others.items(), *known.items()][-REMEMBERED:])
         return np.stack([known[text] for text in texts]) if texts else np.zeros((0, model.width), dtype=np.float32)
 
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:

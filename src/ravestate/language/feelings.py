@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
+from .addressing import addressed
 from .matcher import Match, bundled_matcher
 from .normal import plain
 from .shape import shape
@@ -19,15 +20,6 @@ _CLAUSE_END = re.compile(
 _CONDITION = re.compile(r"\b(?:if|unless|whether)\b", re.IGNORECASE)
 _ASKED = frozenset({"affection", "astonishing"})
 """Feelings that a question may show: "can I hug you?", "really?"."""
-
-_ENDINGS = (
-    (r"(?:'s| is| was)(?= (?:so|very|really|such|quite|a|an|the|not)\b)", "you are"),
-    (r" (?:is|was)\b", "you are"),
-    (r" has\b", "you have"),
-    (r"'s\b", "your"),
-    (r"\b", "you"),
-)
-"""The ends of the agent's name, and the words for both."""
 
 
 def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str, Match]:
@@ -67,16 +59,3 @@ def _clauses(sentence: str, alone: bool) -> list[str]:
 def _asks(sentence: str) -> bool:
     """Return whether a sentence asks for yes or no. The examples decide about those with a question word."""
     return "?" in sentence and shape(plain(sentence))[3] < 2
-
-
-def addressed(sentence: str, names: Collection[str]) -> str:
-    """Return the sentence with "you" in place of the agent's names and "this robot".
-
-    Example:
-        >>> addressed("Rosie's voice is nice, and this robot is clever", ["Rosie"])
-        'your voice is nice, and you are clever'
-    """
-    agent = "|".join(["th(?:is|at) (?:little |cute )?robot", *(re.escape(name) for name in names if name)])
-    for ending, instead in _ENDINGS:
-        sentence = re.sub(rf"(?<!\w)(?:{agent}){ending}", instead, sentence, flags=re.IGNORECASE)
-    return sentence

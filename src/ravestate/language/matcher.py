@@ -160,18 +160,12 @@ class Matcher:
             found = list(map(self.match_exactly, sentences))
         else:
             with self._matching:  # several skills ask for the same sentences at the same time
-                found = self._remembered(sentences)
+                known = {sentence: self._latest.get(sentence) or self.match_exactly(sentence) for sentence in sentences}
+                new = [sentence for sentence, match in known.items() if match is None]
+                known.update(zip(new, (ranked[0] for ranked in self.ranked_all(new, most=1)), strict=True))
+                self._latest = dict([*{**self._latest, **known}.items()][-REMEMBERED:])
+            found = [known[sentence] for sentence in sentences]
         return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
-
-    def _remembered(self, sentences: Sequence[str]) -> list[Match | None]:
-        new = {sentence: self.match_exactly(sentence) for sentence in sentences if sentence not in self._latest}
-        unknown = [sentence for sentence, match in new.items() if match is None]
-        new.update(zip(unknown, (ranked[0] for ranked in self.ranked_all(unknown, most=1)), strict=True))
-        self._latest.update(new)
-        found = [self._latest[sentence] for sentence in sentences]
-        for sentence in list(self._latest)[:-REMEMBERED]:
-            del self._latest[sentence]
-        return found
 
     def match_exactly(self, sentence: str) -> Match | None:
         """Return the class of an example, word for word; its name is empty for an example of no class."""
@@ -276,17 +270,10 @@ class _Learnt:
         import numpy as np
 
         # In place: for thousands of examples, each copy takes tens of megabytes.
-        kernel = meanings @ self._meanings.T
-        kernel -= 1
-        kernel *= SHARPNESS
+        kernel = (meanings @ self._meanings.T - 1) * SHARPNESS
         np.exp(kernel, out=kernel)
-        spelling *= SPELLING
-        kernel += spelling
-        alike = likeness(shapes, self._shapes)
-        alike -= 1
-        alike *= self._weight
-        alike += 1
-        kernel *= alike
+        kernel += SPELLING * spelling
+        kernel *= 1 + self._weight * (likeness(shapes, self._shapes) - 1)
         kernel += COMMON
         return kernel
 
@@ -295,30 +282,21 @@ def _margins(scores: NDArray[Any]) -> NDArray[Any]:
     """Return the distance of the best score in each row from the next best."""
     import numpy as np
 
-    if scores.shape[1] < 2:
-        return scores[:, 0]
-    two = np.partition(scores, -2, axis=1)[:, -2:]
-    return two[:, 1] - two[:, 0]
+    two = np.sort(scores, axis=1)[:, -2:]
+    return two[:, -1] - two[:, 0]
 
 
 def _calibrated(margins: NDArray[np.float64], right: NDArray[np.bool_]) -> tuple[float, float]:
     """Return slope and centre of the logistic curve from a margin to the share of right answers (Platt scaling)."""
     import numpy as np
 
-    slope, bias = 6.0, 0.0
-    target = (right * (right.sum() + 1.0) / (right.sum() + 2.0)) + (~right / ((~right).sum() + 2.0))
+    features = np.stack([margins, np.ones_like(margins)], axis=1)
+    target = np.where(right, (right.sum() + 1.0) / (right.sum() + 2.0), 1.0 / ((~right).sum() + 2.0))
+    prior, curve = np.array([6.0, 0.0]), np.array([6.0, 0.0])
     for _ in range(30):  # Newton's method, with a weak prior on both parameters
-        share = 1 / (1 + np.exp(-np.clip(slope * margins + bias, -30, 30)))
-        weight = np.maximum(share * (1 - share), 1e-6)
-        error = share - target
-        gradient = np.array([error @ margins + 0.01 * (slope - 6.0), error.sum() + 0.01 * bias])
-        hessian = np.array(
-            [
-                [weight @ margins**2 + 0.01, weight @ margins],
-                [weight @ margins, weight.sum() + 0.01],
-            ]
-        )
-        step = np.linalg.solve(hessian, gradient)
-        slope, bias = slope - float(step[0]), bias - float(step[1])
-    slope = max(slope, 1.0)
-    return slope, -bias / slope
+        share = 1 / (1 + np.exp(-np.clip(features @ curve, -30, 30)))
+        weighted = features * np.maximum(share * (1 - share), 1e-6)[:, None]
+        gradient = features.T @ (share - target) + 0.01 * (curve - prior)
+        curve = curve - np.linalg.solve(weighted.T @ features + 0.01 * np.eye(2), gradient)
+    slope = max(float(curve[0]), 1.0)
+    return slope, -float(curve[1]) / slope

@@ -39,13 +39,11 @@ def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
         PlatformError: A package or a file is missing or broken.
     """
     path = folder_of(folder, bundled)
-    model = _loaded.get(path)
-    if model is None:
+    if path not in _loaded:
         with _loading:
-            model = _loaded.get(path)
-            if model is None:
-                model = _loaded[path] = SentenceModel(path)
-    return model
+            if path not in _loaded:
+                _loaded[path] = SentenceModel(path)
+    return _loaded[path]
 
 
 def folder_of(folder: Path | str | None, bundled: str) -> Path:
@@ -122,18 +120,15 @@ class SentenceModel:
         import numpy as np
 
         # One by one: for a batch the tokenizer starts threads, which a later fork warns about.
-        codes = [self._encode(text) for text in texts]
+        codes = [self._tokenizer.encode(*map(_encodable, [text] if isinstance(text, str) else text)) for text in texts]
         order = sorted(range(len(codes)), key=lambda index: len(codes[index].ids))
-        start = 0
-        while start < len(order):
-            end, length = start, 0
-            while end < len(order):
-                length = len(codes[order[end]].ids)
-                shortest = len(codes[order[start]].ids)
-                if end > start and (length * (end - start + 1) > BATCH_TOKENS or length > 1.25 * shortest + 4):
+        while order:
+            shortest, size = len(codes[order[0]].ids), 1
+            for length in (len(codes[index].ids) for index in order[1:]):
+                if length * (size + 1) > BATCH_TOKENS or length > 1.25 * shortest + 4:
                     break
-                end += 1
-            indices, start = order[start:end], end
+                size += 1
+            indices, order = order[:size], order[size:]
             length = len(codes[indices[-1]].ids)
             ids, mask, types = np.zeros((3, len(indices), length), dtype=np.int64)
             for row, index in enumerate(indices):
@@ -142,11 +137,6 @@ class SentenceModel:
                 ids[row, :size], mask[row, :size], types[row, :size] = code.ids, 1, code.type_ids
             given = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
             yield indices, self._session.run(None, {name: given[name] for name in self._inputs})[0], mask
-
-    def _encode(self, text: str | tuple[str, str]) -> Any:
-        if isinstance(text, str):
-            return self._tokenizer.encode(_encodable(text))
-        return self._tokenizer.encode(_encodable(text[0]), _encodable(text[1]))
 
 
 def _encodable(text: str) -> str:

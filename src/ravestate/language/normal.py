@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 from .contractions import CONTRACTIONS, WRITTEN, word_set
 from .lexicon import SHORTEST, Lexicon, loaded_lexicon
@@ -55,17 +56,17 @@ class Normal:
 
 @dataclass(slots=True)
 class _Piece:
-    """A word as written, the span of the original that it stands for, and the text before it."""
+    """A word as written, the span of the original that it stands for, and the punctuation and space before it.
+
+    A word may begin a sentence (`first`), or be part of an address or a formula (`code`), which stays as it is.
+    """
 
     start: int
     end: int
     text: str
     gap: str = ""
-    """The punctuation and white space before the word."""
     first: bool = False
-    """Whether the word begins a sentence."""
     code: bool = False
-    """Whether it is part of an address or a formula, which stays as it is."""
 
     @property
     def low(self) -> str:
@@ -79,22 +80,22 @@ _CHUNK = re.compile(r"\S+")
 _CODE = re.compile(r"[@/\\_=&#<>{}|~^*+%]|www\.")
 _CROWDED = re.compile(r"[,;:!?]")
 _NO_WORD = re.compile(r"\d|^[^a-z]", re.IGNORECASE)
-
 _DOMAINS = word_set("com org net info gov uk us de at eu html txt")
 
 _WH = word_set("what who where when why how which whose whom what's who's where's when's why's how's")
 _BE = word_set("is are was were am isn't aren't wasn't weren't")
 _AUX = _BE | word_set(
-    "do does did don't doesn't didn't can could will would shall should may might have has had can't couldn't won't wouldn't shouldn't haven't hasn't hadn't"
+    "do does did don't doesn't didn't can could will would shall should may might have has had "
+    "can't couldn't won't wouldn't shouldn't haven't hasn't hadn't"
 )
-_AMBIGUOUS = word_set("do don't have may might")
-"""Auxiliaries that also begin requests and statements: *do it*, *have a nice day*."""
-_SUBJECT = word_set("i you he she it we they")
-_STARTER = (
-    _SUBJECT | _WH | _AUX | word_set("there that this my your let's i'm you're it's that's he's she's we're they're")
+_STATING = word_set(
+    "i you he she it we they there that this my your let's i'm you're it's that's he's she's we're they're"
 )
+"""Words that begin statements."""
 _INTERJECTION = word_set("hi hello hey yes yeah yep no nope ok okay thanks sorry wow oh well bye")
-_GOVERNS = word_set(
+_OPENING = _INTERJECTION | word_set("and but so then now")
+"""Words that a clause may follow, as if it were the first."""
+_GOVERNING = _AUX | word_set(
     "know tell me ask wonder see say guess remember forget forgot about of and or but so nor neither as than that if"
 )
 """Words that a clause may follow without a full stop."""
@@ -104,7 +105,28 @@ _INTRODUCING = ("name is", "name's", "this is")
 """Words that a name may follow: an unknown word after one of them is hardly a slip."""
 _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
 """Words that begin the names of places."""
+_AT = word_set("at by until till before after from since around about is and")
+"""Words after which a figure is a time or a number."""
+_COUNTED = word_set("times days weeks months years hours minutes people")
+_FIRST = frozenset(entry.partition(" ")[0] for entry in WRITTEN if " " in entry)
 
+_ANY_SUBJECT = "(?:i|you|he|she|it|we|they)"
+_ANY_AUX = f"(?:{'|'.join(sorted(_AUX, reverse=True))})"
+_ASKS = re.compile(
+    rf"""(?:(?:i'm|i|fine|good)\ (?:.*\ )?)?and\ you$ | (?:what|how)\ about\b | (?:what|who|where|when|why|how)'s\b |
+    (?:what|who|why|which|whose)\b(?!\ (?:{_ANY_SUBJECT}|an?)\b) |
+    (?:where|when|how|whom)(?:\ (?!{_ANY_SUBJECT}\b)\S+){{0,2}}\ {_ANY_AUX}(?!\S) |
+    (?:do|don't|have|may|might)\ (?!it\b){_ANY_SUBJECT}\b | (?!(?:do|don't|have|may|might)\b){_ANY_AUX}\ (?!not\b)""",
+    re.VERBOSE,
+)
+"""The beginning of a question. *Do it* and *have a nice day* are none."""
+_ASKS_ANEW = re.compile(
+    rf"""(?:what|who|where|when|why|how|which|whose|whom)\ {_ANY_AUX}\ (?:{_ANY_SUBJECT}|your|my)\b |
+    how\ \S+\ {_ANY_AUX}\ {_ANY_SUBJECT}\b | (?:what|how)\ about\ you\b""",
+    re.VERBOSE,
+)
+_ASKS_YOU = re.compile(r"(?:do|are|can|did|would|will|have|could) you \S")
+"""The beginning of a question after a statement; *are you* needs a statement with a subject before it."""
 
 LONGEST = 2000
 """The characters of a text that get their normal form; the rest stays as typed."""
@@ -142,7 +164,8 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
 def _once(text: str, known: dict[str, str], punctuated: bool) -> Normal:
     lexicon = loaded_lexicon()
     pieces = _pieces(text, lexicon)
-    if _shouted(pieces):
+    words = [piece.text for piece in pieces if any(map(str.isalpha, piece.text))]
+    if len(words) > 1 and all(map(str.isupper, words)) and sum(len(word) > 2 for word in words) > 1:  # SHOUTED
         for piece in pieces:
             piece.text = piece.low
     pieces = _mended(pieces, known, lexicon)
@@ -190,20 +213,13 @@ def _crowded(before: str, mark: str, after: str, lexicon: Lexicon | None) -> boo
     return bool(_CROWDED.fullmatch(mark)) and "." not in before
 
 
-def _shouted(pieces: Sequence[_Piece]) -> bool:
-    """Return whether everything is in capitals."""
-    words = [piece.text for piece in pieces if any(map(str.isalpha, piece.text))]
-    return len(words) > 1 and all(word.isupper() for word in words) and sum(len(word) > 2 for word in words) > 1
-
-
 def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | None) -> list[_Piece]:
     """Return the pieces with every word as written English has it; up to three words may become one piece."""
     mended: list[_Piece] = []
     index = 0
     while index < len(pieces):
-        piece = pieces[index]
+        piece, following = pieces[index], pieces[index + 1 :]
         before = " ".join(other.low for other in mended[-2:])
-        following = pieces[index + 1 : index + 5]
         size = 1 if piece.code else _longest(piece, following, before)
         if size > 1:
             phrase = " ".join(other.low for other in pieces[index : index + size])
@@ -212,8 +228,8 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
             pass
         elif piece.low in known:
             piece.text = piece.text if piece.text != piece.low else known[piece.low]
-        elif _stands_for(piece, following, before, lexicon):
-            piece.text = _cased(_SPECIAL.get(piece.low) or WRITTEN[piece.low], piece)
+        elif written := _written(piece, following, before.rpartition(" ")[2], lexicon):
+            piece.text = _cased(written, piece)
         elif lexicon is not None and piece.text == piece.low:
             piece.text = _by_lexicon(piece.text, before, following[0] if following else None, lexicon)
         mended.append(piece)
@@ -225,42 +241,31 @@ def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:
     """Return how many words, beginning with `piece`, the table has as one entry; 1 if it has none of several."""
     for size in (3, 2) if piece.low in _FIRST else ():
         rest = following[: size - 1]
-        if len(rest) < size - 1 or not all(other.gap.isspace() for other in rest):
-            continue
         phrase = " ".join([piece.low, *(other.low for other in rest)])
+        if phrase not in WRITTEN or not all(other.gap.isspace() for other in rest):
+            continue
         figure = phrase.startswith("2 ") and before.rpartition(" ")[2] in _AT
-        counted = phrase.endswith(" 2") and len(following) > 1 and following[1].low in _COUNTED
-        if phrase in WRITTEN and not figure and not counted:
+        if not figure and not (phrase.endswith(" 2") and following[1].low in _COUNTED):
             return size
     return 1
 
 
-_AT = word_set("at by until till before after from since around about is and")
-"""Words after which a figure is a time or a number."""
-_FIRST = frozenset(entry.partition(" ")[0] for entry in WRITTEN if " " in entry)
-_COUNTED = word_set("times days weeks months years hours minutes people")
-_SPECIAL = {"its": "it's", "ya": "yes"}
-"""Words whose meaning at the beginning of a clause is another than in the middle."""
-
-
-def _stands_for(piece: _Piece, following: Sequence[_Piece], before: str, lexicon: Lexicon | None) -> bool:
-    """Return whether the table has the word, and it means that here."""
-    word = piece.text
-    before = before.rpartition(" ")[2]
-    opens = piece.first or before in _INTERJECTION or before in ("and", "but", "so", "then", "now")
-    if piece.low == "its":
-        asks = any("?" in part.gap for part in following)
-        finite = any(part.low in _AUX for part in following)
-        return piece.first and bool(following) and not (asks or finite or piece.text.isupper())
-    if piece.low not in WRITTEN:
-        return False
-    if piece.low in ("lets", "k", "ya"):
-        return opens and word != "K"
-    if word == piece.low or word == "I":
-        return True
-    if word.isupper():
-        return len(word) > 2
-    return piece.first and (len(word) > 2 or lexicon is None or lexicon.name(piece.low) == piece.low)
+def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lexicon | None) -> str | None:
+    """Return the written form of a word in the table, if the word means that here."""
+    word, low = piece.text, piece.low
+    opens = piece.first or last in _OPENING
+    asks = any("?" in other.gap for other in following)
+    if low == "its":
+        verb = any(other.low in _AUX for other in following[:4])
+        return "it's" if piece.first and len(following) > 0 and not (asks or verb or word.isupper()) else None
+    if low in ("lets", "k", "ya") and (not opens or word == "K"):
+        return None
+    if low == "ur" and opens and not asks and len(following) > 1 and not following[1].text:
+        return "you're"  # ur funny
+    typed = word in (low, "I") or (len(word) > 2 if word.isupper() else piece.first)
+    if not typed or (len(word) < 3 and word != low and lexicon is not None and lexicon.name(low) != low):
+        return None
+    return "yes" if low == "ya" else WRITTEN.get(low)
 
 
 def _by_lexicon(word: str, before: str, after: _Piece | None, lexicon: Lexicon) -> str:
@@ -298,9 +303,9 @@ def _punctuate(pieces: Sequence[_Piece]) -> None:
             _end(pieces[start:index], piece)
             start = index
         elif index and piece.gap.isspace() and "\n" not in piece.gap:
-            if index == start + 1 and pieces[start].low in _INTERJECTION and piece.low in _STARTER:
+            if index == start + 1 and pieces[start].low in _INTERJECTION and piece.low in _STATING | _WH | _AUX:
                 piece.gap = "," + piece.gap
-            elif _asks_anew(pieces, start, index):
+            elif _asks_anew(pieces[start:index], " ".join(other.low for other in pieces[index : index + 4])):
                 _end(pieces[start:index], piece, ".")
                 piece.first, start = True, index
         if piece.first and piece.text[:1].islower() and not piece.code:
@@ -310,59 +315,21 @@ def _punctuate(pieces: Sequence[_Piece]) -> None:
 def _end(sentence: Sequence[_Piece], following: _Piece, mark: str = "") -> None:
     """Add the mark at the end of a sentence, unless it has one."""
     gap = following.gap
-    if gap.strip() and not gap.lstrip().startswith((")", '"', "'")):
-        return
     if gap.strip() or not any(letter.isascii() for piece in sentence for letter in piece.text):
         return
-    following.gap = (mark or ("?" if _asks([piece.low for piece in sentence]) else ".")) + gap
+    words = [piece.low for piece in sentence]
+    while len(words) > 1 and words[0] in _INTERJECTION | {"and", "but", "so"} and words != ["and", "you"]:
+        del words[0]
+    following.gap = (mark or ("?" if _ASKS.match(" ".join(words)) else ".")) + gap
 
 
-def _asks(words: list[str]) -> bool:
-    """Return whether the words of a sentence without a mark are those of a question."""
-    while len(words) > 1 and words[0] in _INTERJECTION | {"and", "but", "so"}:
-        words = words[1:]
-    first, second = words[0], words[1] if len(words) > 1 else ""
-    if words[-2:] == ["and", "you"] and (len(words) == 2 or first in ("i'm", "i", "fine", "good")):
-        return True
-    if first in ("what", "how") and second == "about":
-        return True
-    if "'" in first and first in _WH:
-        return True
-    if first in ("what", "who", "why", "which", "whose"):
-        return second not in _SUBJECT and second not in ("a", "an")
-    if first in _WH:
-        until = next((place for place, word in enumerate(words) if word in _SUBJECT), len(words))
-        return any(word in _AUX for word in words[1 : min(until, 4)])
-    if first in _AMBIGUOUS:
-        return second in _SUBJECT - {"it"}
-    return first in _AUX and second not in ("", "not")
-
-
-def _asks_anew(pieces: Sequence[_Piece], start: int, index: int) -> bool:
-    """Return whether a question without any mark begins at `index`, after a statement."""
-    before, words = [piece.low for piece in pieces[start:index]], [piece.low for piece in pieces[index : index + 4]]
-    if (
-        len(before) < 2
-        or before[-1] in _GOVERNS
-        or before[-1] in _AUX
-        or any(word in _WH or word in _AUX - _BE for word in before[:1])
-    ):
+def _asks_anew(sentence: Sequence[_Piece], following: str) -> bool:
+    """Return whether a question without any mark begins after a statement."""
+    before = [piece.low for piece in sentence]
+    if len(before) < 2 or before[-1] in _GOVERNING or before[0] in _AUX - _BE or not _WH.isdisjoint(before):
         return False
-    if any(word in _WH for word in before):
-        return False
-    first, second, third, *_ = [*words, "", "", ""]
-    if first in _WH:
-        inverted = (second in _AUX and (third in _SUBJECT or third in ("your", "my"))) or (
-            first == "how" and third in _AUX and words[3:4] and words[3] in _SUBJECT
-        )
-        return bool(inverted) or (first in ("what", "how") and second == "about" and third == "you")
-    stated = any(word in _STARTER and word not in _AUX for word in before)
-    return (
-        stated
-        and first in ("do", "are", "can", "did", "would", "will", "have", "could")
-        and second == "you"
-        and third != ""
-    )
+    stated = not _STATING.isdisjoint(before)
+    return bool(_ASKS_ANEW.match(following) or (stated and _ASKS_YOU.match(following)))
 
 
 def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
@@ -371,27 +338,26 @@ def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
     origin: list[int] = []
     last = 0
     for piece in pieces:
-        _align(piece.gap, original[last : piece.start], last, origin)
-        _align(piece.text, original[piece.start : piece.end], piece.start, origin)
+        origin += _aligned(piece.gap, original[last : piece.start], last)
+        origin += _aligned(piece.text, original[piece.start : piece.end], piece.start)
         parts += [piece.gap, piece.text]
         last = piece.end
     return Normal("".join(parts), original, (*origin, len(original)))
 
 
-def _align(written: str, typed: str, start: int, origin: list[int]) -> None:
-    """Append the origin of each written character: equal beginnings and ends match, and the rest is spread between."""
+def _aligned(written: str, typed: str, start: int) -> list[int]:
+    """Return the origin of each written character: equal beginnings and ends match, and the rest is spread between."""
     size, wide = len(typed), len(written)
     if size == wide:
-        origin += range(start, start + size)
-        return
+        return list(range(start, start + size))
     low, typed_low = written.lower(), typed.lower()
-    head = 0
-    while head < min(size, wide) and low[head] == typed_low[head]:
-        head += 1
-    tail = 0
-    while tail < min(size, wide) - head and low[-tail - 1] == typed_low[-tail - 1]:
-        tail += 1
+    head = _same(low, typed_low)
+    tail = _same(low[head:][::-1], typed_low[head:][::-1])
     inner, width = size - head - tail, wide - head - tail
-    origin += range(start, start + head)
-    origin += (start + head + min(inner * place // max(width, 1), inner) for place in range(width))
-    origin += range(start + size - tail, start + size)
+    between = [start + head + min(inner * place // max(width, 1), inner) for place in range(width)]
+    return [*range(start, start + head), *between, *range(start + size - tail, start + size)]
+
+
+def _same(one: str, other: str) -> int:
+    """Return how many letters at the beginning are the same."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False)))

@@ -47,7 +47,5 @@ def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.fl
     """Return the weighted share of equal features: rows for `texts` (n, 4), columns for `others` (m, 4)."""
     import numpy as np
 
-    likeness = np.zeros((len(texts), len(others)), dtype=np.float32)
-    for feature, weight in enumerate(WEIGHTS):
-        likeness += np.float32(weight) * (texts[:, None, feature] == others[None, :, feature])
-    return likeness
+    equal = (texts[:, None, feature] == others[None, :, feature] for feature in range(len(WEIGHTS)))
+    return sum(np.float32(weight) * same for weight, same in zip(WEIGHTS, equal, strict=True))

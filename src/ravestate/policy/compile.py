@@ -48,7 +48,7 @@ def compile_policy(*modules: Module | ModuleType) -> Policy:
             given.append(as_module(value))
         except DeclarationError as fault:
             faults.append(str(fault))
-    ordered = in_order(given, faults)
+    ordered = _in_order(given, faults)
     rules = [rule for module in ordered for rule in module.rules]
     return build(tuple(ordered), rules, {}, faults)
 
@@ -69,11 +69,11 @@ def build(
         numbered.add(rule)
     connect(names.signals, names.slots, numbered.plans)
     causes = Causes(names.signals, numbered.plans)
-    check_reachable(causes, found)
+    _check_reachable(causes, found)
     if found:
         raise DeclarationErrors([DeclarationError(fault) for fault in found])
     find_kin(numbered.plans, causes)
-    completion = assign_utilities(names.signals, numbered.plans, causes)
+    completion = _assign_utilities(names.signals, numbered.plans, causes)
     find_contests(names.signals)
     return Policy(
         modules=tuple(modules),
@@ -88,7 +88,7 @@ def build(
     )
 
 
-def check_reachable(causes: Causes, faults: list[str]) -> None:
+def _check_reachable(causes: Causes, faults: list[str]) -> None:
     """Add a fault for each rule that waits for its own effects, directly or not, and that no input can start.
 
     A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
@@ -111,7 +111,7 @@ def check_reachable(causes: Causes, faults: list[str]) -> None:
         )
 
 
-def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
+def _in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     """Return the given modules and all that they require, in order.
 
     Cycles of `requires`, and names that two modules share, go to `faults`.
@@ -147,12 +147,10 @@ def in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
 
 
 PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)
-
-NO_INFORMATION = 1e-9
-"""The nats with which a clause without information (U = 0) competes, so that its weight and cooldown still count."""
+NO_INFORMATION = 1e-9  # the nats with which a clause without information competes: its weight and cooldown count
 
 
-def assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
+def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
     """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
 
     Return the graph in which clauses are completed; `Pathways` lists their other pathways with it.

@@ -8,11 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Components:
-    """The strongly connected components of a graph.
+    """The strongly connected components of a graph: the members of each, and the number of each node's component.
 
-    Attributes:
-        members: The nodes of each component. If one component leads to another, the other comes first.
-        of: Node → the number of its component.
+    If one component leads to another, the other comes first.
     """
 
     members: list[list[int]]

@@ -15,10 +15,7 @@ from ravestate.policy.model import SignalPlan, SlotPlan
 
 
 class Names:
-    """The signals, including those of slots, and the slots that modules declare, in declaration order.
-
-    Names that occur twice, and unknown names, go to `faults`.
-    """
+    """The numbered signals and slots that modules declare, in declaration order. Their faults go to `faults`."""
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
         self.faults = faults

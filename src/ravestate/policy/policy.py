@@ -72,13 +72,7 @@ class Policy:
         """Return the utility of a rule in nats, without weight and cooldown: the greatest among its clauses' (L9).
 
         The result is exact, unless dozens of signals on a pathway each have several causes with common causes; then it
-        may be slightly too high (``policy/least.py``).
-
-        Args:
-            rule: The rule, or its qualified name.
-
-        Raises:
-            DeclarationError: The policy has no such rule.
+        may be slightly too high (``policy/least.py``). If the policy has no such rule, raise a `DeclarationError`.
 
         Example:
             >>> import ravestate as rs
@@ -155,9 +149,6 @@ class Policy:
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
         """Return a policy with these modules and the given settings; if no rule names a setting, return this one.
 
-        Args:
-            settings: A module's name → an instance of the module's ``rs.Settings`` subclass.
-
         Raises:
             DeclarationErrors: The settings make a declaration impossible, e.g. a number is out of range.
         """
@@ -169,10 +160,6 @@ class Policy:
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
         """Return a policy with these rules and one more, which uses this policy's signals and slots.
-
-        Args:
-            rule: The additional rule.
-            settings: The settings, as for `with_settings`; by default those of this policy.
 
         Raises:
             DeclarationErrors: The rule does not fit this policy.

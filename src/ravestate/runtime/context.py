@@ -23,8 +23,8 @@ from ravestate.engine.trace import Record
 from ravestate.errors import DeclarationError, EngineError, UndeclaredError, nearest
 from ravestate.policy.compile import compile_policy
 from ravestate.policy.policy import Policy
-from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
+from ravestate.runtime.listeners import Hooks
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
 

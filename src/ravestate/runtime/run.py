@@ -30,11 +30,8 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
 
     The agent runs as one context. If a platform among the modules serves many users, each user gets their own context.
 
-    A warning is logged if the modules use `rawio`, but no platform among them lets a user talk.
-
-    Args:
-        modules: As for `Context`.
-        options: The other arguments, as for `Context`.
+    A warning is logged if the modules use `rawio`, but no platform among them lets a user talk. The arguments are those of
+    `Context`.
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -74,20 +71,22 @@ async def run_context(context: Context) -> None:
 
 
 async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutine[Any, Any, None]]]) -> None:
-    """Run the servers of an agent until one of them ends or fails; then cancel the others. So do SIGINT and SIGTERM."""
-    tasks = [asyncio.create_task(serve(agent)) for serve in servers]
-    ends: list[BaseException | None] = []
+    """Run the servers of an agent until one of them ends or fails, or until SIGINT or SIGTERM."""
+    stopped = asyncio.Event()
+    with asked_by_signals(stopped.set):
+        await until_first_ends(stopped.wait(), *(serve(agent) for serve in servers))
 
-    def stop() -> None:
+
+async def until_first_ends(*coroutines: Coroutine[Any, Any, object]) -> None:
+    """Run coroutines at the same time until one of them ends; then cancel the others, and raise their exception if any."""
+    tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
+    ends: list[object] = []
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
         for task in tasks:
             task.cancel()
-
-    with asked_by_signals(stop):
-        try:
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            stop()
-            ends = await asyncio.gather(*tasks, return_exceptions=True)
+        ends = await asyncio.gather(*tasks, return_exceptions=True)
     for end in ends:
         if isinstance(end, Exception):
             raise end

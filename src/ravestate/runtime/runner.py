@@ -23,9 +23,8 @@ from ravestate.policy.policy import Policy
 from ravestate.runtime.async_rules import AsyncRules
 from ravestate.runtime.clock import Clock
 from ravestate.runtime.ending import ending
-from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
-from ravestate.runtime.listeners import Listeners
+from ravestate.runtime.listeners import Hooks, Listeners
 from ravestate.runtime.plain_rules import PlainRules
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.waits import Waits

@@ -136,11 +136,7 @@ class JobQueue:
             self._pool.contexts += 1
 
     def submit(self, call: Callable[[], None], name: str = "") -> Job:
-        """Queue a job that calls `call` for the rule `name`, and return the job.
-
-        Raises:
-            RuntimeError: The system has no more threads.
-        """
+        """Queue a job that calls `call` for the rule `name`, and return it. Raise a RuntimeError if there are no more threads."""
         job = Job(self, call, name)
         with self._pool.change:
             if len(self._begun) < SHARE:

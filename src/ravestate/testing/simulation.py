@@ -23,8 +23,8 @@ from ravestate.loading.spec import AgentSpec
 from ravestate.modules import BUILT_IN
 from ravestate.policy.policy import Policy
 from ravestate.runtime.context import Context
-from ravestate.runtime.hooks import Hooks
 from ravestate.runtime.journal import Taken
+from ravestate.runtime.listeners import Hooks
 from ravestate.testing.virtual_loop import VirtualLoop
 
 T = TypeVar("T")
@@ -36,12 +36,9 @@ class Simulation:
     """Modules in virtual time: no real waiting, and the same result every time. Use it as a context manager.
 
     Args:
-        modules: As for `Context`.
-        settings: As for `Context`.
+        modules, settings, patience, journal: As for `Context`.
         seed: The seed of random choices; fixed by default, so that tests repeat.
-        patience: As for `Context` (seconds).
         trace: Whether to keep a record of every decision.
-        journal: As for `Context`.
 
     Attributes:
         context: The simulated context, for everything that has no shortcut in this class.

@@ -3,11 +3,14 @@
 import pytest
 
 import ravestate as rs
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import idle, rawio
 from ravestate.testing import simulate
 
 watch = rs.Module("watch", requires=[rawio, idle])
 times = watch.slot("times", ())
+SOON = {"bored_after": 5.0, "answer_time": 12.0}
+"""Short silences."""
 
 
 @watch.rule(when=idle.bored, writes=times)
@@ -22,7 +25,7 @@ async def answer(ctx: rs.RuleContext) -> None:
 
 
 def test_the_agent_is_bored_again_after_each_answer_to_its_boredom() -> None:
-    with simulate(watch) as sim:
+    with simulate(watch, settings={"idle": SOON}) as sim:
         sim.say("hello")
         sim.advance(20.0)
         assert sim.read(times) == pytest.approx((7.0, 12.0, 17.0, 22.0)[:3])
@@ -78,7 +81,7 @@ def test_activity_puts_boredom_off() -> None:
 
 
 def test_silence_bores_from_the_very_start() -> None:
-    with simulate(watch) as sim:
+    with simulate(watch, settings={"idle": SOON}) as sim:
         sim.advance(12.0)
         assert sim.read(times) == pytest.approx((5.0, 10.0))
 
@@ -90,14 +93,14 @@ def test_the_first_silence_begins_after_the_work_at_startup() -> None:
     async def warm_up(ctx: rs.RuleContext) -> None:
         await ctx.sleep(2.0)
 
-    with simulate(watch, busy) as sim:
+    with simulate(watch, busy, settings={"idle": SOON}) as sim:
         sim.advance(8.0)
         assert sim.read(times) == pytest.approx((7.0,))
 
 
 @pytest.mark.parametrize("begin", [0.0, 3.0, 4.9])
 def test_the_first_words_put_the_first_boredom_off(begin: float) -> None:
-    with simulate(watch) as sim:
+    with simulate(watch, settings={"idle": SOON}) as sim:
         sim.advance(begin)
         sim.say("hello")
         sim.advance(8.0)
@@ -106,7 +109,7 @@ def test_the_first_words_put_the_first_boredom_off(begin: float) -> None:
 
 @pytest.mark.parametrize("words", ["Goodbye!", "shut up", "please be quiet", "ok, see you tomorrow"])
 def test_a_farewell_or_a_wish_for_quiet_holds_until_the_user_speaks(words: str) -> None:
-    with simulate(watch) as sim:
+    with simulate(watch, settings={"idle": SOON}) as sim:
         sim.say(words)
         sim.advance(600.0)
         assert sim.read(times) == ()
@@ -163,7 +166,7 @@ def test_a_question_of_the_agents_has_more_time_for_its_answer() -> None:
 
 
 def test_typing_is_no_silence() -> None:
-    with simulate(watch, settings={"idle": {"writing_time": 8.0}}) as sim:
+    with simulate(watch, settings={"idle": {**SOON, "writing_time": 8.0}}) as sim:
         for _ in range(20):
             sim.advance(1.0)
             sim.emit(rawio.typing)
@@ -175,7 +178,7 @@ def test_typing_is_no_silence() -> None:
 
 
 def test_a_sent_line_is_followed_by_an_ordinary_silence() -> None:
-    with simulate(watch, settings={"idle": {"writing_time": 8.0}}) as sim:
+    with simulate(watch, settings={"idle": {**SOON, "writing_time": 8.0}}) as sim:
         sim.advance(4.0)
         sim.emit(rawio.typing)
         sim.advance(1.0)
@@ -208,3 +211,25 @@ def test_nothing_is_left_when_all_is_quiet() -> None:
     with simulate(idle) as sim:
         sim.advance(60.0)
         assert sim.snapshot()["activations"] == []
+
+
+def test_nobody_in_sorrow_is_interrupted_for_six_utterances() -> None:
+    bundled_matcher("feelings").load()
+    with simulate(watch, settings={"idle": SOON}) as sim:
+        sim.say("my grandmother died last week")
+        sim.advance(600.0)
+        for _ in range(5):
+            sim.say("she was a baker")
+            sim.advance(600.0)
+        assert sim.read(times) == ()
+        sim.say("I like tea")
+        sim.advance(60.0)
+        assert sim.read(times)
+
+
+def test_a_silence_is_long_by_default() -> None:
+    with simulate(chatty) as sim:
+        sim.advance(14.0)
+        assert sim.said == []
+        sim.advance(2.0)
+        assert sim.said == ["Are you still there?"]

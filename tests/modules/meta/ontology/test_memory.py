@@ -376,9 +376,9 @@ def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_
     [
         ({}, "not an exported memory"),
         ({"format": 2, "nodes": [], "relations": []}, "not an exported memory"),
-        ({"format": 1, "nodes": {}, "relations": []}, "'nodes' must be a list"),
-        ({"format": 1, "nodes": [1], "relations": []}, "has no keys and values"),
-        ({"format": 1, "nodes": [{"type": "Person"}], "relations": []}, "needs a text as 'id'"),
+        ({"format": 1, "nodes": {}, "relations": []}, "nodes: Input should be a valid list"),
+        ({"format": 1, "nodes": [1], "relations": []}, "nodes.0: Input should be a valid dictionary"),
+        ({"format": 1, "nodes": [{"type": "Person"}], "relations": []}, "nodes.0.id: Field required"),
         ({"format": 1, "nodes": [{"type": "Persn", "id": "Persn:1"}], "relations": []}, "no type 'Persn'"),
         ({"format": 1, "nodes": [{"type": "Person", "id": "City:1"}], "relations": []}, "must begin with"),
         (

@@ -11,7 +11,7 @@ import pytest
 import ravestate as rs
 from ravestate.errors import DeclarationErrors
 from ravestate.modules import conio, emotion, fillers, hibye, idle, interloc, rawio, wildtalk
-from ravestate.modules.modality.emotion.emoji import EMOJI
+from ravestate.modules.modality.emotion.feeling import EMOJI
 from ravestate.modules.platform.conio.console import Console
 from ravestate.testing import Simulation, simulate
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from modules.platform.webio.visit import in_virtual_time, past
+from modules.platform.webio.visit import in_virtual_time
 from ravestate.modules.platform.webio.channel import Channel
 from ravestate.modules.platform.webio.protocol import CLOSING_CODES, ProtocolError
 
@@ -40,27 +40,6 @@ def test_whatever_is_wrong_is_told_and_closes_it(code: str) -> None:
     asyncio.run(channel_on(socket).carry(serve))
     closed = (CLOSING_CODES.get(code, 4400), code)
     assert socket.done == ["accept", f'{{"type":"error","code":"{code}","text":"no"}}', closed]
-
-
-@in_virtual_time
-async def test_when_either_ends_the_other_does_and_its_fault_is_not_lost() -> None:
-    ended: list[str] = []
-
-    async def for_ever() -> None:
-        try:
-            await asyncio.Event().wait()
-        finally:
-            ended.append("for ever")
-
-    async def fails() -> None:
-        await past(1.0)
-        raise ProtocolError("behind", "too slow")
-
-    channel = channel_on(Socket())
-    await channel.both(for_ever(), past(1.0))
-    with pytest.raises(ProtocolError, match="too slow"):
-        await channel.both(fails(), for_ever())
-    assert ended == ["for ever", "for ever"]
 
 
 @in_virtual_time

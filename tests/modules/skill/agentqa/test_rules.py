@@ -263,8 +263,7 @@ def test_it_is_quiet_when_it_is_told_to_be(tmp_path: Path) -> None:
         sim.advance(300.0)
         assert len(sim.said) == 1
         sim.say("hello")
-        sim.advance(6.0)
-        assert len(sim.said) == 3  # chatter, and an offer
+        assert len(sim.said) == 2
 
 
 def test_it_does_not_say_the_same_twice_running(tmp_path: Path) -> None:
@@ -338,21 +337,30 @@ def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
         assert "model.onnx" in str(sim.failures)
 
 
-def test_silence_makes_it_offer_to_be_asked_now_and_then(tmp_path: Path) -> None:
-    with start(tmp_path, chatter, bored=5.0, prompt_every=100.0) as sim:
-        sim.say("it rains")
-        sim.advance(90.0)
-        assert len(sim.said) == 2  # chatter, and one offer
+def test_a_long_silence_makes_it_offer_once_to_be_asked(tmp_path: Path) -> None:
+    with start(tmp_path, chatter, bored=5.0) as sim:
+        for turn in range(6):
+            sim.say(f"it rains, for the {turn}. time")
+        sim.advance(50.0)
+        assert len(sim.said) == 6
         sim.advance(20.0)
-        assert len(sim.said) == 3
-        assert sim.said[1] != sim.said[2]
-        assert say(sim, "How old are you?") not in ("chatter", *sim.said[:3])
+        assert len(sim.said) == 7
+        assert say(sim, "How old are you?") not in ("chatter", sim.said[6])
+        sim.advance(200.0)
+        assert len(sim.said) == 8
 
 
-def test_it_takes_turns_with_others_who_use_the_silence(tmp_path: Path) -> None:
-    with start(tmp_path, asker, bored=5.0) as sim:
-        sim.advance(20.0)  # a question has its time for an answer
-        assert len(sim.said) == 2 and sim.said[0] == "What is your name?" != sim.said[1]
+def test_it_offers_nothing_in_the_first_turns_or_while_the_user_talks(tmp_path: Path) -> None:
+    with start(tmp_path, chatter, bored=5.0) as sim:
+        sim.say("it rains")
+        sim.advance(200.0)
+        assert len(sim.said) == 1
+        for turn in range(9):
+            sim.say(f"it rains, for the {turn}. time")
+            sim.advance(50.0)
+        assert len(sim.said) == 10
+        sim.advance(100.0)
+        assert len(sim.said) == 11
 
 
 def test_all_who_call_the_agent_by_its_name_have_it_from_its_life(tmp_path: Path) -> None:
@@ -381,18 +389,6 @@ def test_all_who_call_the_agent_by_its_name_have_it_from_its_life(tmp_path: Path
         assert sim.read(noticed) == ("praise",)
         assert sim.said[0] == "Thank you."
         assert "You are Robin," in told[0]
-
-
-def test_an_offer_that_another_goal_goes_before_comes_at_the_next_silence(tmp_path: Path) -> None:
-    guide = rs.Module("guide", requires=[agenda])
-    agenda.goal(guide, "game", say="I would like to play.")
-    with start(tmp_path, guide, bored=5.0) as sim:
-        sim.advance(5.5)
-        assert sim.said == ["I would like to play."]
-        assert sim.read(agentqa.prompted) is None
-        sim.advance(5.0)
-        assert len(sim.said) == 2
-        assert sim.read(agentqa.prompted) == pytest.approx(10.0)
 
 
 def test_answers_are_phrases_of_the_topic(tmp_path: Path) -> None:

@@ -27,6 +27,9 @@ TODAY = date(2026, 6, 1)
         ("how many seconds are in an hour", "3,600 seconds"),
         ("what is 20 degrees celsius in fahrenheit", "68 fahrenheit"),
         ("60 mph in km/h", "96.6 km/h"),
+        ("how much is 240 a month in a year?", "2,880"),
+        ("322 in dozens", "26.8 dozens"),
+        ("7 percent of 1300, and half of that", "91. That is 45.5"),
         ("what date is 90 days after 1 March 2024", "30 May 2024"),
     ],
 )
@@ -73,7 +76,7 @@ def test_nonsense_gets_a_reason(text: str, why: str) -> None:
     [
         "what is the capital of Peru", "how many people live in Peru", "I am 5 feet tall", "call me at 555 1234",
         "what is 5 plus apples", "__import__('os').system('ls')", "what happened in 1989", "1989", "what is 7", "",
-        "how many legs do 5 spiders have", "18 plus that", "what day is it", "1 + " * 10_000, "we won 3 - 1",
+        "how many legs do 5 spiders have", "18 plus that", "what day is it", "1 + " * 10_000, "we won 3 - 1", "2/10", "what is 12 plus 3 and 4",
         "how many days of rain were there between May 2020 and June 2021",
     ],
 )  # fmt: skip
@@ -93,6 +96,7 @@ def test_other_texts_are_no_sums(text: str) -> None:
         ("how old was he", ["born in 1849", "died in 1903"], "From 1849 to 1903 it is 54 years."),
         ("what is that", ["The Elve is 412 kilometres long."], ""),
         ("and for 5 people?", ["A ticket costs 6 euros."], "That is 30 euros."),
+        ("how much for 2 adults and 3 children?", ["It is 6 euros for adults and 3 euros for children."], "That is 21 euros."),
         ("what's that in mph?", ["It runs at 50 kilometres per hour."], "That is 31.1 mph."),
         ("how old is it?", ["It was opened in 1874."], "From 1874 to 2026 it is 152 years."),
         ("in what year?", ["The lamp weighs 3 kilograms."], ""),

@@ -89,3 +89,12 @@ def test_a_user_who_was_greeted_hears_no_second_hello() -> None:
         sim.say("hello")
         assert sim.said[0] in phrases("greeting")
         assert sim.said[1:] and sim.said[1] in phrases("returned")
+
+
+@pytest.mark.parametrize(
+    ("text", "intent"), [("good night", "goodnight"), ("I'm going to bed", "goodnight"), ("see you later", "goodbye")]
+)
+def test_a_user_who_goes_to_bed_hears_good_night(text: str, intent: str) -> None:
+    with simulate(hibye) as sim:
+        sim.say(text)
+        assert only(sim) in phrases(intent)

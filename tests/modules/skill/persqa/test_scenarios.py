@@ -15,7 +15,6 @@ from modules.skill.persqa.conftest import Look
 from ravestate.errors import PlatformError
 from ravestate.modules import hibye, idle, interloc, nlp, ontology, persqa, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.phrases import PhraseBook
-from ravestate.modules.skill.persqa.talk import MORE
 from ravestate.testing import Simulation, simulate
 
 pytestmark = pytest.mark.usefixtures("reader")
@@ -50,8 +49,10 @@ def knower() -> rs.Module:
 
 def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
     where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
-    chosen = {"confirm": False, **settings}
-    return simulate(persqa, chatter(), *others, settings={"ontology": where, "persqa": chosen})
+    chosen = {"confirm": False, "gap": 0.0, **settings}
+    return simulate(
+        persqa, chatter(), *others, settings={"ontology": where, "persqa": chosen, "idle": {"bored_after": 5.0}}
+    )
 
 
 def meant(text: str, intent: str) -> bool:
@@ -71,15 +72,10 @@ def meant(text: str, intent: str) -> bool:
 
 
 def asked(sim: Simulation) -> str:
-    """Return the topic that the agent asks about in a silence; a personal question in between does not count."""
+    """Return the topic that the agent asks about in a silence."""
     before = len(sim.said)
     sim.advance(6.0)
     question = sim.read(persqa.talk).question
-    if question is not None and question.topic == MORE:
-        sim.say("hm, well.")
-        before = len(sim.said)
-        sim.advance(30.0)
-        question = sim.read(persqa.talk).question
     assert len(sim.said) == before + 1 and question is not None, sim.said[before:]
     assert meant(sim.said[-1], f"ask_{question.topic}"), sim.said[-1]
     return question.topic
@@ -121,6 +117,7 @@ STORED = {
 def test_a_whole_first_talk(file: Path, look: Look) -> None:
     topics: list[str] = []
     with agent(file) as sim:
+        sim.say("I talked about work and the university at breakfast")
         for _ in ANSWERS:
             topic = asked(sim)
             topics.append(topic)
@@ -129,7 +126,7 @@ def test_a_whole_first_talk(file: Path, look: Look) -> None:
         sim.advance(300.0)
         assert len(sim.said) == before  # there is nothing left to ask
         assert sim.failures == []
-    assert topics == list(ANSWERS)
+    assert topics[0] == "name" and set(topics) == set(ANSWERS)
     assert look() == {"Ada": STORED, "Tom": {}, "Anna": {}}
 
 
@@ -213,6 +210,7 @@ def test_no_means_that_there_is_none_and_dont_know_is_fine(file: Path, look: Loo
     with agent(file, topics=["hobby", "occupation", "friend", "employer"]) as sim:
         sim.say("my name is ada")
         assert asked(sim) == "hobby"
+        sim.say("that was hard work")
         assert meant(answers(sim, "no"), "none")
         assert asked(sim) == "occupation"
         assert meant(answers(sim, "i don't know"), "unsure")

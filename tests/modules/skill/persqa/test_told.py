@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from pathlib import Path
 
 import pytest
@@ -54,28 +53,26 @@ def test_it_lasts_for_the_conversation_without_a_name(file: Path, look: Look) ->
     assert look() == {"Ada": {"has_told": ["you painted a dragon"]}}
 
 
-def test_the_agent_comes_back_to_it_before_it_asks_for_facts(file: Path) -> None:
-    with agent(file) as sim:
-        sim.say("my name is ada")
-        sim.say("my mother is ill")
-        sim.advance(6.0)
-        assert meant(sim.said[-1], "how_is") and "your mother" in sim.said[-1]
-        sim.say("she is better")
-        sim.advance(6.0)
-        assert meant(sim.said[-1], "ask_home")
+MEANT = [
+    ("my presentation is on Thursday", "when is my presentation?", "your presentation is on Thursday"),
+    ("I drive for Transkorn", "who do I drive for, do you remember?", "you drive for Transkorn"),
+    ("my friend Enno broke his arm", "who broke his arm, do you remember?", "Enno broke his arm"),
+]
 
 
-def test_two_questions_for_facts_never_follow_each_other(file: Path) -> None:
-    with agent(file) as sim:
-        formal: list[bool] = []
-        for _ in range(8):
-            before = len(sim.said)
-            sim.advance(6.0)
-            if len(sim.said) > before:
-                formal.append(sim.read(persqa.talk).formal)
-            sim.say("hm, well.")
-        assert formal.count(True) >= 2
-        assert not any(one and other for one, other in itertools.pairwise(formal))
+@pytest.mark.parametrize(("told", "question", "answer"), MEANT, ids=[told for told, _, _ in MEANT])
+def test_a_question_in_other_words_finds_what_was_told(file: Path, told: str, question: str, answer: str) -> None:
+    with agent(file, knower()) as sim:
+        sim.say("I painted a dragon")
+        sim.say(told)
+        assert answer in answers(sim, question)
+
+
+def test_a_question_that_nothing_answers_is_left_to_others(file: Path) -> None:
+    with agent(file, knower()) as sim:
+        sim.say("my presentation is on Thursday")
+        assert answers(sim, "can I ask you something?") == "I know it."
+        assert "Thursday" not in answers(sim, "when does my train leave?")
 
 
 @pytest.mark.parametrize("text", ["forget Jonas", "forget that Jonas plays the violin"])

@@ -4,13 +4,13 @@ import pytest
 
 from ravestate.modules import ontology
 from ravestate.modules.meta.ontology.opening import types_of
-from ravestate.modules.skill.persqa.topics import TOPICS, due
+from ravestate.modules.skill.persqa.topics import TOPICS, due, touched_by
 
 ALL = tuple(TOPICS)
 
 
 def next_topic(known: dict[str, tuple[str, ...]], **more: object) -> str:
-    given = {"closed": (), "tries": {}, "limit": 2, **more}
+    given = {"closed": (), "tries": {}, "limit": 2, "touched": ALL, **more}
     return due(ALL, known, **given)  # type: ignore[arg-type]
 
 
@@ -29,16 +29,27 @@ def test_the_topic_with_fewer_tries_goes_first_and_twice_is_enough() -> None:
 @pytest.mark.parametrize(("last", "follow"), [("occupation", "employer"), ("subject", "university")])
 def test_follow_ups_go_first_and_need_what_they_follow(last: str, follow: str) -> None:
     assert next_topic({"name": ("Ada",), last: ("x",)}, last=last) == follow
-    everything_else = {topic: ("x",) for topic in ALL if topic not in (last, follow)}
+    everything_else = {topic: ("30",) for topic in ALL if topic not in (last, follow)}
     assert next_topic(everything_else, closed=[last]) == ""
     assert next_topic({**everything_else, last: ()}) == ""
 
 
 @pytest.mark.parametrize("occupation", ["student", "Retired", "self-employed"])
 def test_occupations_without_an_employer_are_not_asked_for_one(occupation: str) -> None:
-    known = {topic: ("x",) for topic in ALL if topic != "employer"}
+    known = {topic: ("30",) for topic in ALL if topic != "employer"}
     assert next_topic(known) == "employer"
     assert next_topic({**known, "occupation": (occupation,)}) == ""
+
+
+@pytest.mark.parametrize(("age", "first"), [("9", ""), ("15", "home"), ("30", "occupation"), ("86", "home")])
+def test_children_are_asked_nothing_and_old_people_nothing_about_work(age: str, first: str) -> None:
+    assert due(["occupation", "subject", "home"], {"age": (age,)}, (), {}, touched=ALL, limit=2) == first
+
+
+def test_work_and_studies_are_asked_for_only_after_the_user_touched_them() -> None:
+    assert due(["occupation", "subject"], {}, (), {}, limit=2) == ""
+    touched = touched_by(["my", "boss", "be", "angry"])
+    assert due(["occupation", "subject"], {}, (), {}, touched=touched, limit=2) == "occupation"
 
 
 def test_memory_knows_each_topic() -> None:

@@ -90,3 +90,74 @@ def test_the_answer_that_confirms_a_name(text: str, values: tuple[str, ...]) -> 
     meaning = understand(seen(text), talk, {"name": ("Ada",)}, 1.0, 90.0)
     assert meaning.kind == "vouched"
     assert tuple(value for fact in meaning.facts for value in fact.values) == values
+
+
+@pytest.mark.parametrize(
+    ("topic", "text"),
+    [
+        ("hobby", "y tho"),
+        ("hobby", "haha nice one"),
+        ("hobby", "nine parcels left in forty minutes"),
+        ("university", "its maize porridge with greens, very simple but it tastes of home"),
+        ("university", "Tomorrow I go to the union."),
+        ("occupation", "My brother Ruben doesn't want to talk about it."),
+    ],
+)
+def test_only_words_of_the_kind_that_was_asked_for_answer_a_question(topic: str, text: str) -> None:
+    meaning = understand(seen(text), talk_about(topic), {}, 1.0, 90.0)
+    assert not [fact for fact in meaning.facts if fact.topic == topic] and meaning.kind not in ("declined", "which")
+
+
+@pytest.mark.parametrize("topic", ["", "hobby", "occupation"])
+@pytest.mark.parametrize(
+    "text", ["Good evening. I am Anneke.", "My name is Anneke. That is not a thing, it is a name."]
+)
+def test_a_name_is_a_name_whatever_was_asked(topic: str, text: str) -> None:
+    meaning = understand(seen(text), talk_about(topic) if topic else Talk(), {}, 1.0, 90.0)
+    assert meaning.kind == "told" and [fact.values for fact in meaning.facts] == [("Anneke",)]
+
+
+def test_a_name_before_a_question_is_heard() -> None:
+    meaning = understand(seen("hey! i'm thabo, how are you?"), Talk(), {}, 1.0, 90.0)
+    assert [fact.values for fact in meaning.facts] == [("Thabo",)] and not meaning.aloud
+
+
+def test_his_name_is_that_of_the_relative_mentioned_before() -> None:
+    father = understand(seen("My father died nine days ago."), Talk(), {}, 1.0, 90.0)
+    talk = Talk().listening(1.0, leave=False, person=father.person)
+    told = understand(seen("His name was Joost."), talk, {}, 2.0, 90.0)
+    assert [(fact.topic, fact.values) for fact in told.facts] == [("father", ("Joost",))]
+
+
+@pytest.mark.parametrize(
+    ("text", "topic", "value"),
+    [
+        ("I live in Ulm, not in Bonn", "home", "Ulm"),
+        ("I don't live in Rome, but in Naples", "home", "Naples"),
+        ("my name isn't Paul, it's Pawel", "name", "Pawel"),
+        ("I'm a doctor, not a nurse", "occupation", "doctor"),
+        ("I no longer live in Graz but in Wien", "home", "Wien"),
+    ],
+)
+def test_a_denial_covers_only_its_own_words(text: str, topic: str, value: str) -> None:
+    facts = understand(seen(text), Talk(), {}, 1.0, 90.0).facts
+    assert [fact.values for fact in facts if fact.topic == topic and not fact.gone] == [(value,)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "I used to have a dog called Sam",
+        "I had a girlfriend called Anna",
+        "my ex-wife is called Laura",
+        "I plan to get a dog named Bo",
+        "my imaginary friend is called Zorp",
+        "I go to the gym",
+        "I joined the queue",
+        "I come from work",
+        "I work with children",
+        "i live in paris. i don't live in paris.",
+    ],
+)
+def test_what_is_over_planned_or_of_another_kind_is_no_fact(text: str) -> None:
+    assert not understand(seen(text), Talk(), {}, 1.0, 90.0).facts

@@ -15,9 +15,9 @@ Seconds = Annotated[float, Field(ge=0)]
 class Settings(rs.Settings):
     """The lengths of awkward pauses."""
 
-    bored_after: Seconds = 5.0
+    bored_after: Seconds = 15.0
     """Seconds without activity after which the agent is bored."""
-    answer_time: Seconds = 12.0
+    answer_time: Seconds = 25.0
     """Seconds of silence after a question from the agent, if that is longer."""
     writing_time: Seconds = 20.0
     """Seconds of silence after the last key of an unsent line."""
@@ -34,7 +34,7 @@ bored = module.signal("bored")
 """Nothing happens for ``bored_after`` seconds. Raised once for each silence, including the one after startup.
 
 A rule that reacts to it ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, the
-agent stays quiet until the user speaks again.
+agent stays quiet until the user speaks again; after words of sorrow, for six utterances.
 """
 
 hushed = module.signal("hushed")
@@ -54,3 +54,6 @@ unanswered: rs.Slot[int] = module.slot("unanswered", 0)
 
 dismissed = module.flag("dismissed")
 """Whether the user's last words ask for quiet or say goodbye."""
+
+sorrow: rs.Slot[int] = module.slot("sorrow", 0)
+"""The number of further utterances for which the user's last words of sorrow count."""

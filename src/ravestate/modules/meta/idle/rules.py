@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
 
 import ravestate as rs
 from ravestate.language.acts import acts, heard
-from ravestate.language.matcher import Match
+from ravestate.language.feelings import feelings
 from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
-from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, unanswered
+from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
 """The last characters of the agent's words in which a question counts."""
 
+SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
+"""Feelings of the user's in which a remark out of boredom would hurt."""
+SORROW_LASTS = 6
+"""The user's utterances for which sorrow counts, the one with it included."""
+
 
 @module.rule(
     when=rs.activity.false.max_age(None) | rs.startup.detached(),
-    reads=(rs.activity, dismissed, asked, unanswered),
+    reads=(rs.activity, dismissed, sorrow, asked, unanswered),
     writes=remarked,
     emits=bored,
     until=rs.activity.true | rawio.typing,
@@ -33,6 +37,8 @@ async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("there is something to do")
     if ctx[dismissed]:
         return rs.Resign("the user wants quiet")
+    if ctx[sorrow]:
+        return rs.Resign("the user is sad")
     if ctx[unanswered] >= settings.remarks:
         return rs.Resign("the user has not answered the last remarks")
     await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
@@ -79,20 +85,23 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
     ctx.emit(impatient)
 
 
-@module.rule(when=rawio.input.changed, writes=dismissed, emits=hushed)
+@module.rule(when=rawio.input.changed, reads=sorrow, writes=(dismissed, sorrow), emits=hushed)
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
-    """Note whether the user asks for quiet or says goodbye; emit `hushed` in the first case.
+    """Note whether the user asks for quiet, says goodbye or is sad; emit `hushed` in the first case.
 
     The encoder may take a few milliseconds, so it runs in a thread. This counts as activity: the silence begins after it.
     """
-    meant = await asyncio.to_thread(_acts_in, ctx.payload(rawio.input.changed))
-    ctx[dismissed] = "quiet" in meant or "farewell" in meant
+    meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
+    ctx[dismissed] = bool(meant & {"quiet", "farewell"})
+    ctx[sorrow] = SORROW_LASTS if felt & SORROWS else max(0, ctx[sorrow] - 1)
     if "quiet" in meant:
         ctx.emit(hushed)
 
 
-def _acts_in(text: str) -> Mapping[str, Match]:
-    return acts(heard(text))
+def _understood(text: str) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the acts and the feelings in a text."""
+    sentences = heard(text)
+    return frozenset(acts(sentences)), frozenset(feelings(sentences))
 
 
 def _has_words(text: str) -> bool:

@@ -135,13 +135,14 @@ class Clause:
                 return True  # but "decide not to go" denies the going alone
             if before is not None and (before.low, word.low) == ("no", "longer"):
                 return True
-            if word.low == "neither" or (word.low == "no" and word.dep == "det" and after and after.low != "one"):
+            if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
+                return True
+            if word.low == "no" and word.dep == "det" and after and after.low != "one":
                 return True
         head = self.head_clause  # I don't smoke or drink
-        joined = self.verb.dep == "conj" and head is not None and not self.own_subjects
-        return (
-            joined and head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
-        )
+        if self.verb.dep != "conj" or head is None or self.own_subjects:
+            return False
+        return head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
 
     @cached_property
     def passive(self) -> Word | None:
@@ -216,10 +217,10 @@ class Clause:
         heads = [word for word in self.own if word.dep in ("aux", "auxpass") or word in self.verbs]
         subjects = self.tree.children_of(self.chain, "expl") or self.own_subjects
         before = self.tree.before(heads[0])
-        if not subjects or (before is not None and before.low in ("so", "neither", "nor")):
+        if not subjects or (before is not None and before.low in ("so", "neither", "nor", "here")):
             return False
         first = self.tree.subtree(subjects[0])[0]
-        if first.low in ("a", "an") and self.unknown is None and not self._objects():
+        if self._is_copula and first.pos != "PRON" and self.unknown is None and not self._objects():
             return False  # was a nice day
         return heads[0].index < first.index and heads[0].low in AUXILIARIES
 
@@ -323,7 +324,10 @@ class Clause:
             if not direct:  # it makes me happy
                 small = [word for word in tree.children(verb, "ccomp") if word.index not in self._clauses]
                 direct = tree.children_of(small, *SUBJECTS)
-            given = lemma_of(verb) in _GIVING and direct and direct[0].pos == "PRON"  # the book you gave me
+            gives = lemma_of(verb) in _GIVING
+            if gives and [word.dep for word in direct[:2]] == ["dobj", "dobj"]:  # she told her friends the truth
+                del direct[0]
+            given = gives and direct and direct[0].pos == "PRON"  # the book you gave me
             if direct and not (relative and (given or direct[0].low in _RELATIVE)):
                 strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos in _NOMINAL]
                 return self._written([direct[0], *(word for word in strays if word.index > direct[0].index)], verb)
@@ -338,7 +342,8 @@ class Clause:
         after = tree.after(verbs[0]) if subjects else None  # my name is Tom I live in Berlin
         if after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).pos in VERBAL:
             return [(phrase_of(tree, after, [after]), False)] if tree.head(after).index > after.index else []
-        for head in (*verbs, *subjects):
+        beside = [word for subject in subjects for word in conjuncts(tree, subject, self._clauses)]
+        for head in (*verbs, *beside):
             if found := self._in_phrases(head, of=head in verbs):
                 return found
         for word in tree.children_of(verbs, "advmod", "npadvmod", "dep"):

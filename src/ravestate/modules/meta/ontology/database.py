@@ -1,10 +1,11 @@
-"""Opening a ladybug database. A damaged file can crash the process that opens it, so a separate process tries first."""
+"""Opening and copying a ladybug database. A damaged file can crash a process, so a separate one opens it first."""
 
 from __future__ import annotations
 
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -45,8 +46,9 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
     )
     connection = ladybug.Connection(database, num_threads=1)
     connection.execute("CALL force_checkpoint_on_close=false")
-    found: Any = connection.execute("CALL show_tables() RETURN name") if size > EMPTY else None
-    if found is not None and not found.get_all():  # ladybug reads pages of zeros as an empty catalog
+    if size > EMPTY and not _rows(
+        connection, "CALL show_tables() RETURN name"
+    ):  # ladybug reads pages of zeros as an empty catalog
         connection.close()
         database.close()
         raise RuntimeError("it has no tables")
@@ -65,11 +67,57 @@ def survives(path: Path, *, whole_log: bool = True) -> bool:
 
 
 def _read_all(path: Path, *, whole_log: bool) -> None:
-    connection: Any
     _database, connection = connect(path, whole_log=whole_log)
-    for name, kind in connection.execute("CALL show_tables() RETURN name, type").get_all():
+    for name, kind in _rows(connection, "CALL show_tables() RETURN name, type"):
         pattern, found = (f"(n:`{name}`)", "n") if kind == "NODE" else (f"()-[r:`{name}`]->()", "r")
-        connection.execute(f"MATCH {pattern} RETURN {found}").get_all()
+        _rows(connection, f"MATCH {pattern} RETURN {found}")
+
+
+def copy_database(source: Any, target: Any) -> None:
+    """Copy all tables, nodes and relations in one transaction, including those that no type declares.
+
+    Deleted nodes, whose bytes stay in the old file, are not in the copy.
+
+    Args:
+        source: A connection to the database to copy.
+        target: A connection to an empty database.
+
+    Raises:
+        RuntimeError: Ladybug failed.
+    """
+    tables = _rows(source, "CALL show_tables() RETURN name, type")
+    _rows(target, "BEGIN TRANSACTION")
+    for name in (name for name, kind in tables if kind == "NODE"):
+        columns = {row[1]: (row[2], row[4]) for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
+        listed = [f"`{key}` {kind}" + (" PRIMARY KEY" if primary else "") for key, (kind, primary) in columns.items()]
+        _rows(target, f"CREATE NODE TABLE `{name}` ({', '.join(listed)})")
+        for [node] in _rows(source, f"MATCH (n:`{name}`) RETURN n"):
+            pattern, values = _pattern(node, columns)
+            _rows(target, f"CREATE (:`{name}` {pattern})", values)
+    for name in (name for name, kind in tables if kind == "REL"):
+        columns = {row[1]: row[2] for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
+        pairs = _rows(source, f"CALL show_connection('{name}') RETURN *")
+        listed = [f"FROM `{one}` TO `{other}`" for one, other, *_ in pairs]
+        listed += [f"`{key}` {kind}" for key, kind in columns.items()]
+        _rows(target, f"CREATE REL TABLE `{name}` ({', '.join(listed)})")
+        for one, other, one_key, other_key in pairs:
+            found = f"MATCH (a:`{one}`)-[r:`{name}`]->(b:`{other}`) RETURN a.`{one_key}`, b.`{other_key}`, r"
+            ends = f"MATCH (a:`{one}` {{`{one_key}`: $a}}), (b:`{other}` {{`{other_key}`: $b}})"
+            for a, b, relation in _rows(source, found):
+                pattern, values = _pattern(relation, columns)
+                _rows(target, f"{ends} CREATE (a)-[:`{name}` {pattern}]->(b)", {"a": a, "b": b, **values})
+    _rows(target, "COMMIT")
+
+
+def _rows(connection: Any, statement: str, parameters: Mapping[str, Any] | None = None) -> list[list[Any]]:
+    return connection.execute(statement, dict(parameters or {})).get_all()
+
+
+def _pattern(found: Mapping[str, Any], columns: Mapping[str, object]) -> tuple[str, dict[str, Any]]:
+    """Return the Cypher pattern of properties, and its parameters."""
+    keys = [key for key in columns if found.get(key) is not None]
+    pattern = "{" + ", ".join(f"`{key}`: $p_{key}" for key in keys) + "}" if keys else ""
+    return pattern, {f"p_{key}": found[key] for key in keys}
 
 
 if __name__ == "__main__":

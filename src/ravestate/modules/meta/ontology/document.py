@@ -4,13 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from datetime import date, datetime
-from typing import Any, cast
+from typing import Annotated, Any
+
+from pydantic import BaseModel, Field, ValidationError
 
 from ravestate.errors import RuleError
 
 from .node import Node, Relation, Value
 from .store import FORMAT
 from .types import Kind, Types
+
+_Text = Annotated[str, Field(min_length=1)]
+
+
+class _Node(BaseModel):
+    id: _Text
+    type: _Text
+    properties: dict[str, Any] = {}
+
+
+class _Relation(BaseModel):
+    source: _Text = Field(alias="from")
+    relation: _Text
+    target: _Text = Field(alias="to")
+    properties: dict[str, Any] = {}
+
+
+class _Document(BaseModel):
+    format: Annotated[int, Field(ge=FORMAT, le=FORMAT)]
+    nodes: list[_Node]
+    relations: list[_Relation]
 
 
 def write_document(nodes: Iterable[Node], relations: Iterable[Relation]) -> dict[str, Any]:
@@ -31,56 +54,35 @@ def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node]
     Raises:
         RuleError: The document is invalid; the message names the first wrong entry.
     """
-    if not isinstance(document, Mapping) or document.get("format") != FORMAT:  # pyright: ignore[reportUnnecessaryIsInstance]  # a file may hold anything
-        raise RuleError(f"this is not an exported memory of format {FORMAT}: write one with ravestate memory export")
-    nodes: dict[str, Node] = {}
-    for entry in _entries(document, "nodes"):
-        type, id = _text(entry, "type"), _text(entry, "id")
-        nodes[id] = Node(type, _values(types.properties(type), entry), id)
+    try:
+        read = _Document.model_validate(document)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "document"
+        raise RuleError(
+            f"this is not an exported memory of format {FORMAT} ({where}: {first['msg']}): write one with ravestate memory export"
+        ) from None
+    nodes = {one.id: Node(one.type, _values(one.id, types.properties(one.type), one), one.id) for one in read.nodes}
     relations: list[Relation] = []
-    for entry in _entries(document, "relations"):
-        ends = [nodes.get(_text(entry, key)) for key in ("from", "to")]
-        if ends[0] is None or ends[1] is None:
-            raise RuleError(f"the relation {entry} is between nodes that the document does not have")
-        name = _text(entry, "relation")
-        values = _values(types.relating(name).properties, entry)
-        relations.append(Relation(ends[0], name, ends[1], values))
+    for one in read.relations:
+        name = f"{one.source} {one.relation} {one.target}"
+        if one.source not in nodes or one.target not in nodes:
+            raise RuleError(f"the relation {name} is between nodes that the document does not have")
+        values = _values(name, types.relating(one.relation).properties, one)
+        relations.append(Relation(nodes[one.source], one.relation, nodes[one.target], values))
     return list(nodes.values()), relations
-
-
-def _entries(document: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
-    entries: list[Any] | None = document.get(key)
-    if not isinstance(entries, list):
-        raise RuleError(f"the document's {key!r} must be a list, not {entries!r}")
-    for entry in entries:
-        if not isinstance(entry, Mapping):
-            raise RuleError(f"an entry of the document's {key!r} is {entry!r}, which has no keys and values")
-    return entries
-
-
-def _text(entry: Mapping[str, Any], key: str) -> str:
-    value = entry.get(key)
-    if not isinstance(value, str) or not value:
-        raise RuleError(f"the entry {dict(entry)} needs a text as {key!r}")
-    return value
 
 
 def _plain(values: Mapping[str, Value]) -> dict[str, Any]:
     return {name: value.isoformat() if isinstance(value, (date, datetime)) else value for name, value in values.items()}
 
 
-def _values(kinds: Mapping[str, Kind], entry: Mapping[str, Any]) -> dict[str, Value]:
-    found: dict[str, Value] = {}
-    given = entry.get("properties", {})
-    if not isinstance(given, Mapping):
-        raise RuleError(f"the properties of {dict(entry)} must be keys and values")
-    for name, value in cast("Mapping[str, Any]", given).items():
+def _values(owner: str, kinds: Mapping[str, Kind], entry: _Node | _Relation) -> dict[str, Value]:
+    found = dict(entry.properties)
+    for name, value in found.items():
         try:
-            if kinds.get(name) == "date":
-                value = date.fromisoformat(value)
-            elif kinds.get(name) == "time":
-                value = datetime.fromisoformat(value)
+            if kinds.get(name) in ("date", "time"):
+                found[name] = (date if kinds[name] == "date" else datetime).fromisoformat(value)
         except (TypeError, ValueError):
-            raise RuleError(f"{name} = {value!r} of {dict(entry)} is not a valid {kinds[name]} in ISO 8601") from None
-        found[name] = value
+            raise RuleError(f"{name} = {value!r} of {owner} is not a valid {kinds[name]} in ISO 8601") from None
     return found

@@ -15,8 +15,7 @@ from typing import Any, cast
 from ravestate.errors import PlatformError
 from ravestate.language.loading import LOADING
 
-from .copying import copy_database
-from .database import connect, survives
+from .database import connect, copy_database, survives
 from .faults import (
     ENDS_PROCESS,
     is_about_log,

@@ -36,8 +36,16 @@ class Graph:
 
     # ------------------------------------------------------------------------------------ nodes
 
-    def save(self, node: Node, of: str | None = None) -> Node:
-        """Write a node's properties to memory, which may already have the node; return the node as it is now stored."""
+    def save(self, node: Node, /, *, of: str | None = None) -> Node:
+        """Set a node's properties in memory, remove those that are None, and keep the others that memory has.
+
+        Args:
+            node: The node to write.
+            of: The type that the node must have; subtypes are allowed.
+
+        Returns:
+            The node with all of its properties in memory.
+        """
         if of is not None and not self._types.is_a(node.type, of):
             raise RuleError(f"{node.id} is a {node.type}, not a {of}")
         return self._write(_known(node), self._types.stored(node.type, node.properties))
@@ -57,8 +65,8 @@ class Graph:
             _parameters({key: value for key, value in wanted.items() if value is not None}),
         )
 
-    def get(self, id: str) -> Node | None:
-        """Return the node with this id, or None."""
+    def get(self, id: str, /) -> Node | None:
+        """Return the node with this id; None if memory does not have it."""
         label, _, _ = id.partition(":")
         if label not in self._types:
             return None
@@ -90,8 +98,11 @@ class Graph:
             self._must_know(other)
             self._relate(node, relation, other, values)
 
-    def unrelate(self, node: Node, relation: str, other: Node, *, forget: bool = False) -> None:
-        """Remove a relation. With `forget`, also forget the other node if nothing else needs it."""
+    def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
+        """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
+
+        A person or robot with more than a name stays as well.
+        """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
             self._store.write(
@@ -101,14 +112,14 @@ class Graph:
             if forget and not self._is_wanted(other, ()) and not self._has_own_life(other, node):
                 self.forget(other)
 
-    def related(self, node: Node, relation: str, *, back: bool) -> list[Node]:
-        """Return the targets of a node's relation, oldest first; with `back`, the sources."""
+    def related(self, node: Node, relation: str, /, *, back: bool = False) -> list[Node]:
+        """Return the targets of a relation from `node`, oldest first; with `back`, the sources of a relation to it."""
         self._types.check_end(node.type, relation, back=back)
         pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
         return self._nodes(f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id})
 
-    def relations(self, node: Node) -> list[Relation]:
-        """Return all relations from a node, then those to it."""
+    def relations(self, node: Node, /) -> list[Relation]:
+        """Return all relations of a node: those from it, then those to it."""
         found = [Relation(node, name, other, values) for name, values, other in self._ends(node, back=False)]
         found += [
             Relation(other, name, node, values)
@@ -143,8 +154,12 @@ class Graph:
 
     # ------------------------------------------------------------------------------------ merging and forgetting
 
-    def merge(self, keep: Node, duplicate: Node) -> Node:
-        """Merge two nodes: move the duplicate's relations and missing properties to `keep`, and return `keep`."""
+    def merge(self, keep: Node, duplicate: Node, /) -> Node:
+        """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks; return `keep`.
+
+        Raises:
+            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype.
+        """
         if keep.id == duplicate.id:
             raise RuleError(f"{keep.id} cannot be merged with itself")
         if not self._types.is_a(keep.type, duplicate.type):
@@ -170,8 +185,8 @@ class Graph:
         present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))
 
-    def only_about(self, node: Node) -> list[Node]:
-        """Return a node and the nodes that only this node needs; an empty list if memory does not have the node."""
+    def only_about(self, node: Node, /) -> list[Node]:
+        """Return the nodes that `forget` would remove, `node` first; an empty list if memory does not have it."""
         start = self.get(node.id)
         if start is None:
             return []
@@ -187,8 +202,15 @@ class Graph:
                 del going[one]
         return list(going.values())
 
-    def forget(self, node: Node) -> list[Node]:
-        """Remove a node and the nodes that only this node needs; return the removed nodes."""
+    def forget(self, node: Node, /) -> list[Node]:
+        """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
+
+        A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
+        related to them. A person or robot with more than a name stays as well.
+
+        Returns:
+            The removed nodes, `node` first; an empty list if memory does not have `node`.
+        """
         with self._store.transaction():
             going = self.only_about(node)
             for one in going:
@@ -226,11 +248,11 @@ class Graph:
     # ------------------------------------------------------------------------------------ documents
 
     def tidy(self) -> None:
-        """Move the log's content into the database."""
+        """Move the log of writes into the database: after many writes, this frees main memory."""
         self._store.tidy()
 
     def export(self) -> dict[str, Any]:
-        """Return all declared nodes and relations as a document."""
+        """Return all nodes and relations as a document for JSON, which `load` reads."""
         every = (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {}))
         nodes = sorted(every, key=_age)
         known = {node.id for node in nodes}
@@ -242,8 +264,8 @@ class Graph:
         ]
         return write_document(nodes, relations)
 
-    def load(self, document: Mapping[str, Any]) -> int:
-        """Save the nodes and relations of a document; return the number of nodes."""
+    def load(self, document: Mapping[str, Any], /) -> int:
+        """Save all nodes and relations of a document from `export`, or none; return the number of nodes."""
         nodes, relations = read_document(document, self._types)
         with self._store.transaction():
             for node in nodes:
@@ -253,7 +275,7 @@ class Graph:
         return len(nodes)
 
     def undeclared(self) -> list[str]:
-        """Return the names of undeclared types that have nodes in memory."""
+        """Return the names of the types that have nodes in memory, but that no file of types declares."""
         return self._store.undeclared(self._types)
 
     # ------------------------------------------------------------------------------------ internals

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+import functools
 import threading
-from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable
+from typing import Concatenate, ParamSpec, TypeVar
 
 from ravestate.errors import RuleError
 
 from .graph import Graph
-from .node import Node, Relation, Value
+from .node import Node, Value
 from .reply import Reply
 from .store import Store
 from .types import Types
 from .worker import StoreWorker
 
+P = ParamSpec("P")
 T = TypeVar("T")
+
+
+def _operation(method: Callable[Concatenate[Graph, P], T]) -> Callable[Concatenate[Memory, P], Reply[T]]:
+    """Return a method of `Memory` that runs a method of `Graph` in memory's thread."""
+
+    @functools.wraps(method)
+    def operation(memory: Memory, *args: P.args, **options: P.kwargs) -> Reply[T]:
+        return memory.submit(method.__name__, lambda graph: method(graph, *args, **options))
+
+    return operation
 
 
 class Memory:
@@ -80,35 +92,23 @@ class Memory:
 
                 ada = await memory.create("Person", name="Ada", born=date(1815, 12, 10))
         """
-        return self._do("create", lambda graph: graph.save(Node(type, properties)))
+        return self.submit("create", lambda graph: graph.save(Node(type, properties)))
 
     def ensure(self, type: str, /, **properties: Value) -> Reply[Node]:
         """Return the oldest node that `find` would return, or create a new one."""
-        return self._do("ensure", lambda graph: graph.ensure(type, properties))
+        return self.submit("ensure", lambda graph: graph.ensure(type, properties))
 
-    def save(self, node: Node, /, *, of: str | None = None) -> Reply[Node]:
-        """Write a node to memory: set its properties, remove those that are None, and keep the others in memory.
-
-        Args:
-            node: The node to write.
-            of: The type that the node must have; subtypes are allowed.
-
-        Returns:
-            The node with all of its properties in memory.
-        """
-        return self._do("save", lambda graph: graph.save(node, of))
+    save = _operation(Graph.save)
 
     def find(self, type: str, /, **properties: Value) -> Reply[list[Node]]:
         """Return all nodes of a type or its subtypes with these properties, oldest first. None matches no value."""
-        return self._do("find", lambda graph: graph.find(type, properties))
+        return self.submit("find", lambda graph: graph.find(type, properties))
 
-    def get(self, id: str, /) -> Reply[Node | None]:
-        """Return the node with this id; None if memory does not have it."""
-        return self._do("get", lambda graph: graph.get(id))
+    get = _operation(Graph.get)
 
     def update(self, node: Node, /, **properties: Value) -> Reply[Node]:
         """Set properties of a node that memory has, and remove those that are None."""
-        return self._do("update", lambda graph: graph.update(node, properties))
+        return self.submit("update", lambda graph: graph.update(node, properties))
 
     def relate(self, node: Node, relation: str, other: Node, /, **properties: Value) -> Reply[None]:
         """Relate two nodes that memory has; if they are related already, set the relation's properties.
@@ -121,51 +121,18 @@ class Memory:
 
                 await memory.relate(ada, "lives_in", await memory.ensure("City", name="London"))
         """
-        return self._do("relate", lambda graph: graph.relate(node, relation, other, properties))
+        return self.submit("relate", lambda graph: graph.relate(node, relation, other, properties))
 
-    def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> Reply[None]:
-        """Remove a relation, if there is one.
-
-        Args:
-            node: The source of the relation.
-            relation: The relation's name.
-            other: The target of the relation.
-            forget: Whether to forget `other` too, unless another node is related to it. A person or robot with more
-                than a name stays as well.
-        """
-        return self._do("unrelate", lambda graph: graph.unrelate(node, relation, other, forget=forget))
-
-    def related(self, node: Node, relation: str, /, *, back: bool = False) -> Reply[list[Node]]:
-        """Return the targets of a relation from `node`, oldest first; with `back`, the sources of a relation to it."""
-        return self._do("related", lambda graph: graph.related(node, relation, back=back))
-
-    def relations(self, node: Node, /) -> Reply[list[Relation]]:
-        """Return all relations of a node: those from it, then those to it."""
-        return self._do("relations", lambda graph: graph.relations(node))
-
-    def merge(self, keep: Node, duplicate: Node, /) -> Reply[Node]:
-        """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks.
-
-        Raises:
-            RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype. Or memory does not have
-                one of the nodes.
-        """
-        return self._do("merge", lambda graph: graph.merge(keep, duplicate))
-
-    def forget(self, node: Node, /) -> Reply[list[Node]]:
-        """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
-
-        A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
-        related to them. A person or robot with more than a name stays as well.
-
-        Returns:
-            The removed nodes, `node` first; an empty list if memory does not have `node`.
-        """
-        return self._do("forget", lambda graph: graph.forget(node))
-
-    def only_about(self, node: Node, /) -> Reply[list[Node]]:
-        """Return the nodes that `forget` would remove, `node` first."""
-        return self._do("only_about", lambda graph: graph.only_about(node))
+    unrelate = _operation(Graph.unrelate)
+    related = _operation(Graph.related)
+    relations = _operation(Graph.relations)
+    merge = _operation(Graph.merge)
+    forget = _operation(Graph.forget)
+    only_about = _operation(Graph.only_about)
+    export = _operation(Graph.export)
+    load = _operation(Graph.load)
+    undeclared = _operation(Graph.undeclared)
+    tidy = _operation(Graph.tidy)
 
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
         """Run several operations as one: all take effect, or none. In a file, no other operation runs between them.
@@ -187,23 +154,7 @@ class Memory:
 
                 ada = await memory.together(befriend)
         """
-        return self._do("together", lambda graph: graph.together(operations))
-
-    def export(self) -> Reply[dict[str, Any]]:
-        """Return all nodes and relations as a document for JSON, which `load` reads."""
-        return self._do("export", lambda graph: graph.export())
-
-    def load(self, document: Mapping[str, Any], /) -> Reply[int]:
-        """Save all nodes and relations of a document from `export`, or none; return the number of nodes."""
-        return self._do("load", lambda graph: graph.load(document))
-
-    def undeclared(self) -> Reply[list[str]]:
-        """Return the names of the types that have nodes in memory, but that no file of types declares."""
-        return self._do("undeclared", lambda graph: graph.undeclared())
-
-    def tidy(self) -> Reply[None]:
-        """Move the log of writes into the database: after many writes, this frees main memory."""
-        return self._do("tidy", lambda graph: graph.tidy())
+        return self.submit("together", lambda graph: graph.together(operations))
 
     def close(self) -> Reply[None]:
         """Close memory after all earlier operations. Later operations raise RuleError."""
@@ -215,7 +166,8 @@ class Memory:
     def __repr__(self) -> str:
         return f"<memory {self.place}>"
 
-    def _do(self, name: str, operation: Callable[[Graph], T]) -> Reply[T]:
+    def submit(self, name: str, operation: Callable[[Graph], T]) -> Reply[T]:
+        """Queue an operation for memory's thread; `name` is for messages."""
         with self._lock:
             if self._closed is not None:
                 raise RuleError(f"memory ({self.place}) is closed: {name} comes too late")

@@ -1,4 +1,4 @@
-"""The names of feelings."""
+"""The feelings, with their emoji."""
 
 from __future__ import annotations
 
@@ -7,4 +7,11 @@ from typing import Literal
 Feeling = Literal["shy", "surprised", "happy", "affectionate", "sad"]
 """The name of a feeling and of its signal."""
 
-FEELINGS: tuple[Feeling, ...] = ("shy", "surprised", "happy", "affectionate", "sad")
+EMOJI: dict[Feeling, tuple[str, ...]] = {
+    "shy": ("😳", "🙈", "☺️"),
+    "surprised": ("😮", "😲", "😯"),
+    "happy": ("😄", "😀", "😊"),
+    "affectionate": ("🤗", "🥰", "💕"),
+    "sad": ("😢", "😔", "🥺"),
+}
+"""The emoji of each feeling."""

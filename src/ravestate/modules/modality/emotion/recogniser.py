@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 
 from ravestate.language.acts import LONGEST, heard
-from ravestate.language.feelings import addressed, feelings
+from ravestate.language.addressing import addressed
+from ravestate.language.feelings import feelings
 from ravestate.language.matcher import bundled_matcher
 
 from .feeling import Feeling
@@ -38,7 +39,7 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     """Return the feeling that fits `text` (English), or None. The first call loads the sentence model.
 
     Args:
-        text: The user's words; the first 1000 characters count.
+        text: The user's words; the first 2000 characters count.
         names: The agent's names: "Rosie is clever" means the same as "you are clever".
 
     Raises:
@@ -48,22 +49,12 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
         >>> recognise("You are so clever!"), recognise("You are not very clever."), recognise("I passed my exam!")
         ('shy', None, 'happy')
     """
-    return feeling_in(to_agent(text, names)) or next(
-        (f for f, picture in PICTURES if picture.search(text[:LONGEST])), None
-    )
-
-
-def to_agent(text: str, names: Collection[str] = ()) -> list[str]:
-    """Return the sentences of `text` in the normal form, in which the agent is "you"."""
-    return [addressed(sentence, names) for sentence in heard(text, names)]
-
-
-def feeling_in(said: Sequence[str]) -> Feeling | None:
-    """Return the strongest feeling in the sentences."""
+    said = heard(text, names)
     matcher = bundled_matcher("feelings")
-    if not all(map(matcher.match_exactly, said)):
+    if not all(matcher.match_exactly(addressed(sentence, names)) for sentence in said):
         matcher.load()
-    found = feelings(said)
+    found = feelings(said, names)
     if not SPOILERS.isdisjoint(found):
         found.pop("joy", None)
-    return next((feeling for name, feeling in SHARED.items() if name in found), None)
+    shown = (feeling for name, feeling in SHARED.items() if name in found)
+    return next(shown, None) or next((f for f, picture in PICTURES if picture.search(text[:LONGEST])), None)

@@ -5,24 +5,21 @@ from __future__ import annotations
 import contextlib
 
 import ravestate as rs
+from ravestate.language.acts import heard
+from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
 
 from .chance import OCCASIONS, by_chance
-from .emoji import emoji_for
-from .feeling import FEELINGS, Feeling
+from .feeling import EMOJI, Feeling
 from .names import Settings, affectionate, felt, happy, module, sad, shy, surprised
-from .recogniser import recognise, to_agent
+from .recogniser import recognise
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
-    "shy": shy,
-    "surprised": surprised,
-    "happy": happy,
-    "affectionate": affectionate,
-    "sad": sad,
-}
+    "shy": shy, "surprised": surprised, "happy": happy, "affectionate": affectionate, "sad": sad,
+}  # fmt: skip
 
 
 @module.rule(when=rs.startup, background=True)
@@ -48,7 +45,8 @@ def be_moved(ctx: rs.RuleContext) -> None:
         feeling = recognise(text, names)
     if feeling is None:
         likely: dict[Feeling, float] = {name: getattr(settings, name) for name in OCCASIONS}
-        feeling = by_chance(to_agent(text, names), likely, ctx.random)
+        said = [addressed(sentence, names) for sentence in heard(text, names)]
+        feeling = by_chance(said, likely, ctx.random)
     if feeling is not None:
         ctx.emit(SIGNALS[feeling])
 
@@ -67,7 +65,7 @@ def note(feeling: Feeling) -> None:
         ctx[felt] = feeling
 
 
-for each in FEELINGS:
+for each in SIGNALS:
     note(each)
 
 
@@ -84,5 +82,5 @@ async def show(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("emotion.emoji is off")
     feeling = ctx.payload(felt.changed)
     await ctx.quiet()
-    ctx[rawio.output] = emoji_for(feeling, ctx.random)
+    ctx[rawio.output] = ctx.random.choice(EMOJI[feeling])
     return None

@@ -35,15 +35,12 @@ class Screen(Protocol):
 
     def show(self, text: str) -> None:
         """Print a text of whole lines. Raise OSError if the output is gone."""
-        ...
 
     def stream(self, piece: str) -> None:
         """Print a piece of a line: at once on a terminal, else once the line is complete."""
-        ...
 
     def end(self) -> None:
         """End the line of pieces that `stream` has begun, if there is one."""
-        ...
 
 
 class Console:

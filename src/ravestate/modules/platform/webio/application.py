@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 PAGE = Path(__file__).parent / "page"
 """The folder of the built page: the output of ``npm run build`` in ``frontend/``."""
 
-CONSOLES = ("conio",)
-"""The names of platforms for a single user. With webio, each visitor's context would contain such a platform."""
-
 MOST_LOGGED = 100
 """The maximum number of embedding sites that the log names, each once, so that strangers cannot fill the log."""
 
@@ -71,9 +68,8 @@ def _settings_of(agent: Agent) -> Settings:
     names = [module.name for module in agent.policy.modules]
     if "webio" not in names:
         raise PlatformError(f"the agent has no webio: write Agent(webio, ...); it has {', '.join(names)}")
-    for name in CONSOLES:
-        if name in names:
-            raise PlatformError(f"webio has many users, {name} has one: leave {name} out")
+    if "conio" in names:  # each visitor's context would contain it
+        raise PlatformError("webio has many users, conio has one: leave conio out")
     return agent.settings["webio"]  # type: ignore[return-value]  # the settings class of webio
 
 

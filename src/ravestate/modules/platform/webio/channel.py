@@ -5,8 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections import deque
-from collections.abc import Awaitable, Callable, Coroutine
-from typing import Any
+from collections.abc import Awaitable, Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -40,18 +39,6 @@ class Channel:
             except ProtocolError as error:
                 await self.send(serialise(Error(error.code, str(error))))
                 await self._socket.close(CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code)
-
-    async def both(self, read: Coroutine[Any, Any, None], write: Coroutine[Any, Any, None]) -> None:
-        """Run both coroutines at the same time until one of them ends; then cancel the other."""
-        tasks = [asyncio.create_task(read), asyncio.create_task(write)]
-        try:
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for task in tasks:
-                task.cancel()
-        for end in await asyncio.gather(*tasks, return_exceptions=True):
-            if isinstance(end, Exception):
-                raise end
 
     async def first(self, expected: str) -> str | bytes:
         """Return the client's first frame; `expected` is an example of it, for the error message."""

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocket
 
+from ravestate.runtime.run import until_first_ends
+
 from . import protocol
 from .channel import Bucket, Channel
 from .protocol import CLIENT, VERSION, ProtocolError, parse, serialise
@@ -71,7 +73,7 @@ class Connection:
             agent = self._name_of(session)
             begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
             await self._send(protocol.Welcome(*begin, self._suggestions, self._note))
-            await self._channel.both(self._read(session), self._write(session, max(last, first - 1), agent))
+            await until_first_ends(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             self._sessions.exit(session, self)
 
@@ -82,8 +84,6 @@ class Connection:
         bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
         await self._access.check_token(frame.token or bearer)
         return frame
-
-    # ------------------------------------------------------------------------------------ from the client
 
     async def _read(self, session: Session) -> None:
         now = asyncio.get_running_loop().time
@@ -115,8 +115,6 @@ class Connection:
 
     def _reply(self, frame: protocol.ServerFrame) -> None:
         self._channel.reply(serialise(frame))
-
-    # ------------------------------------------------------------------------------------ to the client
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
         """Send all that the client lacks: a name other than `agent`, messages after number `last`, a new `Piece`."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import hashlib
-from dataclasses import dataclass
 from pathlib import Path
 
 from starlette.datastructures import Headers
@@ -32,25 +31,17 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
         await socket.close()
 
 
-@dataclass(frozen=True, slots=True)
-class _File:
-    data: bytes
-    packed: bytes | None
-    kind: str
-    tag: str
-
-
 class Pages:
     """An ASGI application that serves the files of a folder as they are now, with ``index.html`` for folders."""
 
     def __init__(self, folder: Path) -> None:
-        self._files: dict[str, _File] = {}
+        self._files: dict[str, tuple[bytes, bytes | None, str, str]] = {}
         for file in sorted(folder.rglob("*")):
             if file.suffix in KINDS:
                 data = file.read_bytes()
                 packed = None if file.suffix in COMPRESSED else gzip.compress(data, mtime=0)
                 tag = f'"{hashlib.sha256(data).hexdigest()[:16]}"'
-                self._files[f"/{file.relative_to(folder).as_posix()}"] = _File(data, packed, KINDS[file.suffix], tag)
+                self._files[f"/{file.relative_to(folder).as_posix()}"] = data, packed, KINDS[file.suffix], tag
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request for a file; refuse a WebSocket."""
@@ -66,12 +57,11 @@ class Pages:
         file = self._files.get(path + "index.html" if path.endswith("/") else path)
         if file is None:
             return PlainTextResponse("there is no such page", 404)
+        data, packed, kind, tag = file
         asked = Headers(scope=scope)
-        headers = {"cache-control": "no-cache", "etag": file.tag, "vary": "accept-encoding"}
-        if asked.get("if-none-match") == file.tag:
+        headers = {"cache-control": "no-cache", "etag": tag, "vary": "accept-encoding"}
+        if asked.get("if-none-match") == tag:
             return Response(status_code=304, headers=headers)
-        data = file.data
-        if file.packed is not None and "gzip" in asked.get("accept-encoding", ""):
-            data = file.packed
-            headers["content-encoding"] = "gzip"
-        return Response(data, headers=headers, media_type=file.kind)
+        if packed is not None and "gzip" in asked.get("accept-encoding", ""):
+            data, headers["content-encoding"] = packed, "gzip"
+        return Response(data, headers=headers, media_type=kind)

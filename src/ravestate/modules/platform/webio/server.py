@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from .names import Settings
 import gc
-from dataclasses import dataclass
 
 SPARE = 128  # the number of open files that the server leaves to the rest of the process
 BACKLOG = 256  # how many connections the system accepts before the server takes them
@@ -46,33 +45,22 @@ COLLECT = (10_000, 10, 10)
 several hundred conversations every few seconds, and hold up all answers meanwhile."""
 
 
-@dataclass(slots=True)
-class _Saved:
-    """The number of running servers, and the interpreter's settings from before the first server."""
-
-    users: int = 0
-    switch: float = 0.0
-    collect: tuple[int, int, int] = (0, 0, 0)
-
-
-_saved = _Saved()
+_before: list[tuple[float, tuple[int, int, int]]] = []  # one item for each running server: the settings before it
 
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
     """Tune the interpreter for quick answers in the body, until the last server that does so has ended."""
-    if not _saved.users:
-        _saved.switch, _saved.collect = sys.getswitchinterval(), gc.get_threshold()
-        sys.setswitchinterval(SWITCH)
-        gc.set_threshold(*COLLECT)
-    _saved.users += 1
+    _before.append(_before[0] if _before else (sys.getswitchinterval(), gc.get_threshold()))
+    sys.setswitchinterval(SWITCH)
+    gc.set_threshold(*COLLECT)
     try:
         yield
     finally:
-        _saved.users -= 1
-        if not _saved.users:
-            sys.setswitchinterval(_saved.switch)
-            gc.set_threshold(*_saved.collect)
+        switch, collect = _before.pop()
+        if not _before:
+            sys.setswitchinterval(switch)
+            gc.set_threshold(*collect)
 
 
 class Server:

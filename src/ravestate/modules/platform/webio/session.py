@@ -98,7 +98,6 @@ class Onlooker(Protocol):
 
     def wake(self) -> None:
         """Note that the conversation has changed; look at the change later."""
-        ...
 
 
 class Session:
@@ -133,8 +132,6 @@ class Session:
 
     def __repr__(self) -> str:
         return f"conversation {self.visitor}"
-
-    # ------------------------------------------------------------------------------------ life
 
     async def live(self) -> None:
         """Run the conversation until the visitor or the agent leaves, or the task is cancelled; then end it properly."""
@@ -179,8 +176,6 @@ class Session:
             left.cancel()
             stopped.cancel()
 
-    # ------------------------------------------------------------------------------------ the visitor
-
     @property
     def leaving(self) -> bool:
         """Whether the visitor or the agent has left: the session takes no more input, but the agent may say goodbye."""
@@ -210,8 +205,6 @@ class Session:
         """Tell the agent that the visitor is writing."""
         if not self.leaving:
             self.context.emit(rawio.typing)
-
-    # ------------------------------------------------------------------------------------ the agent
 
     @property
     def agent(self) -> str:

@@ -3,33 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from ravestate.modules.meta.ontology import Memory, Node
 
 from .life import Fact, Life
 
-
-class _Relation(NamedTuple):
-    name: str
-    type: str
-
-
-RELATIONS: Mapping[str, _Relation] = {
-    "home": _Relation("lives_in", "Place"),
-    "origin": _Relation("comes_from", "Place"),
-    "hobbies": _Relation("has_hobby", "Hobby"),
-    "likes": _Relation("likes", "Thing"),
-    "dislikes": _Relation("dislikes", "Thing"),
-    "abilities": _Relation("can", "Ability"),
-    "learned": _Relation("has_learned", "Ability"),
-    "ambition": _Relation("wants_to_become", "Thing"),
-    "friends": _Relation("friend_of", "Agent"),
-    "father": _Relation("has_father", "Agent"),
-    "mother": _Relation("has_mother", "Agent"),
-    "siblings": _Relation("sibling_of", "Agent"),
-    "membership": _Relation("member_of", "Organisation"),
-    "makers": _Relation("made_by", "Organisation"),
+RELATIONS: Mapping[str, tuple[str, str]] = {
+    "home": ("lives_in", "Place"),
+    "origin": ("comes_from", "Place"),
+    "hobbies": ("has_hobby", "Hobby"),
+    "likes": ("likes", "Thing"),
+    "dislikes": ("dislikes", "Thing"),
+    "abilities": ("can", "Ability"),
+    "learned": ("has_learned", "Ability"),
+    "ambition": ("wants_to_become", "Thing"),
+    "friends": ("friend_of", "Agent"),
+    "father": ("has_father", "Agent"),
+    "mother": ("has_mother", "Agent"),
+    "siblings": ("sibling_of", "Agent"),
+    "membership": ("member_of", "Organisation"),
+    "makers": ("made_by", "Organisation"),
 }
 """Facts with a relation in memory, and the type of the nodes at its other end. Other facts stay in the file."""
 

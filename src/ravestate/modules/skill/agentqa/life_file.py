@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 import string
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import date
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravestate.errors import nearest
+from ravestate.errors import DeclarationError, nearest
 from ravestate.language.examples import bundled
 from ravestate.modules._yaml import fault, kind_of, read_text
 from ravestate.yaml_text import compose_yaml
@@ -30,7 +30,10 @@ NAMED = ("it", "that")
 """Parameters of phrases for a question that names a value."""
 
 _PARTS = ("facts", "topics", "others")
-_PARTS_OF_TOPIC = ("questions", "remarks", "acts", "phrases", "otherwise", "named", "unnamed")
+_ADDED = ("questions", "remarks", "acts")
+"""Parts of a topic that a user's file adds to those of the module."""
+_TOLD = ("phrases", "otherwise", "unnamed")
+"""Parts of a topic that a user's file replaces."""
 
 
 def read_life(own: Path | None = None) -> Life:
@@ -51,182 +54,149 @@ def read_life(own: Path | None = None) -> Life:
     return _parsed(str(own), read_text(own, "file"), life)
 
 
-# -------------------------------------------------------------------------------------- one file
-
-
 @lru_cache(maxsize=32)
 def _parsed(name: str, text: str, base: Life | None) -> Life:
     root = compose_yaml(text, name)
-    facts = dict(base.facts) if base else {}
-    topics = dict(base.topics) if base else {}
-    others = base.others if base else ()
-    if root is None:
+    life = base or Life({}, {})
+    return life if root is None else _Reader(name).life(root, life)
+
+
+class _Reader:
+    """A reader of a file, whose name it mentions in messages about mistakes."""
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._known: tuple[str, ...] = KNOWN
+        """The facts that phrases may use."""
+
+    def life(self, root: yaml.Node, base: Life) -> Life:
+        """Return the life `base` with the changes of the file."""
+        facts, topics, others = dict(base.facts), dict(base.topics), base.others
+        parts = dict(self._entries(root, _PARTS, "the file has facts, topics and others, and"))
+        if "facts" in parts:
+            for key, value in self._entries(parts["facts"], None, "facts have names: hobbies: [chess], and"):
+                fact = self._fact(key, value)
+                facts.pop(key, None)
+                if fact is not None:
+                    facts[key] = fact
+            if "name" not in facts:
+                raise self._fault(parts["facts"], "the agent needs a name: write\nfacts:\n  name: Robin")
+        if "others" in parts:
+            others += self._texts(parts["others"], "questions")
+        if "topics" in parts:
+            self._known = (*facts, *base.facts, *KNOWN)
+            meaning = "topics have names: shoes: {questions: ...}, and"
+            for key, value in self._entries(parts["topics"], None, meaning):
+                before = topics.pop(key, None) if _is_null(value) else topics.get(key)
+                if not _is_null(value):
+                    topics[key] = self._topic(key, value, before or Topic(key, (), ()))
         return Life(facts, topics, others)
-    parts = dict(_entries(name, root, _PARTS, "the file has facts, topics and others, and"))
-    if (node := parts.get("facts")) is not None:
-        for key, value in _entries(name, node, None, "facts have names: hobbies: [chess], and"):
-            fact = _fact(name, key, value)
-            facts.pop(key, None)
-            if fact is not None:
-                facts[key] = fact
-        if "name" not in facts:
-            raise fault(name, node, "the agent needs a name: write\nfacts:\n  name: Robin")
-    if (node := parts.get("others")) is not None:
-        others += _texts(name, node, "questions")
-    if (node := parts.get("topics")) is not None:
-        known = _Known(name, (*facts, *(base.facts if base else ()), *KNOWN))
-        for key, value in _entries(name, node, None, "topics have names: shoes: {questions: ...}, and"):
-            if _is_null(value):
-                topics.pop(key, None)
-            else:
-                topics[key] = _topic(key, value, topics.get(key), known)
-    return Life(facts, topics, others)
 
-
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """The facts that the phrases of a file may use."""
-
-    file: str
-    facts: tuple[str, ...]
-
-    def check(self, node: yaml.Node, more: tuple[str, ...] = ()) -> tuple[str, ...]:
-        """Return the phrases of a node, whose parameters are facts."""
-        found = _texts(self.file, node, "phrases")
-        known = (*self.facts, *more)
-        items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
-        for item in items:
+    def _fact(self, key: str, node: yaml.Node) -> Fact | None:
+        if key in COUNTED:
+            instead = "born: 2024-03-01" if key == "age" else "another name"
+            raise self._fault(node, f"{key} is computed, and cannot be written here: write {instead}")
+        if _is_null(node):
+            return None
+        if key in ("name", "born") and kind_of(node) != "scalar":
+            raise self._fault(node, f"{key} is one text, not a {kind_of(node)}")
+        if kind_of(node) == "mapping":
+            return tuple((other, self._text(value)) for other, value in self._entries(node, None, "it has pairs, and"))
+        if kind_of(node) == "sequence":
+            return self._texts(node, "texts", empty=True)
+        text = self._text(node)
+        if key == "born":
             try:
-                parts = list(string.Formatter().parse(item.value))
+                date.fromisoformat(text)
+            except ValueError:
+                raise self._fault(node, f"born: {text!r} is not a date: write for example 2024-03-01") from None
+        return text
+
+    def _topic(self, key: str, node: yaml.Node, topic: Topic) -> Topic:
+        meaning = f"the topic {key} has questions and phrases, and"
+        parts = dict(self._entries(node, (*_ADDED, *_TOLD, "named"), meaning))
+        added = {part: (*getattr(topic, part), *self._texts(parts[part], part)) for part in _ADDED if part in parts}
+        if "phrases" in parts:
+            topic = replace(topic, otherwise=(), named=(), unnamed=())
+        told = {part: self._phrases(parts[part]) for part in _TOLD if part in parts}
+        topic = replace(topic, **added, **told)
+        if "named" in parts:
+            entries = self._entries(parts["named"], self._known, "it has a fact and phrases, and")
+            topic = replace(topic, named=tuple((fact, self._phrases(phrases, NAMED)) for fact, phrases in entries))
+        heard = topic.questions or topic.remarks or topic.acts
+        if not heard or not topic.phrases:
+            part = "phrases" if heard else "questions"
+            raise self._fault(node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
+        return topic
+
+    def _phrases(self, node: yaml.Node, more: tuple[str, ...] = ()) -> tuple[str, ...]:
+        """Return the phrases of a node, whose parameters are facts."""
+        known = (*self._known, *more)
+        for item in _items(node):
+            try:
+                parts = list(string.Formatter().parse(item.value)) if kind_of(item) == "scalar" else []
             except ValueError as error:
-                raise fault(
-                    self.file, item, f"the braces in {item.value!r} name no fact ({error}): write {{hobbies}}"
-                ) from None
+                problem = f"the braces in {item.value!r} name no fact ({error}): write {{hobbies}}"
+                raise self._fault(item, problem) from None
             for _, parameter, form, conversion in parts:
                 if parameter is not None and (parameter not in known or form or conversion):
-                    raise fault(
-                        self.file,
-                        item,
-                        f"{{{parameter}}} in {item.value!r} is not a fact{nearest(parameter, known)}; it would stand under "
-                        f"facts:\n  {parameter or 'hobbies'}: ...",
-                    )
-        return found
+                    problem = f"{{{parameter}}} in {item.value!r} is not a fact{nearest(parameter, known)}"
+                    raise self._fault(item, f"{problem}; it would stand under facts:\n  {parameter or 'hobbies'}: ...")
+        return self._texts(node, "phrases")
 
+    def _texts(self, node: yaml.Node, part: str, *, empty: bool = False) -> tuple[str, ...]:
+        if not _items(node) and not empty:
+            raise self._fault(node, f"there are no {part}: write some, or leave it out")
+        return tuple(self._checked(item, part) for item in _items(node))
 
-def _topic(key: str, node: yaml.Node, before: Topic | None, known: _Known) -> Topic:
-    parts = dict(_entries(known.file, node, _PARTS_OF_TOPIC, f"the topic {key} has questions and phrases, and"))
-    topic = before or Topic(key, (), ())
-    if "questions" in parts:
-        topic = replace(topic, questions=(*topic.questions, *_texts(known.file, parts["questions"], "questions")))
-    if "remarks" in parts:
-        topic = replace(topic, remarks=(*topic.remarks, *_expressions(known.file, parts["remarks"], "remarks")))
-    if "acts" in parts:
-        topic = replace(topic, acts=(*topic.acts, *_acts(known.file, parts["acts"])))
-    if "phrases" in parts:
-        topic = replace(topic, phrases=known.check(parts["phrases"]), otherwise=(), named=(), unnamed=())
-    if "otherwise" in parts:
-        topic = replace(topic, otherwise=known.check(parts["otherwise"]))
-    if "named" in parts:
-        named: list[tuple[str, tuple[str, ...]]] = []
-        for fact, phrases in _entries(known.file, parts["named"], known.facts, "it has a fact and phrases, and"):
-            named.append((fact, known.check(phrases, NAMED)))
-        topic = replace(topic, named=tuple(named))
-    if "unnamed" in parts:
-        topic = replace(topic, unnamed=known.check(parts["unnamed"]))
-    for part, there in (
-        ("questions", topic.questions or topic.remarks or topic.acts),
-        ("phrases", topic.phrases),
-    ):
-        if not there:
-            raise fault(known.file, node, f"the topic {key} has no {part}: write\n{key}:\n  {part}: [...]")
-    return topic
+    def _checked(self, node: yaml.Node, part: str) -> str:
+        """Return a text; a remark must be a regular expression, and an act must be known."""
+        text = self._text(node)
+        if part == "remarks":
+            try:
+                re.compile(text)
+            except re.error as error:
+                problem = f"{text!r} is not a regular expression ({error}): write for example i am (so )?sad"
+                raise self._fault(node, problem) from None
+        elif part == "acts" and text not in (known := [*bundled("acts").classes, *bundled("feelings").classes]):
+            raise self._fault(node, f"{text!r} is no act or feeling{nearest(text, known)}: {', '.join(known)}")
+        return text
 
+    def _entries(
+        self, node: yaml.Node, allowed: tuple[str, ...] | None, meaning: str
+    ) -> Iterator[tuple[str, yaml.Node]]:
+        if kind_of(node) != "mapping":
+            raise self._fault(node, f"{meaning} this is a {kind_of(node)}")
+        seen: set[str] = set()
+        for key, value in node.value:
+            word = self._text(key)
+            if allowed is not None and word not in allowed:
+                raise self._fault(
+                    key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}"
+                )
+            if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
+                raise self._fault(key, f"{word!r} is not a name: letters, digits and _")
+            if word in seen:
+                raise self._fault(key, f"{word!r} is here a second time")
+            seen.add(word)
+            yield word, value
 
-def _expressions(file: str, node: yaml.Node, part: str) -> tuple[str, ...]:
-    found = _texts(file, node, part)
-    items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
-    for item, expression in zip(items, found, strict=True):
-        try:
-            re.compile(expression)
-        except re.error as error:
-            raise fault(
-                file,
-                item,
-                f"{expression!r} is not a regular expression ({error}): write for example i am (so )?sad",
-            ) from None
-    return found
+    def _text(self, node: yaml.Node) -> str:
+        if kind_of(node) != "scalar":
+            problem = f"this must be a text, not a {kind_of(node)}; quote a text with :, or with braces in front"
+            raise self._fault(node, problem)
+        text = str(node.value).strip()
+        if not text or _is_null(node):
+            raise self._fault(node, "this must be a text, and it is empty")
+        return text
 
-
-def _acts(file: str, node: yaml.Node) -> tuple[str, ...]:
-    known = [*bundled("acts").classes, *bundled("feelings").classes]
-    found = _texts(file, node, "acts")
-    for act in found:
-        if act not in known:
-            raise fault(file, node, f"{act!r} is no act or feeling{nearest(act, known)}: {', '.join(known)}")
-    return found
-
-
-def _fact(name: str, key: str, node: yaml.Node) -> Fact | None:
-    if key in COUNTED:
-        instead = "born: 2024-03-01" if key == "age" else "another name"
-        raise fault(name, node, f"{key} is computed, and cannot be written here: write {instead}")
-    if _is_null(node):
-        return None
-    if key in ("name", "born") and kind_of(node) != "scalar":
-        raise fault(name, node, f"{key} is one text, not a {kind_of(node)}")
-    if kind_of(node) == "mapping":
-        return tuple((other, _text(name, value)) for other, value in _entries(name, node, None, "it has pairs, and"))
-    if kind_of(node) == "sequence":
-        return _texts(name, node, "texts", empty=True)
-    text = _text(name, node)
-    if key == "born":
-        try:
-            date.fromisoformat(text)
-        except ValueError:
-            raise fault(name, node, f"born: {text!r} is not a date: write for example 2024-03-01") from None
-    return text
-
-
-# ------------------------------------------------------------------------------------------ YAML
+    def _fault(self, node: yaml.Node, problem: str) -> DeclarationError:
+        return fault(self._file, node, problem)
 
 
 def _is_null(node: yaml.Node) -> bool:
     return kind_of(node) == "scalar" and not getattr(node, "style", None) and node.value in ("", "~", "null")
 
 
-def _entries(
-    name: str, node: yaml.Node, allowed: tuple[str, ...] | None, meaning: str
-) -> Iterator[tuple[str, yaml.Node]]:
-    if kind_of(node) != "mapping":
-        raise fault(name, node, f"{meaning} this is a {kind_of(node)}")
-    seen: set[str] = set()
-    for key, value in node.value:
-        word = _text(name, key)
-        if allowed is not None and word not in allowed:
-            raise fault(name, key, f"{word!r} means nothing here{nearest(word, allowed)}: {', '.join(allowed[:12])}")
-        if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
-            raise fault(name, key, f"{word!r} is not a name: letters, digits and _")
-        if word in seen:
-            raise fault(name, key, f"{word!r} is here a second time")
-        seen.add(word)
-        yield word, value
-
-
-def _texts(name: str, node: yaml.Node, what: str, *, empty: bool = False) -> tuple[str, ...]:
-    items: list[yaml.Node] = node.value if kind_of(node) == "sequence" else [node]
-    if not items and not empty:
-        raise fault(name, node, f"there are no {what}: write some, or leave it out")
-    return tuple(_text(name, item) for item in items)
-
-
-def _text(name: str, node: yaml.Node) -> str:
-    if kind_of(node) != "scalar":
-        raise fault(
-            name,
-            node,
-            f"this must be a text, not a {kind_of(node)}; quote a text with :, or with braces in front",
-        )
-    text = str(node.value).strip()
-    if not text or _is_null(node):
-        raise fault(name, node, "this must be a text, and it is empty")
-    return text
+def _items(node: yaml.Node) -> list[yaml.Node]:
+    return node.value if kind_of(node) == "sequence" else [node]

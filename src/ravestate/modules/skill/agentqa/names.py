@@ -25,8 +25,8 @@ class Settings(rs.Settings):
 
     life: Path | None = None
     """The user's own file with facts and topics. It changes what it mentions, and nothing else."""
-    prompt_every: Annotated[float, Field(gt=0)] = 120.0
-    """Seconds from one "ask me something" to the next, however long the silence is."""
+    prompt_after: Annotated[float, Field(gt=0)] = 60.0
+    """Seconds of the user's silence after which the agent offers once to be asked."""
 
     @field_validator("life")
     @classmethod
@@ -64,4 +64,7 @@ clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, inp
 """The clock, by default the machine's; it decides the agent's age, the date and the time of day."""
 
 prompted: rs.Slot[float | None] = module.slot("prompted", None)
-"""The last time the agent offered to be asked, in seconds since the context began."""
+"""The time when the agent offered to be asked, in seconds since the context began."""
+
+turns: rs.Slot[tuple[int, float]] = module.slot("turns", (0, 0.0))
+"""The number of the user's utterances, and the time of the last one."""

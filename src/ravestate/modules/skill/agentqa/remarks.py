@@ -7,14 +7,12 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
 
-from ravestate.language import normalise, plain, sentences
+from ravestate.language import plain
+from ravestate.language.acts import heard
+from ravestate.language.addressing import addressed
 from ravestate.modules.meta.nlp.analysis import Analysis
 
-from .addressing import addressed
 from .life import Life
-
-LONGEST = 2000
-"""Characters of an utterance that are read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +38,7 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
         'distress'
     """
     called = (life.name, *names)
-    said = [plain(addressed(one, called)) for one in sentences(normalise(utterance[:LONGEST], called).text)]
+    said = [plain(addressed(sentence, called)) for sentence in heard(utterance, called)]
     for name, topic in life.topics.items():
         if topic.remarks:
             expression = _whole_words(topic.remarks)

@@ -7,18 +7,18 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 
 from ravestate import language
-from ravestate.language import Encoder, Matcher, normalise, plain
+from ravestate.language import Encoder, Matcher, plain
+from ravestate.language.acts import heard
+from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing
 
-from .addressing import addressed
 from .life import Life
 
 LEAST = 0.6
 """The confidence from which a question belongs to a topic."""
-LONGEST = 2000
-"""Characters of an utterance that are read."""
 WORDS = 20
 """The maximum number of words in a question about the agent."""
 SENTENCES = 4
@@ -54,13 +54,6 @@ class Router:
     """A classifier for questions: a topic of the agent, or none. Thread-safe.
 
     It is a `Matcher` over the example questions of a life. Until it is loaded, it knows the examples word for word.
-
-    Example:
-        ::
-
-            match Router(read_life()).route("Hey, how old r u?"):
-                case Match(topic, score=score): ...     # "age", 0.99
-                case Miss(reason): ...
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
@@ -70,11 +63,7 @@ class Router:
         self._matcher = Matcher(examples, life.others, least=LEAST, encoder=encoder)
 
     def load(self) -> None:
-        """Load the model and learn the examples, once.
-
-        Raises:
-            PlatformError: The sentence model is missing or broken. The message says what to do.
-        """
+        """Load the model and learn the examples, once; the errors are those of `Matcher.load`."""
         self._matcher.load()
 
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
@@ -93,8 +82,10 @@ class Router:
         with contextlib.suppress(ModelMissing):
             self.load()
         reason = "nothing is said"
-        for sentence in _sentences(utterance, (self.life.name, *names)):
-            for text in _readings(sentence, question=question):
+        called = (self.life.name, *names)
+        short = (sentence for sentence in heard(utterance, called) if len(sentence.split()) <= WORDS)
+        for sentence in islice(short, SENTENCES):
+            for text in _readings(addressed(sentence, called), question=question):
                 match self._matcher.ranked(text):
                     case [best, *_] if best.name and best.score >= LEAST:
                         return Match(best.name, plain(text), best.score, best.example, best.margin)
@@ -109,11 +100,6 @@ class Router:
 def router_of(life: Life) -> Router:
     """Return the router of a life; all contexts share it."""
     return Router(life)
-
-
-def _sentences(utterance: str, names: Collection[str]) -> list[str]:
-    said = language.sentences(normalise(utterance[:LONGEST], names).text)
-    return [addressed(sentence, names) for sentence in said if len(sentence.split()) <= WORDS][:SENTENCES]
 
 
 def _readings(sentence: str, *, question: bool) -> Iterator[str]:

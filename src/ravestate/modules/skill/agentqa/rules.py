@@ -19,10 +19,13 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .itself import recall, settle
 from .life import Fact, Life
 from .life_file import read_life
-from .names import Settings, asked, clock, life, module, mood, prompted, remarked
+from .names import Settings, asked, clock, life, module, mood, prompted, remarked, turns
 from .remarks import act_in, remark_in
 from .router import Match, Miss, router_of
 from .telling import telling, without_question
+
+TURNS = 6
+"""The user's utterances before which the agent does not offer to be asked."""
 
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
@@ -87,15 +90,14 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=rawio.input.changed, reads=life, emits=remarked)
-async def heed(ctx: rs.RuleContext) -> rs.Resign | None:
+@module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
+async def heed(ctx: rs.RuleContext) -> None:
     """Notice a remark by its words alone: a user in distress hears an answer whatever else is installed."""
-    told = ctx[life]
+    told, (count, _) = ctx[life], ctx[turns]
+    ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
-    if found is None:
-        return rs.Resign("it is not such a remark")
-    ctx.emit(remarked, found)
-    return None
+    if found is not None:
+        ctx.emit(remarked, found)
 
 
 @module.rule(when=nlp.analysis.changed, reads=life, emits=remarked)
@@ -153,21 +155,19 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=idle.bored,
-    reads=prompted,
-    writes=(
-        verbaliser.intent,
-        rawio.output,
-        prompted,
-    ),  # also writes the output, so that no goal is pursued at the same time
+    when=idle.bored.min_age(Settings.prompt_after).max_age(None),
+    reads=(prompted, turns, idle.unanswered),
+    writes=(verbaliser.intent, rawio.output, prompted),  # also the output, so that no goal is pursued at the same time
     weight=0.9,
     detached=True,  # otherwise the intent could not become words in the same causal group
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Invite the user to ask, now and then, in a silence."""
-    last, every = ctx[prompted], ctx.settings.prompt_every
-    if last is not None and ctx.now - last < every:
-        return rs.Resign(f"that was {ctx.now - last:.0f} s ago; agentqa.prompt_every is {every:g} s")
+    """Invite the user to ask, once, in a long silence of a talk that has come to a stop."""
+    count, last = ctx[turns]
+    if ctx[prompted] is not None or count < TURNS:
+        return rs.Resign("the agent has offered it before, or the talk has just begun")
+    if ctx.now - last < ctx.settings.prompt_after or ctx[idle.unanswered]:
+        return rs.Resign("the user has spoken, or owes an answer")
     ctx[prompted] = ctx.now
     ctx[verbaliser.intent] = Intent("ask_me", package=__package__)
     return None

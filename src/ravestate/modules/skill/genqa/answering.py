@@ -13,7 +13,7 @@ from ravestate.language import Reranker
 from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 
-from .confidence import confidence
+from .confidence import confidence, in_talk
 from .index import Found, Index
 from .lexicon import variants_of
 from .passages import LONGEST
@@ -34,10 +34,10 @@ SHORT = 24
 """The maximum number of passages of a document in view that are all read."""
 LEVEL = 0.8
 """Scores that differ by less count as equal."""
-COMMON = 20_000
-"""The maximum number of passages for a word to be searched, unless there is no rarer word."""
-COMMON_KIND = 2_000
-"""The same limit for words that describe only the kind of answer."""
+COMMON, COMMON_KIND = 20_000, 2_000
+"""The maximum number of passages for a word to be searched, unless there is no rarer word; and for a word of kinds."""
+NAMES = 0.35
+"""The share that counts for a follow-up without words besides names."""
 WORDS = 24
 """The maximum number of words to search for."""
 
@@ -52,9 +52,7 @@ class Candidate:
     score: float
     """The reader's score, up to 11; most passages above 0 are good answers."""
     covered: float
-    """The share of the question's words in the passage, 0 to 1; rare words weigh more."""
-    own: float = 1.0
-    """The same without the names in the question."""
+    """The share of the question's words in the passage, 0 to 1; rare words weigh more. In a follow-up, names do not count."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,10 +138,11 @@ class Answerer:
         retrieved = self._retrieve(index, question, titles)
         if not retrieved:
             return Answer(question.text, reason="no document states all of it")
-        read = self._read(question, retrieved, titles)
+        read = self._read(question, retrieved)
         best = read[0]
-        sure = confidence(best.score, best.covered)
-        return Answer(question.text, best.text, index.source(best.row), best.title, sure, tuple(read))
+        return Answer(
+            question.text, best.text, index.source(best.row), best.title, _chance(question, best), tuple(read)
+        )
 
     def titled(self, name: str) -> str:
         """Return the title of a document about `name`, in any case, with or without *the*; empty if there is none."""
@@ -168,7 +167,7 @@ class Answerer:
                 self._stems = Stems()
             return self._index
 
-    def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, float, Found]]:
+    def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
         """Return the passages to read with their share of the question, best first; all meet its qualifiers."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
@@ -183,8 +182,8 @@ class Answerer:
 
         searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]
         rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
-        known_titles = [each for title in titles for each in index.passages(title, SHORT)]
-        found = [*known_titles, *index.search(rare or searched, RETRIEVED, without=question.avoids)]
+        in_view = [each for title in titles for each in index.passages(title, SHORT)]
+        found = [*in_view, *index.search(rare or searched, RETRIEVED, without=question.avoids)]
         # A passage with all words may be hidden behind many that repeat the rarest one.
         found = list(dict.fromkeys([*found, *index.search_all(asked, RETRIEVED, without=question.avoids)]))
         avoided = {stem for stems in self._stems(*question.avoids) for stem in stems}
@@ -199,53 +198,46 @@ class Answerer:
             if (known_forms := [form for form in forms if form in stem_of])
         ]
 
-        def share(have: set[str], *, all_words: bool) -> float:
-            some = [(forms, weight) for forms, weight, given in weights if all_words or not given]
-            total = sum(weight for _, weight in some)
-            return sum(weight for forms, weight in some if has(have, forms)) / total if total else 1.0
-
-        retrieved: list[tuple[float, float, Found]] = []
+        if question.follows:
+            weights = [each for each in weights if not each[2]]
+        total = sum(weight for _, weight, _ in weights)
+        retrieved: list[tuple[float, Found]] = []
         stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
         for each, have in zip(found, stems_of, strict=True):
-            covered = share(have, all_words=True)
-            if (
-                (covered >= ENOUGH or each in known_titles)
-                and have.isdisjoint(avoided)
-                and _can_answer(question, each)
-                and all(has(have, need) for need in question.needs)
-            ):
-                retrieved.append((covered, share(have, all_words=False), each))
+            covered = sum(weight for forms, weight, _ in weights if has(have, forms)) / total if total else NAMES
+            fits = (covered >= ENOUGH or each in in_view) and have.isdisjoint(avoided) and _can_answer(question, each)
+            if fits and all(has(have, need) for need in question.needs):
+                retrieved.append((covered, each))
         # The sort is stable, so BM25 decides between equals.
         return sorted(retrieved, key=lambda each: -each[0])
 
-    def _read(
-        self, question: Question, retrieved: Sequence[tuple[float, float, Found]], titles: Sequence[str]
-    ) -> list[Candidate]:
+    def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
         read: list[Candidate] = []
-        start = 0
-        for count in READ:
-            batch = retrieved[start : start + count]
-            start += count
-            if not batch:
+        best = 0.0
+        for count in READ if question.follows else READ[:4]:
+            batch = retrieved[len(read) : len(read) + count]
+            if not batch or best >= (GOOD if len(read) > 1 else VERY_GOOD):
                 break
-            scores = self._reranker.score(question.text, [_readable(found) for *_, found in batch])
+            if best <= HOPELESS and len(read) > 2 and not question.follows:
+                break
+            scores = self._reranker.score(question.text, [_readable(found) for _, found in batch])
             read += [
-                Candidate(found.text, found.title, found.row, float(score), covered, own)
-                for (covered, own, found), score in zip(batch, scores, strict=True)
+                Candidate(found.text, found.title, found.row, float(score), covered)
+                for (covered, found), score in zip(batch, scores, strict=True)
             ]
             best = max(candidate.score for candidate in read)
-            if (
-                best >= (GOOD if len(read) > 1 else VERY_GOOD)
-                or (best <= HOPELESS and len(read) > 2 and not titles)
-                or (len(read) >= 8 and not titles)
-            ):
-                break
+        if question.follows:
+            return sorted(read, key=lambda candidate: -_chance(question, candidate))
         read.sort(key=lambda candidate: -candidate.score)
         # Among equals, take the passage with the fewest other words: "life expectancy", not "life expectancy of women".
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
-        best = min(level, key=lambda candidate: _besides(candidate.text, asked))
-        return [best, *(c for c in read if c is not best)]
+        first = min(level, key=lambda candidate: _besides(candidate.text, asked))
+        return [first, *(c for c in read if c is not first)]
+
+
+def _chance(question: Question, best: Candidate) -> float:
+    return (in_talk if question.follows else confidence)(best.score, best.covered)
 
 
 def _readable(found: Found) -> str:
@@ -263,7 +255,7 @@ _NUMBER = re.compile(
 _CAUSE = re.compile(
     r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE
 )
-_DEFINES = re.compile(r" (?:is|was|are|were) (?:an?|the) ")
+_AGE = re.compile(r"\b(?:aged?|old|older|born|founded|built|opened|established|formed|since|dates?)\b")
 _TIME = re.compile(
     r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
     r"once|ago|January|February|March|April|May|June|July|August|September|October|November|December)s?\b"
@@ -275,6 +267,8 @@ def _can_answer(question: Question, found: Found) -> bool:
     asked = question.text.lower()
     if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
         return _NUMBER.search(found.text) is not None
+    if "how old " in asked:
+        return _AGE.search(found.text) is not None
     if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
         return _TIME.search(found.text) is not None
     names = [*re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text), *found.title.split()]

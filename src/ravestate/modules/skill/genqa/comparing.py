@@ -45,17 +45,17 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
     if found[0] is None or found[1] is None:
         return None
     one, other = found[0], found[1]
-    of = [focused(f"how {base}", answer.text) for answer in (one, other)]
-    values = _values(*of, base)
+    left, right = (focused(f"how {base}", answer.text) for answer in (one, other))
+    values = _values(left, right, base)
     if values is None:
         return None
     wins = direction * values[0] > direction * values[1]
     low = {each.low for each in heard.asked}
     verdict = "Neither." if values[0] == values[1] else f"{names[0] if wins else names[1]}."
     if word.low in _BOTH:
-        verdict = of_both(*of, _distance if word.low == "difference" else operator.add)
+        verdict = of_both(left, right, _distance if word.low == "difference" else operator.add)
     elif low & {"much", "many"} and not noun:
-        verdict = _years(one, other) if base in _TIMED else of_both(*of, _distance)
+        verdict = _years(one, other) if base in _TIMED else of_both(left, right, _distance)
     elif heard.kind is QuestionWord.YES_NO and "or" not in low:
         verdict = "Yes." if wins else "No."
     return _both(heard, verdict[:1].upper() + verdict[1:], one, other)
@@ -67,7 +67,7 @@ def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> 
     low = [word.low for word in words]
     when = low.index("when", 1) if "when" in low[1:] else len(words)
     lived = any(word.lemma == "live" for word in words) and "long" in low
-    died = any(word.lemma in ("get", "become", "live") for word in words) and "old" in low
+    died = "old" in low and ("was" in low or any(word.lemma in ("get", "become", "live") for word in words))
     if heard.kind is None or "how" not in low[:2] or not (lived or died or ("old" in low and when < len(words))):
         return None
     name = next((found for word in words[:when] if (found := _name(heard, word, thread))), "")

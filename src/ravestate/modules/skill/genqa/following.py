@@ -15,7 +15,6 @@ from ravestate.modules.meta.nlp.tree import Word
 
 from .answering import Answer, Answerer
 from .comparing import aged, begun, compared
-from .confidence import in_talk
 from .lexicon import variants_of
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
@@ -23,8 +22,6 @@ from .reckoning import Unanswerable, dates_in, focused, reckon
 from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
-NAMES = 0.35
-"""The share of the question's own words that counts if it has none besides names."""
 CLEAR = 0.9
 """The confidence of an answer that ends the search."""
 MOST = 8
@@ -54,14 +51,16 @@ def answer_in(
     tried = readings(heard, thread, answerer.titled)
     if not tried:
         return Answer(heard.text, reason="it refers to a question that nobody has asked"), None
-    best: tuple[Answer, Reading, Parse] | None = None
+    best: tuple[Answer, Parse] | None = None
     reason = ""
     for reading in tried[:MOST]:
         seen = heard if reading.text == heard.text else replace(parse(reading.text), kind=heard.kind)
         question = as_question(seen)
-        if heard.kind is None:
-            question = replace(question, doubtful=True)
+        follows = seen is not heard or bool(reading.about)
+        question = replace(question, doubtful=question.doubtful or heard.kind is None, follows=follows)
         titles: tuple[str, ...] = ()
+        if reading.new:
+            question = replace(question, needs=question.needs + tuple(map(variants_of, as_question(reading.new).words)))
         if reading.about:
             question, titles = _about(answerer, question, reading, thread[-1].title)
         answer = _decided(answerer, question, settings, titles)
@@ -69,19 +68,15 @@ def answer_in(
         said = {turn.answer for turn in thread} if any(word.low == "else" for word in heard.asked) else ()
         if not answer.text or answer.text in said:
             continue
-        chance = answer.confidence
-        if answer.candidates and chance > 0.0 and (reading.text != heard.text or reading.about):
-            only_names = all(word.lower() in question.given for word in question.words)
-            chance = in_talk(answer.candidates[0].score, NAMES if only_names else answer.candidates[0].own)
-        answer = replace(answer, confidence=_shifted(chance, reading.prior))
+        answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
         if best is None or answer.confidence > best[0].confidence:
-            best = answer, reading, seen
+            best = answer, seen
         if best[0].confidence >= CLEAR:
             break
     if best is None:
         return Answer(heard.text, reason=reason), None
-    answer, reading, seen = best
-    return answer, turn_of(seen, answer, now, reading.sexes)
+    answer, seen = best
+    return answer, turn_of(seen, answer, now)
 
 
 def _about(answerer: Answerer, question: Question, reading: Reading, latest: str) -> tuple[Question, tuple[str, ...]]:

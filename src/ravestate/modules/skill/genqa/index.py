@@ -291,7 +291,7 @@ _ERRORS = {
     "BUSY": _BUSY, "LOCKED": _BUSY, "NOTADB": _DAMAGED, "CORRUPT": _DAMAGED,
     "READONLY": f"it may not be written: {_OTHER}", "CANTOPEN": f"it cannot be opened: {_OTHER}",
 }  # fmt: skip
-"""What to do about each error of SQLite."""
+"""The advice for each error of SQLite."""
 
 
 def _any_of(words: Sequence[str]) -> str:

@@ -49,6 +49,8 @@ class Question:
     kind: QuestionWord | None = None
     doubtful: bool = False
     """Whether only a sure answer counts: the utterance may not be a question about the world."""
+    follows: bool = False
+    """Whether it was completed from earlier questions; names do not count for its confidence then."""
     declined: str = ""
     """The reason why documents cannot answer it; empty if they may."""
 
@@ -145,7 +147,9 @@ def as_question(heard: str | Parse) -> Question:
         doubtful = True
     needs, avoids = _qualifiers(heard)
     given = frozenset(map(str.lower, named))
-    return Question(heard.text, words, kinds, given, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, reason)
+    return Question(
+        heard.text, words, kinds, given, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, declined=reason
+    )
 
 
 def is_name(seen: Parse, word: Word) -> bool:

@@ -93,17 +93,25 @@ def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, floa
     """
     if len(text) > LONGEST:
         return ""
+    two = re.fullmatch(r"(.*\d.*),? and (.+ (?:that|it)\b.*)", text, re.IGNORECASE)
+    if two and (first := reckon(two[1].rstrip(","), told, today, rates)):  # 7 percent of 1300, and half of that
+        second = reckon(two[2], (*told, first), today, rates)
+        return f"{first} {second}" if second else ""
     spoken = _in_digits(text.strip(" ?!."))
+    if re.fullmatch(r"\d+ ?/ ?\d+", spoken):  # a rating, or a date
+        return ""
     return _dates(spoken, told, today) or _sum(spoken, told, rates or {}) or _times(spoken, told)
 
 
 def _times(spoken: str, told: Sequence[str]) -> str:
-    """Return the price for several: *and for 5 people?*."""
-    count = re.search(r"\b(?:for|of|do|does) (\d+)(?: [a-z]+){0,2}$", spoken)
-    price = measured(told[-1])[:1] if count and told else []
-    if not count or not price or not price[0].unit.startswith(_MONEY):
+    """Return the price for several: *and for 5 people?*, *how much for 2 adults and 3 children?*."""
+    counts = re.search(r"\b(?:for|of|do|does) (\d.*)$", spoken)
+    several = re.findall(r"(\d+)(?: ([a-z]+))?", counts[1]) if counts and told and len(counts[1].split()) < 7 else []
+    prices = [measured(focused(f"how {kind}", told[-1]))[:1] for _, kind in several]
+    if not prices or not all(price and price[0].unit.startswith(_MONEY) for price in prices):
         return ""
-    return f"That is {_number(price[0].value * int(count[1]))} {price[0].word}."
+    total = sum(int(count) * price[0].value for (count, _), price in zip(several, prices, strict=True))
+    return f"That is {_number(total)} {prices[0][0].word}."
 
 
 def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
@@ -181,6 +189,8 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
         leading = before in ("in", "to", "into", "as", "many")
         unit = _unit(token, [*units, *(quantity.unit for quantity in known)])
         if token[0].isdigit():
+            if parts and parts[-1][0].isdigit():
+                return ""
             parts += ["+"] if parts and parts[-1].startswith("*u") else []  # 5 feet 10 inches
             parts.append(token.replace(",", ""))
         elif token in ("square", "cubic") and place + 1 < len(tokens) and tokens[place + 1] in _units():
@@ -232,6 +242,12 @@ def _result(source: str, units: Sequence[str], target: str, word: str, rates: Ma
         )
         if not goal:
             return _number(value)
+        if not hasattr(value, "to") or (not target and value.dimensionless):
+            value = _registry().Quantity(value).to("")
+            if target not in ("", "dozen"):
+                return ""
+            if not target:
+                return _number(value.magnitude)
         unit = _in_pint(goal, rates)
         value = (value / unit).to("") if money else value.to(unit)
         return f"{_number(value.magnitude, rounded=bool(target) and not money)} {lexicon('reckoning.yaml')['shown'].get(word, word) or goal.removeprefix(_MONEY) + 's'}"
@@ -280,6 +296,7 @@ def _registry() -> Any:
     make: Any = pint.UnitRegistry
     registry: Any = make(autoconvert_offset_to_baseunit=True)
     registry.define("money = [money]")
+    registry.define("dozen = 12")
     return registry
 
 

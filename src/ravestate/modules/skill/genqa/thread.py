@@ -6,7 +6,7 @@ likelihood, and the documents decide between them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp import QuestionWord
@@ -27,12 +27,10 @@ REMEMBERED = 120.0
 """Seconds for which later questions may refer to one."""
 LESS = -0.15
 """The logarithm of odds that each reading loses to the one before."""
-FAR = -5.0
-"""The same for *she* as a thing, such as a ship, with a person in view."""
 SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
 PRONOUNS = frozenset((*SEXES, *["it", "its", "they", "them", "their", "there", "this", "that"]))
 _ONES = ("one", "ones", "former", "latter")
-_PLACES_IN_LIST = {
+_RANKS = {
     "first": 0,
     "second": 1,
     "third": 2,
@@ -85,13 +83,16 @@ class Turn:
     """Names with their pronouns: ``he`` or ``she``."""
     source: str = ""
     confidence: float = 1.0
-    defines: bool = False
-    """Whether the question only asks for its subject: *who is Clara Venn?*. A pronoun then means the subject."""
 
     @property
     def subject(self) -> str:
         """The name that the question is about; empty without one."""
         return next((thing.text for thing in self.asked if thing.is_name), "")
+
+    @property
+    def defines(self) -> bool:
+        """Whether the question only asks for its subject: *who is Clara Venn?*. A pronoun then means the subject."""
+        return self.question.lower().startswith(("who is", "who was")) and [t.text for t in self.asked] == [self.title]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,38 +103,34 @@ class Reading:
     prior: float = 0.0
     """How likely it is before the documents are asked, as a logarithm of odds."""
     about: str = ""
-    """Its subject, where the text does not name it; only the documents of the thread count then."""
-    sexes: tuple[tuple[str, str], ...] = ()
+    """Its subject from the talk, which the text may name."""
+    new: str = ""
+    """The words of the utterance that take the place of others; a passage must have them."""
 
 
-def turn_of(asked: Parse, found: Answer, at: float, sexes: tuple[tuple[str, str], ...] = ()) -> Turn:
+def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
     """Return the turn of a complete question and its answer."""
-    answer, title = found.text, found.title
-    told, words, named = parse(answer), set(asked.text.lower().split()), set(_bare(title).split())
-    things = [
-        replace(thing, text=title, label=thing.label or "TITLE") if _bare(thing.text) == _bare(title) else thing
-        for thing in things_of(asked)
-        if thing.label not in ("ORDINAL", "CARDINAL")
-    ]
-    things = [thing for thing in things if thing.text == title or not named.issuperset(thing.text.lower().split())]
-    if title and title.lower() in f"{asked.tree.text} {answer}".lower() and all(t.text != title for t in things):
-        things.append(Thing(title, "TITLE"))
+    answer, title, words = found.text, found.title, set(asked.text.lower().split())
+    told, named, all_asked = parse(answer), set(_bare(title).split()), things_of(asked)
+    things = [thing for thing in all_asked if not named.issuperset(_bare(thing.text).split())]
+    label = next((thing.label for thing in all_asked if _bare(thing.text) == _bare(title)), "")
+    whole = [Thing(title, label or "TITLE")] if title else []
+    in_question = _bare(title) in asked.tree.text.lower()
+    things += whole if in_question else []
+    things = [thing for thing in things if thing.label not in ("ORDINAL", "CARDINAL")]
     things.sort(key=lambda thing: not thing.is_name)
-    who = asked.kind is QuestionWord.PERSON
-    defines = who and [t.text for t in things] == [title] and any(word.lemma == "be" for word in asked.asked)
-    known = words | named
-    new = [thing for thing in things_of(told) if not known.issuperset(_bare(thing.text).split())]
-    if who and new and not any(thing.is_person for thing in new):
-        name = next((thing for thing in new if thing.is_name), new[0])
+    new = [thing for thing in things_of(told) if not (words | named).issuperset(_bare(thing.text).split())]
+    new = [*(whole if not in_question and title.lower() in answer.lower() else []), *new]
+    sexes: list[tuple[str, str]] = []
+    if asked.kind is QuestionWord.PERSON and new:
+        name = next(
+            (thing for thing in new if thing.is_person), next((thing for thing in new if thing.is_name), new[0])
+        )
         new = [replace(thing, label="PERSON") if thing is name else thing for thing in new]
-    if who:
-        said = [sex for sex in ("he", "she") if not words_of(sex).isdisjoint(words)]
-        sexes = (*sexes, *((thing.text, sex) for thing in new if thing.is_person for sex in said))
+        sexes = [(name.text, sex) for sex in ("he", "she") if not words_of(sex).isdisjoint(words)]
     items = max(_lists(told.tree), key=len, default=())
-    source, confidence = found.source, found.confidence
-    return Turn(
-        asked.text.rstrip("?"), answer, title, at, tuple(things), tuple(new), items, sexes, source, confidence, defines
-    )
+    question, source = asked.text.rstrip("?"), found.source
+    return Turn(question, answer, title, at, tuple(things), tuple(new), items, tuple(sexes), source, found.confidence)
 
 
 def overheard(said: str, at: float) -> Turn:
@@ -148,6 +145,8 @@ def things_of(seen: Parse) -> list[Thing]:
         own = phrase_of(seen.tree, word) if _is_noun(word) else []
         if not own or any(other.tag in WH for other in own):
             continue
+        if word.dep == "attr" and any(child.low in ("a", "an") for child in seen.tree.children(word, "det")):
+            continue  # it only says what something is
         entity = next((e for e in seen.entities if e.start < word.end and word.start < e.end), None)
         label = entity.label if entity else ""
         text = entity.text.removesuffix("'s") if entity and label == "PERSON" else seen.tree.phrase(own)
@@ -201,7 +200,8 @@ def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] =
     if not thread:
         return [] if _leans(seen) else [Reading(seen.text)]
     found: dict[str, Reading] = {}
-    for reading in _Follow(seen, thread, titled).readings():
+    follow = _Follow(seen, thread, titled)
+    for reading in (*follow.readings(), *follow.about()):
         found.setdefault(f"{reading.about} {reading.text}".lower().strip("? "), reading)
     return list(found.values())
 
@@ -234,33 +234,25 @@ def refers(word: Word, words: Sequence[Word]) -> bool:
 
 def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
     """Return the things that a pronoun may stand for, most likely first."""
-    sex = SEXES.get(pronoun.low)
-    known = {name: SEXES[said] for turn in thread for name, said in turn.sexes}
+    sex, there = SEXES.get(pronoun.low), pronoun.low == "there"
+    known = {name: said for turn in thread for name, said in turn.sexes}
     found: dict[str, Thing] = {}
     for turn in reversed(thread[-2:]):
-        told_first = not turn.defines and (
-            sex or pronoun.low == "there" or turn.question.lower().startswith(("what ", "which "))
-        )
+        told_first = not turn.defines and (sex or there or turn.question.lower().startswith(("what ", "which ")))
         things = [*turn.told, *turn.asked] if told_first else [*turn.asked, *turn.told]
-        for rank in (0, 1, 2):
-            for thing in things:
-                unlikely = _unlikely(pronoun.low, sex, thing, known)
-                if unlikely == rank or (turn.defines and thing in turn.asked and unlikely < 3):
-                    found.setdefault(thing.text.lower(), thing)
-    return list(found.values())[:6]
-
-
-def _unlikely(pronoun: str, sex: str | None, thing: Thing, known: Mapping[str, str]) -> int:
-    """Return how unlikely a thing is for a pronoun, from 0; 3 is out of the question."""
-    if sex:
-        return 3 if known.get(thing.text, sex) != sex else 0 if thing.is_person else 1 if thing.is_name else 2
-    if thing.label in NUMBERS:
-        return 3
-    if pronoun == "there":
-        return 0 if thing.label in PLACES else 1 if thing.is_name and not thing.is_person else 2
-    if pronoun in ("it", "its"):
-        return 2 if thing.is_person else 0 if thing.label else 1
-    return 0 if thing.label else 1
+        for thing in sorted(things, key=lambda thing: not thing.label):
+            if not sex or known.get(thing.text, sex) == sex:
+                found.setdefault(thing.text.lower(), thing)
+    things = [thing for thing in found.values() if thing.label not in NUMBERS]
+    likely = [
+        t
+        for t in things
+        if (t.label in ("PERSON", "TITLE", "NAME") if sex else not t.is_person and (t.is_name or not there))
+    ]
+    likely.sort(key=lambda thing: bool(sex) and not thing.is_person)
+    if thread and thread[-1].defines:
+        likely = list(dict.fromkeys((*thread[-1].asked, *likely)))
+    return (likely if likely and (sex or there) else [*likely, *(t for t in things if t not in likely)])[:6]
 
 
 def correction(seen: Parse) -> list[Word]:
@@ -302,21 +294,23 @@ class _Follow:
             yield from self._chosen(one)
         elif rest and rest[0].tag in WH and all(word.tag in WH or word.lemma == "be" for word in rest):
             yield from self._instead(rest[:1])  # and when was that?
+            yield from self._resolved() if self.pronouns else ()
         elif words and not any(word.tag in FINITE for word in words):
+            if not any(word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "X") or word.tag in WH for word in words):
+                return  # really?
             if self.pronouns:
                 yield from self._resolved()
             else:
                 yield from ([] if self.leads or not self.named else [self._alone(0.0)])
                 yield from self._instead(words)
-                yield from self._about()
-                yield from ([] if self.leads and not self._has_of() else [self._alone(-0.3)])
+                yield from self.about()
+                yield from ([] if self.leads and not self._has_of() else [self._alone(-1.0)])
         elif self.pronouns:
             yield from self._resolved()
-            if any(w.low == "it" for w in self.pronouns) and any(w.pos in ("NOUN", "PROPN", "VERB") for w in words):
-                yield self._alone(-0.3)  # when did it start to rain
+            yield from [] if self.names else [self._alone(-1.0)]  # when did it start to rain
         elif words:
-            yield from ([] if self.named else self._about())
-            yield self._alone(0.0 if self.named or self.leads else -0.3)
+            yield from ([] if self.named else self.about())
+            yield self._alone(0.0 if self.named or self.leads else -1.0)
 
     def _has_of(self) -> bool:
         return self.named and any(word.low == "of" for word in self.words[1:])
@@ -324,20 +318,18 @@ class _Follow:
     def _alone(self, prior: float) -> Reading:
         return Reading(f"{self.text}?" if self.seen.kind is not None else self.text, prior)
 
-    def _about(self) -> Iterator[Reading]:
+    def about(self) -> Iterator[Reading]:
         """Yield the utterance about each name in view: *who was on board?*."""
-        for rank, thing in enumerate(self.names):
-            of = "" if any(word.tag in (*FINITE, *WH) for word in self.words) else f" of {thing.text}"
-            yield Reading(f"{self.text}{of}?", LESS * rank, about=thing.text)
+        for rank, thing in enumerate(self.names if self.words else ()):
+            noun = not any(word.tag in (*FINITE, *WH) for word in self.words)
+            of = f" of {thing.text}" if noun else ""
+            yield Reading(f"{self.text}{of}?", LESS * rank, thing.text, self.text if noun else "")
 
     def _resolved(self) -> Iterator[Reading]:
         """Yield the utterance with each thing that its pronoun may stand for."""
-        pronoun = self.pronouns[0].low
-        person = pronoun in SEXES and not self.last.defines and any(thing.is_person for thing in self.last.told)
+        less = 12 * LESS if self.pronouns[0].low == "there" else LESS
         for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
-            sexes = ((thing.text, pronoun),) if pronoun in SEXES else ()
-            far = FAR if person and not thing.is_person else LESS * 5 * rank if pronoun == "there" else 0.0
-            yield Reading(self._with(self.words, thing.text), LESS * rank + far, thing.text, sexes)
+            yield Reading(self._with(self.words, thing.text), less * rank, thing.text)
 
     def _with(self, words: Sequence[Word], thing: str, instead: Sequence[Word] = ()) -> str:
         """Return words as a question, with a thing in place of the pronouns and of the phrase `instead`."""
@@ -362,25 +354,19 @@ class _Follow:
         else:
             words = self.words if any(word.tag in FINITE for word in rest) else []
         low = {word.low for word in own}
-        subjects = list(dict.fromkeys(turn.asked[0].text for turn in self.thread if turn.asked))
-        for group in (*(list(turn.items) for turn in reversed(self.thread[-2:]) if turn.items), subjects):
-            chosen = group[-2::-1] if "other" in low else []
-            for rank, place in _PLACES_IN_LIST.items():
-                if rank in low and -len(group) <= place < len(group) > 1:
-                    chosen.append(group[place])
-            for thing in chosen:
-                if words:
-                    yield Reading(self._with(words, thing, own))
-                else:
-                    yield from self._instead(own, thing)
+        subjects = [*dict.fromkeys(turn.asked[0].text for turn in self.thread if turn.asked)]
+        for group in (*(turn.items for turn in reversed(self.thread[-2:]) if turn.items), subjects):
+            places = [place for rank, place in _RANKS.items() if rank in low and -len(group) <= place < len(group) > 1]
+            for thing in (*(group[-2::-1] if "other" in low else ()), *(group[place] for place in places)):
+                yield from [Reading(self._with(words, thing, own))] if words else self._instead(own, thing)
         if not words:
             yield from self._instead([word for word in own if word is not one])
 
     def _instead(self, new: Sequence[Word], text: str = "") -> Iterator[Reading]:
         """Yield earlier questions, latest first, with new words in place of a part of the same kind.
 
-        The parts are the question word (*and when?*), the rank (*and the second highest?*) and the names and nouns, first
-        those after the same preposition (*and of Spain?*).
+        The parts are the question word (*and when?*), the rank (*and the second highest?*) and the names and nouns. Those
+        after the same preposition come first (*and of Spain?*).
         """
         text = text or self.tree.phrase(new)
         first, last = new[0], new[-1]
@@ -412,9 +398,9 @@ class _Follow:
                 at = turn.question.lower().find(old.lower())
                 if at >= 0:
                     swapped = f"{turn.question[:at]}{fresh}{turn.question[at + len(old) :]}?"
-                    yield Reading(swapped, LESS * (rank + back))
+                    yield Reading(swapped, LESS * (rank + back), new=fresh)
             if leading and turn is self.last:
-                yield Reading(f"{turn.question} {text}?", LESS)
+                yield Reading(f"{turn.question} {text}?", LESS, new=text)
 
 
 def _question(parts: Sequence[str]) -> str:

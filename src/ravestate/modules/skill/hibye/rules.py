@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from functools import cache
+from importlib.resources import files
 
 import ravestate as rs
 from ravestate.language.acts import heard, only
+from ravestate.language.examples import read_examples
+from ravestate.language.matcher import Matcher, bundled_matcher
 from ravestate.modules import interloc, rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
@@ -55,13 +59,26 @@ async def answer_hello(ctx: rs.RuleContext) -> None:
     ctx[verbaliser.intent] = Intent("returned" if returned else "hello", package=__package__)
 
 
-@module.rule(when=goodbye, writes=(verbaliser.intent, parted), weight=0.9 * GENERAL)
+@module.rule(when=goodbye, reads=rawio.input, writes=(verbaliser.intent, parted), weight=0.9 * GENERAL)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
-    """Answer a goodbye."""
+    """Answer a goodbye; wish a good night to a user who goes to bed."""
     ctx[parted] = ctx.now
-    ctx[verbaliser.intent] = Intent("goodbye", package=__package__)
+    night = await asyncio.to_thread(_goes_to_bed, ctx[rawio.input])
+    ctx[verbaliser.intent] = Intent("goodnight" if night else "goodbye", package=__package__)
 
 
 def _only_act(text: str) -> str:
     said = heard(text)
     return next((act for act in ("greeting", "farewell") if only(act, said)), "")
+
+
+@cache
+def _partings() -> Matcher:
+    found = read_examples(files(__package__ or "") / "partings.yaml")
+    return Matcher(found.classes, found.none)
+
+
+def _goes_to_bed(text: str) -> bool:
+    if bundled_matcher("acts").loaded:  # otherwise only the examples themselves are recognised, at once
+        _partings().load()
+    return any(_partings().match_all(heard(text)))

@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from ravestate.modules import nlp
 
-from .kinds import is_remark
+from .kinds import is_remark, likeness
 from .topics import TOPICS, WORDS, Fact, Topic
 from .values import value_of
 
@@ -28,6 +28,7 @@ _PREPOSITIONS = re.compile(
 _LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 _END = re.compile(rf"[.;:!?…\n()\"]|\s(?:{_any('closers')}|(?:and )?(?:what about|how about|and) you)\b", re.IGNORECASE)
 """The end of an answer."""
+_ONE = (re.compile(","), re.compile(r",| and\b"))
 _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
@@ -68,11 +69,18 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
 
 def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
     several = topic.many or topic.kind == "people"
-    pieces = [piece for piece in _LISTED.split(rest) if piece][:5] if several else [rest.partition(",")[0]]
+    pieces = (
+        [piece for piece in _LISTED.split(rest) if piece][:5]
+        if several
+        else [_ONE[topic.kind == "name"].split(rest)[0]]
+    )
     found: list[str] = []
     for piece in pieces:
-        value = value_of(_HEDGES.sub("", piece.strip()), topic, seen, sure=topic.kind != "place")
-        if value is None or not any(map(str.isalnum, value)) or is_remark(value):
+        value = value_of(
+            _HEDGES.sub("", piece.strip()), topic, seen, sure=topic.kind != "place" and len(seen.tree.words) < 9
+        )
+        unlike = topic.kind == "activity" and len(piece.split()) > 2 and likeness(piece, topic.kind) < -0.1
+        if value is None or len(value) < 2 or unlike or not any(map(str.isalnum, value)) or is_remark(value):
             break  # nothing after such a piece is a value
         found.append(value)
     return found
@@ -100,10 +108,16 @@ def correction(
     return answer(rest, topic, seen) if rest and not idiom else []
 
 
-def may_stand_alone(seen: nlp.Analysis) -> bool:
-    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or adverbs alone."""
+def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
+    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or a mere yes or no.
+
+    Args:
+        seen: The analysis of the utterance.
+        clear: Whether its words are surely an answer, although they resemble a yes or no.
+    """
     text = spelled_out(seen.text)
-    if (seen.yesno and not _OPENERS.sub("", text).strip()) or (seen.yesno and not _OPENERS.match(text)):
+    rest = _OPENERS.sub("", text)
+    if seen.yesno and not clear and (rest == text or not rest.strip()):
         return False  # hard to say
     said = {word.low for word in seen.tree.words}
     return all(_may_answer(one) for one in seen.statements if one.subject.person != "I" or said & {"i", "we", "i'm"})

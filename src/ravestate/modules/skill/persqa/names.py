@@ -29,8 +29,8 @@ class Settings(rs.Settings):
 
     topics: Annotated[tuple[str, ...], AfterValidator(_known)] = ASKED
     """Topics to ask about, in this order. The agent learns about the others as well, if the user mentions them."""
-    gap: Annotated[float, Field(ge=0)] = 30.0
-    """Seconds from one question to the next."""
+    gap: Annotated[float, Field(ge=0)] = 180.0
+    """Seconds from one question in a silence to the next."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True

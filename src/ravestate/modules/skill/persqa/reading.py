@@ -14,7 +14,7 @@ from ravestate.modules.meta.nlp.tree import Word
 from .kinds import likeness
 from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import gerund, is_gerund, value_of
-from .wording import Facts, among
+from .wording import Facts, among, without
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics that the past tells as well: *I studied law*."""
@@ -46,12 +46,15 @@ class Reader:
     Args:
         seen: The analysis of the utterance.
         asked: The topic of the agent's open question, or an empty string.
+        person: The topic of the relative whom *he* or *his* means, or an empty string.
     """
 
-    def __init__(self, seen: nlp.Analysis, asked: str = "") -> None:
+    def __init__(self, seen: nlp.Analysis, asked: str = "", person: str = "") -> None:
         self.seen = seen
         self.asked = asked
+        self.person = person
         self.tree = seen.tree
+        self.words = {word.low for word in seen.tree.words}
 
     def facts(self, known: Facts | None = None) -> list[Fact]:
         """Return the facts that the user states, one for each topic; `known` are those of before."""
@@ -66,7 +69,8 @@ class Reader:
             for link in [Link(denied, said.object)] if instead else self.links(said):
                 denied = link.topic if said.negated else ""
                 values = self._values(link)
-                over = said.past and link.topic not in LASTING
+                called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # his name was Joost
+                over = said.past and link.topic not in LASTING and not called
                 if self._denies(said, link.phrase) or (
                     over and values and among(values[0], (known or {}).get(link.topic, ()))
                 ):
@@ -79,8 +83,10 @@ class Reader:
                 _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
             told["home"] = told.pop("origin")
+        for topic in told:  # I live in Paris. I don't live in Paris.
+            told[topic] = without(told[topic], gone.get(topic, ()))
         struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
-        return [*(Fact(topic, values) for topic, values in told.items()), *struck]
+        return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
     def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
         """Return whether a negation covers a phrase: *Bonn* in *I live in Ulm, not in Bonn* and *I don't live in Bonn, but
@@ -98,25 +104,28 @@ class Reader:
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for; it has values if they want them confirmed."""
         kinds = nlp.QuestionWord
-        unknown = None if self.seen.question == kinds.YES_NO else self.seen.question
         for said in self.seen.statements:
             if not said.question or said.conditional:
                 continue
+            parts = (said.triple.object, said.triple.subject, self.seen.question)
+            unknown = next((part for part in parts if isinstance(part, kinds) and part != kinds.YES_NO), None)
             if unknown is not None and said.subject.person == "I":
                 asked = f"{_predicate(said)} {unknown.name}"
                 keys = (*(f"{asked} {phrase.head}" for phrase in said.phrases), asked)
                 if topic := self._asked_noun(said) or next(filter(None, map(ASKS.get, keys)), ""):
                     return Fact(topic)
-            for link in self.links(said) if unknown in (None, kinds.PERSON, kinds.OBJECT, kinds.PLACE) else ():
+            for link in self.links(said):
+                people = TOPICS[link.topic].kind == "people"
                 values = () if unknown else self._values(link)
-                if values or unknown or link.phrase is None or TOPICS[link.topic].kind == "people":
+                wanted = unknown in (kinds.PERSON, kinds.OBJECT, kinds.PLACE) or (unknown and said.verb == "call")
+                if values or wanted or (unknown is None and (people or link.phrase is None)):
                     return Fact(link.topic, values)
         return None
 
     def _asked_noun(self, said: nlp.Statement) -> str:
         """Return the topic of the noun in *which club am I in*, *which food do I like best*."""
         for word, noun in itertools.pairwise(self.tree.words):
-            if word.low in ("which", "what") and noun.pos == "NOUN":
+            if word.low in ("which", "what", "many") and noun.pos == "NOUN":
                 likes = said.verb in WORDS["likes"]
                 return favourite(f"favourite {noun.lemma}") if likes else NOUNS.get(noun.lemma, "")
         return ""
@@ -168,6 +177,9 @@ class Reader:
     def noun(self, phrase: Phrase) -> str:
         """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
         owner = phrase.owner
+        theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"
+        if theirs or phrase.text.lower() in ("he", "she"):
+            return self.person
         if owner is None or not phrase.of("I") or _is_former(phrase.text):
             return ""
         if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
@@ -237,13 +249,19 @@ class Reader:
             yield Link("occupation", object, value="student")
             yield Link("subject", object.owner or object, sure=False, value=text.rpartition(" ")[0])
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
-        elif object.names and not object.head and not object.preposition:
-            yield Link(NAME, object, sure=self.asked == NAME)
+        elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
+            yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
         elif text and not object.preposition and not object.of("I") and object.head != "old":
             yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
             yield from (Link("employer", phrase, sure=False) for phrase in places)
+
+    def _is_capital(self, phrase: Phrase) -> bool:
+        """Return whether words begin with a capital as a name does: *I am Anneke*, but not *I am Greek*, *I'm a Leo*."""
+        found = re.search(rf"(\w+) {re.escape(phrase.text)}(?!\w)", self.seen.text)
+        labels = {entity.label for entity in self.seen.entities if phrase.text in entity.text} - {"PERSON"}
+        return bool(found and phrase.text.istitle() and not labels and found[1].lower() not in WORDS["determiners"])
 
     def ended(self, said: nlp.Statement) -> str:
         """Return the topic that *I quit my job*, *I moved away* ends; empty if there is none."""
@@ -295,7 +313,7 @@ class Reader:
         if topic.kind in ("people", "name") and phrase.head == "name" and phrase.owner:
             phrase = phrase.owner  # by the name of Blackbeard
         raw = (phrase.names if topic.kind == "people" else ()) or (link.value or self.written(phrase),)
-        return self._fitting(link.topic, raw, sure=link.sure or link.topic == self.asked)
+        return self._fitting(link.topic, raw, sure=link.sure or link.topic == self.asked == NAME)
 
     def _fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
         return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))

@@ -51,7 +51,9 @@ def respond_to(
     """
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
-    heard = replace(user, talk=user.talk.listening(now, leave=meaning.leave))
+    heard = replace(
+        user, talk=user.talk.listening(now, leave=meaning.leave, touched=meaning.touched, person=meaning.person)
+    )
     question = heard.talk.question
     lapsed = question is None or question.topic != CONFIRM or question.turns > 1
     if user.talk.doubt and lapsed and meaning.kind not in ("vouched", "told"):
@@ -200,14 +202,14 @@ async def _written(
 def _learning(talk: Talk, meaning: Meaning, news: News, name: str | None) -> Talk:
     topics = [*([NAME] if name is not None else []), *news.topics]
     if not topics:
-        return replace(talk, formal=False)  # a free statement
+        return talk  # a free statement
     main = NAME if name is not None else _main(meaning, news)
     latest = next((fact.values for fact in meaning.facts if fact.topic == main), ())
     question = talk.question.topic if talk.question else ""
     talk = talk.learning(topics, main, latest).keeping({topic: news.facts.get(topic, ()) for topic in news.topics})
     if question in TOPICS and set(TOPICS[question].besides) & set(topics):
         talk = replace(talk, question=None)
-    return replace(talk, told=talk.told - {NAME}, formal=talk.formal and question in topics)
+    return replace(talk, told=talk.told - {NAME})
 
 
 def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random.Random) -> Response:

@@ -17,11 +17,10 @@ from .acquaintance import Acquaintance, Noted
 from .kinds import load as load_examples
 from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
 from .response import respond_to
-from .talk import MORE, TRIES, Talk
-from .told import picking_up
+from .talk import TRIES, Talk
 from .topics import NAME, due
 from .understanding import understand
-from .wording import asking, following, memorable, stating
+from .wording import asking, memorable, stating
 
 HELLO = 3.0
 """Seconds after the first hello until the agent asks for the name; the user may go on talking meanwhile."""
@@ -43,10 +42,9 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     now = ctx[talk]
     if now.quiet:
         return rs.Resign("the user has taken leave")
-    question = now.question
-    if question is not None and not question.turns:
-        if (age := ctx.now - question.since) < settings.gap:
-            return rs.Resign(f"a question was asked {age:.0f} s ago; persqa.gap is {settings.gap:g} s")
+    if now.asked is not None and (age := ctx.now - now.asked) < settings.gap:
+        return rs.Resign(f"a question was asked {age:.0f} s ago; persqa.gap is {settings.gap:g} s")
+    if now.question is not None and not now.question.turns:
         now = now.waiting()
     if now.ignored >= settings.ignored:
         return rs.Resign(f"the user left {now.ignored} questions without a word")
@@ -58,16 +56,11 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
-    if fresh := [one for one in ctx[told].values() if one.key not in now.picked_up]:
-        ctx[talk] = replace(now.asking(MORE, ctx.now), picked_up=now.picked_up | {fresh[-1].key})
-        ctx[verbaliser.intent] = picking_up(fresh[-1], known)
-        return None
-    topic = due(settings.topics, known, now.closed, now.tries, last=now.last, limit=TRIES)
+    topic = due(settings.topics, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
     if not topic:
         return rs.Resign("there is nothing left to ask")
-    # Two questions about facts in a row would be an interview.
-    ctx[talk] = now.asking(MORE if now.formal else topic, ctx.now)
-    ctx[verbaliser.intent] = following(now.last, known) if now.formal else asking(topic, known)
+    ctx[talk] = replace(now.asking(topic, ctx.now), asked=ctx.now)
+    ctx[verbaliser.intent] = asking(topic, known)
     return None
 
 

@@ -12,9 +12,6 @@ FORGET = "forget"
 CONFIRM = "confirm"
 """The topic of the question by which somebody who says a known name shows that they are that person."""
 
-MORE = "more"
-"""The topic of a question that asks for no fact: any words answer it."""
-
 ENOUGH = 1_000
 """The number of tries after which the agent never asks about a topic again."""
 
@@ -85,27 +82,38 @@ class Talk:
     """The topic that the user must confirm before the agent takes them for the person of their name."""
     wants_out: bool = False
     """Whether they asked to be forgotten before the agent knew who they are."""
-    formal: bool = False
-    """Whether the last question asked for a fact, and nothing personal was said since."""
+    asked: float | None = None
+    """Seconds from the beginning of the context to the agent's last question out of boredom."""
+    touched: frozenset[str] = frozenset()
+    """Topics that the user's words have touched."""
+    person: str = ""
+    """The topic of the relative whom the user mentioned last."""
     spoke: float = 0.0
     """Seconds from the beginning of the context to the user's last words."""
-    picked_up: frozenset[str] = frozenset()
-    """The keys of free statements to which the agent came back."""
 
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
         tries = {**self.tries, topic: self.tries.get(topic, 0) + 1}
-        return replace(self, formal=topic != MORE, question=Question(topic, now), tries=tries)
+        return replace(self, question=Question(topic, now), tries=tries)
 
     def pending(self, now: float, within: float) -> Question | None:
         """Return the question that the user may answer now; None if it is too old or the user ignored it."""
         question = self.question
         return question if question and question.turns <= 1 and now - question.since <= within else None
 
-    def listening(self, now: float, *, leave: bool) -> Talk:
+    def listening(self, now: float, *, leave: bool, touched: Collection[str] = (), person: str = "") -> Talk:
         """Count an utterance of the user; `leave` means a goodbye."""
         question = replace(self.question, turns=self.question.turns + 1) if self.question and not leave else None
-        return replace(self, question=question, ignored=0, age=self.age + 1, quiet=leave, spoke=now)
+        return replace(
+            self,
+            question=question,
+            ignored=0,
+            age=self.age + 1,
+            quiet=leave,
+            spoke=now,
+            touched=self.touched | set(touched),
+            person=person or self.person,
+        )
 
     def speaking(self) -> Talk:
         """Count an utterance of the agent: its question, an answer to the user, or something else."""

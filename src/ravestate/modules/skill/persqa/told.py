@@ -7,19 +7,31 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
+from ravestate.errors import PlatformError
+from ravestate.language.encoder import Encoder
+from ravestate.language.normal import plain
 from ravestate.modules import nlp
-from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .answers import spelled_out
 from .reading import Reader
 from .topics import NAME, TOPICS, WORDS
 from .values import value_of
-from .wording import Facts, among, say
+from .wording import Facts, among
 
 _SAID_BACK = {
     "i": "you", "me": "you", "my": "your", "mine": "yours", "myself": "yourself", "am": "are", "'m": "are",
     "we": "you", "our": "your", "us": "you", "ours": "yours",
 }  # fmt: skip
+LEAST = 0.73
+"""The least similarity of a question to what it asks for."""
+_FIT = {
+    nlp.QuestionWord.PERSON: re.compile(r"(?<!^)\b[A-Z]\w|\byour \w"),
+    nlp.QuestionWord.TIME: re.compile(
+        r"\d|\b(?:on|in|at|since) \w|day\b|\b(?:tomorrow|tonight|morning|evening|noon|week|month|year)\b", re.IGNORECASE
+    ),
+    nlp.QuestionWord.PLACE: re.compile(r"\b(?:in|at|to|from|near|on) \w"),
+}
+"""The form of what answers a question for a person, a time or a place."""
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
 
@@ -77,6 +89,24 @@ def answers_in(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]
     return []
 
 
+def recalled(reader: Reader, told: Iterable[Told]) -> list[Told]:
+    """Return what the user told that their question means, though in other words: *who is getting married, do you
+    remember?*."""
+    told, kind = list(told), reader.seen.question
+    mine = reader.words & {"i", "my", "me", "we", "our", "remember"}
+    fit = [one for one in told if kind not in _FIT or _FIT[kind].search(one.text)]
+    if not fit or not mine or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
+        return []
+    asked = [part for part in (reader.tree.text, *reader.tree.text.split(",")) if len(part.split()) > 3]
+    try:
+        rows = Encoder().encode([plain(_returned(text)) for text in (*asked, *(one.text for one in fit))])
+    except PlatformError:  # without the model, only the words themselves are found
+        return []
+    likeness = (rows[len(asked) :] @ rows[: len(asked)].T).max(axis=1) if asked else [0.0]
+    best = max(range(len(likeness)), key=likeness.__getitem__)
+    return [fit[best]] if likeness[best] > LEAST else []
+
+
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
     if (
@@ -101,14 +131,21 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     if subject.person == "I":
         mine = "my" in object.text.lower().split() and not _happened(reader, said)
         deictic = re.match(r"(?:this|that|these|those|it|here|there)\b", reader.written(object), re.IGNORECASE)
-        fits = object.text and not object.preposition and said.verb not in ("be", "have") and not mine and not deictic
-        return "I" if fits and not list(reader.links(said)) else ""
+        spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
+        there = (
+            object.preposition and not object.text[:1].isupper()
+        )  # I drive for Transkorn, but not I wait for the bus
+        fits = object.text and not there and said.verb not in ("be", "have") and not mine and not deictic
+        return "I" if spoken and fits and not list(reader.links(said)) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
         naming = said.verb == "be" and ((object.names and not object.preposition) or not object.text)
         return "" if naming or said.triple.predicate in ("be called", "be named") else subject.name or subject.text
     if WORDS["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
         return " ".join(words[2:]) if len(words) == 3 else subject.text
+    dated = said.verb == "be" and said.when  # my birthday is in May
+    if words and dated and not reader.noun(subject):
+        return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
     return subject.text if person and not reader.noun(object) else ""
 
@@ -126,11 +163,9 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
         r"\w+", text.lower()
     ):
         text = f"{said.subject.text} {text}"
+    return _returned(text)
+
+
+def _returned(text: str) -> str:
+    """Return the user's words as the agent says them: *your* for *my*."""
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())
-
-
-def picking_up(one: Told, known: Facts) -> Intent:
-    """Return a question about what the user told."""
-    if one.verb == "be" and one.subject.lower().startswith("my "):
-        return say("how_is", known, person=f"your {one.subject[3:]}")
-    return say("pick_up", known, fact=one.text)

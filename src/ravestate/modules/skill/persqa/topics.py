@@ -37,6 +37,8 @@ class Topic:
     says: tuple[str, ...] = ()
     ends: tuple[str, ...] = ()
     asks: tuple[str, ...] = ()
+    touching: tuple[str, ...] = ()
+    ages: tuple[int, int] = (14, 120)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,11 +115,13 @@ def due(
     tries: Mapping[str, int],
     *,
     last: str = "",
+    touched: Collection[str] = (),
     limit: int,
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    Prefer the follow-up of the `last` topic, then the topic with the fewest tries, in the order of `wanted`.
+    Prefer the topic with the fewest tries, then the follow-up of the `last` topic, then what the user's words have
+    touched, then the order of `wanted`; but the name goes first.
 
     Args:
         wanted: Names of topics.
@@ -125,6 +129,7 @@ def due(
         closed: Topics not to ask about.
         tries: The number of questions about each.
         last: The topic of the conversation.
+        touched: Topics that the user's words have touched.
         limit: The maximum number of questions about one topic.
 
     Example:
@@ -132,11 +137,28 @@ def due(
         'home'
     """
     done = {*known, *closed, *(name for name in tries if tries[name] >= limit)}
-    left = [name for name in wanted if name not in done and _makes_sense(TOPICS[name], known)]
-    return min(left, key=lambda name: (tries.get(name, 0), not last or TOPICS[name].only_with != last), default="")
+    left = [name for name in wanted if name not in done and _makes_sense(TOPICS[name], known, touched)]
+    return min(
+        left,
+        key=lambda name: (
+            tries.get(name, 0),
+            name != NAME,
+            not last or TOPICS[name].only_with != last,
+            name not in touched,
+        ),
+        default="",
+    )
 
 
-def _makes_sense(topic: Topic, known: Mapping[str, tuple[str, ...]]) -> bool:
+def touched_by(words: Collection[str]) -> frozenset[str]:
+    """Return the topics that the lemmas of an utterance touch."""
+    return frozenset(topic.name for topic in _ROWS if not {*topic.nouns, *topic.touching}.isdisjoint(words))
+
+
+def _makes_sense(topic: Topic, known: Mapping[str, tuple[str, ...]], touched: Collection[str]) -> bool:
+    youngest, oldest = topic.ages
+    if (topic.touching and topic.name not in touched) or not youngest <= int([*known.get("age", ()), 30][0]) <= oldest:
+        return False
     needed = known.get(topic.only_with, ()) if topic.only_with else ("",)
     if not needed or any(known.get(other) for other in topic.besides):
         return False

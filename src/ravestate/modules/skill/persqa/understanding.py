@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from ravestate.modules import nlp
@@ -13,8 +13,9 @@ from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader
 from .talk import CONFIRM, FORGET, Talk
-from .told import Told, answers_in, told_in
-from .topics import NAME, TOPICS, WORDS, Fact, is_topic
+from .told import Told, answers_in, recalled, told_in
+from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
+from .values import value_of
 from .wording import Facts, among
 
 EVERYTHING = "everything"
@@ -58,13 +59,21 @@ class Meaning:
     else that they say."""
     free: tuple[Told, ...] = ()
     """Free statements that they make, ask for, or want forgotten."""
+    touched: frozenset[str] = frozenset()
+    """The topics that their words touch."""
+    person: str = ""
+    """The topic of the relative whom they mention."""
 
 
 def understand(
     seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: Iterable[Told] = ()
 ) -> Meaning:
     """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
-    return _Hearing(seen, talk, known, now, within, tuple(told)).meaning()
+    hearing = _Hearing(seen, talk, known, now, within, tuple(told))
+    touched = touched_by([word.lemma for word in seen.tree.words])
+    relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
+    person = next(filter(None, map(hearing.reader.relative, relatives)), "")
+    return replace(hearing.meaning(), touched=touched, person=person)
 
 
 class _Hearing:
@@ -76,7 +85,8 @@ class _Hearing:
         self.fresh = self.pending is not None and self.pending.fresh
         self.topic = self.pending.topic if self.pending else ""
         self.waits = is_topic(self.topic)
-        self.reader = Reader(seen, talk.doubt if self.topic == CONFIRM else self.topic if self.waits else "")
+        asked = talk.doubt if self.topic == CONFIRM else self.topic if self.waits else ""
+        self.reader = Reader(seen, asked, talk.person)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.leave = "farewell" in seen.acts
@@ -90,12 +100,15 @@ class _Hearing:
             yesno = seen.yesno if self.fresh else None  # a yes to something else must not delete anything
             no = yesno and (yesno.no or yesno.unsure)
             return Meaning("forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing", leave=self.leave)
-        if self.waits and self.pending and not self.pending.turns and "refuse" in self.acts:
+        if self.waits and self.pending and not self.pending.turns and "refuse" in self.acts and self.of_speakers():
             return Meaning("declined", topic=topic)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
-        if (asks or "ask_everything" in self.acts) and (inquiry := self.inquiry()):
-            return inquiry
+        if asks or "ask_everything" in self.acts:
+            if inquiry := self.inquiry():
+                return inquiry
+            if found := answers_in(self.reader, self.told, self.known) or recalled(self.reader, self.told):
+                return Meaning("asked_told", free=tuple(found))
         facts = self.reader.facts(self.known)
         told = {fact.topic for fact in facts if not fact.gone}
         facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
@@ -108,6 +121,10 @@ class _Hearing:
         if identity := self.identity():
             return identity
         if aside:
+            named = _INTRODUCED.search(self.text)  # I'm Ada, how are you?
+            name = value_of(named[1], TOPICS[NAME], seen, sure=False) if named and not self.known.get(NAME) else None
+            if name:
+                return Meaning("told", (Fact(NAME, (name,)),), topic, self.leave, aloud=False)
             before = _before_question(self.text) if asks and self.waits else ""
             side = answer(before, topic, seen) if before else []
             mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
@@ -117,6 +134,11 @@ class _Hearing:
         if (relative := self.reader.without_name()) and not self.known.get(relative):
             return Meaning("mentioned", topic=relative)
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
+
+    def of_speakers(self) -> bool:
+        """Return whether the utterance is about the user and the agent, not about others."""
+        others = (said.subject for said in self.seen.statements if said.subject.person == "other")
+        return all(other.text.lower() in ("", "it", "that", "this", "none") for other in others)
 
     def corrected(self) -> Meaning | None:
         """Return the correction of the fact that the user told last."""
@@ -129,17 +151,29 @@ class _Hearing:
         seen, topic, yesno = self.seen, self.topic, self.seen.yesno
         if self.fresh and "nothing" in self.acts:
             return Meaning("none" if topic != NAME else "declined", topic=topic)
-        facts = answer(self.text, topic, seen) or (
+        felt = seen.feelings and len(self.text.split()) > 2
+        facts = (not felt and answer(self.text, topic, seen)) or (
             yesno.no and correction(self.text, topic, (), seen)
         )  # no, from Bremen
-        if facts and may_stand_alone(seen) and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts):
+        loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
+        values = [value for fact in facts or () for value in fact.values]
+        clear = not loose and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
+        if (
+            facts
+            and may_stand_alone(seen, clear=clear)
+            and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts)
+        ):
             return Meaning("told", tuple(facts), topic)
         if not self.fresh or not yesno:
             return None
         if yesno.unsure or yesno.no:
             declined = topic in (NAME, "home", "origin")
             return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
-        mere = len(self.text.split()) <= 4 and "acknowledgement" not in seen.acts
+        mere = (
+            len(self.text) < 40
+            and len(self.text.split()) <= 4
+            and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
+        )
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
@@ -166,7 +200,8 @@ class _Hearing:
 
     def inquiry(self) -> Meaning | None:
         """Return a question about the user, or about what they told."""
-        if "ask_everything" in self.acts:
+        named = any(phrase.names for said in self.seen.statements for phrase in (said.object, *said.phrases))
+        if "ask_everything" in self.acts and not named:
             return Meaning("asked", (Fact(EVERYTHING),))
         if asked := self.reader.asks():
             return Meaning("asked", (asked,))
@@ -180,8 +215,7 @@ class _Hearing:
                     return Meaning("asked", (Fact(topic),))
         if "ask_name" in self.acts and not wished:
             return Meaning("asked", (Fact(NAME),))
-        found = answers_in(self.reader, self.told, self.known)
-        return Meaning("asked_told", free=tuple(found)) if found else None
+        return None
 
     def wish_to_forget(self) -> Meaning | None:
         """Return the wish to forget; None if the utterance has none."""
@@ -214,6 +248,9 @@ class _Hearing:
         if fact.values or fact.topic == NAME:
             return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
+
+
+_INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
 
 
 def _before_question(text: str) -> str:

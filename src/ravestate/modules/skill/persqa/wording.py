@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from ravestate.modules.meta.verbaliser.intents import Intent
 
-from .topics import NAME, TOPICS, WORDS, Topic, in_order
+from .topics import TOPICS, WORDS, Topic, in_order
 
 PACKAGE = __name__.rpartition(".")[0]
 """The package with the phrases."""
@@ -150,10 +150,3 @@ def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> I
 def memorable(remembered: Facts, chance: random.Random) -> str:
     """Return one of the remembered topics."""
     return chance.choice([topic for topic, values in remembered.items() if values])
-
-
-def following(topic: str, known: Facts) -> Intent:
-    """Return a personal question between two questions about facts: about the last topic, if there is one for it."""
-    about = TOPICS.get(topic)
-    fit = about is not None and about.asked and not about.only_with and topic != NAME and known.get(topic)
-    return say(f"more_{topic}" if fit else "more", known)

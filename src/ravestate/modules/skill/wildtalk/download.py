@@ -112,9 +112,9 @@ def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
     except (httpx2.InvalidURL, httpx2.UnsupportedProtocol) as error:
         raise PlatformError(f"HF_ENDPOINT is not a web address: {error}") from error
     except (httpx2.HTTPError, OSError) as error:
-        if isinstance(error, OSError) and (error.errno is not None or part.tell() >= model.size):
-            if error.errno is not None:
-                raise
+        if getattr(error, "errno", None) is not None:
+            raise
+        if part.tell() >= model.size:
             return  # it is too long, as the checksum will show
         raise PlatformError(
             f"{public} does not deliver {model.file} ({error}){_kept(model)}. Check the network, or name a mirror in "

@@ -63,6 +63,9 @@ class OpenAIBackend:
         self._unsupported: set[str] = set()
         self._client: httpx2.AsyncClient | None = None
 
+    def __repr__(self) -> str:
+        return f"OpenAIBackend({self._place!r}, {self._model!r})"
+
     async def load(self, progress: Progress | None = None) -> None:
         """Import the web client and its certificates, off the loop. The server is not contacted yet."""
         if self._client is None:

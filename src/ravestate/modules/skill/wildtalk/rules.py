@@ -12,7 +12,7 @@ from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
 from ravestate.modules import interloc, nlp, rawio
 
-from .backend import Backend, Message, Role
+from .backend import Backend, Message, PendingBackend, Role
 from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
@@ -20,7 +20,6 @@ from .listening import ListeningBackend, State
 from .llama import LlamaBackend, checked_model
 from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
 from .openai import OpenAIBackend
-from .pending import PendingBackend
 from .progress import ProgressBar
 from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, traces
 from .transformers import TransformersBackend

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ravestate.modules.skill.agentqa.addressing import addressed
+from ravestate.language.addressing import addressed
 
 
 @pytest.mark.parametrize(
@@ -15,6 +15,12 @@ from ravestate.modules.skill.agentqa.addressing import addressed
         ("robin, how old are you?", "how old are you?"),
         ("How are you, Robin?", "How are you?"),
         ("Robinson is nice.", "Robinson is nice."),
+        ("Robin is clever", "you are clever"),
+        ("robin's so cute", "you are so cute"),
+        ("I love Robin.", "I love you."),
+        ("this little robot is great", "you are great"),
+        ("this robot is great, thank you", "you are great, thank you"),
+        ("Robin has won", "you have won"),
         ("", ""),
     ],
 )

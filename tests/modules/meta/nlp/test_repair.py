@@ -1,0 +1,66 @@
+"""The repair of trees, and what clauses and questions gain by it."""
+
+import pytest
+
+from ravestate.modules.meta.nlp.inquiry import question_of
+from ravestate.modules.meta.nlp.pipeline import Pipeline
+from ravestate.modules.meta.nlp.repair import repaired, tag_at
+from ravestate.modules.meta.nlp.statements import statements_of, triples_of
+
+
+def triples(reader: Pipeline, text: str) -> str:
+    return " ".join(map(str, triples_of(reader.read(text)[0])))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("When did the concert end?", "(concert, end, TIME)"),
+        ("How long does the flight take?", "(flight, take, AMOUNT)"),
+        ("Do robots dream?", "(robots, dream, -)"),
+        ("Was the fence painted by your uncle?", "(your uncle, paint, fence)"),
+        ("Are your parents still married?", "(your parents, be, married)"),
+        ("There is something I want to tell you.", "(something, be, -) (I, want to tell, something)"),
+        ("can't find my keys", "(I, not find, my keys)"),
+    ],
+)
+def test_a_misread_clause_has_its_triple(text: str, expected: str, reader: Pipeline) -> None:
+    assert triples(reader, text) == expected
+
+
+def test_homework_after_do_is_no_verb(reader: Pipeline) -> None:
+    assert triples(reader, "do your math homework").startswith("(you, do,")
+
+
+@pytest.mark.parametrize("text", ["You like tea, don't you?", "you can dance cant you", "It is late, isn't it"])
+def test_a_tag_makes_a_question_and_no_triple(text: str, reader: Pipeline) -> None:
+    tree, _ = reader.read(text)
+    assert question_of(tree) is not None and question_of(tree).name == "YES_NO"  # pyright: ignore[reportOptionalMemberAccess]
+    (statement,) = statements_of(tree)
+    assert statement.question and not statement.negated
+
+
+def test_a_tree_without_faults_stays_as_it_is(reader: Pipeline) -> None:
+    tree, _ = reader.read("My sister lives in Rome.")
+    assert repaired(tree) is tree
+    assert not any(tag_at(tree.words, word.index) for word in tree.words)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("My uncle, who repairs bikes, lives near Cologne.", "-"),
+        ("Here is your coffee.", "-"),
+        ("what beautiful eyes you have", "-"),
+        ("where you live", "PLACE"),
+        ("how much you weigh", "AMOUNT"),
+        ("why you so mean", "REASON"),
+        ("where do penguins live", "PLACE"),
+        ("you are a robot right", "YES_NO"),
+        ("you know any songs", "YES_NO"),
+        ("Guess what, I passed.", "-"),
+    ],
+)
+def test_the_kinds_of_questions_without_marks_and_auxiliaries(text: str, kind: str, reader: Pipeline) -> None:
+    found = question_of(reader.read(text)[0])
+    assert (found.name if found else "-") == kind
