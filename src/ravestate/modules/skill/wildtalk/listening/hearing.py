@@ -251,7 +251,8 @@ def _is_sad(phrases: Material, match: Match) -> bool:
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
     """Return the strongest feeling, sad ones first, with its sentence."""
     known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
-    matches = [one for one in known if one.name in _SAD or "but" not in one.text.split()]  # "you are sweet, but..."
+    but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
+    matches = [one for one in known if one.name in _SAD or not but]
     if not matches:
         return None, sentence
     best = max(matches, key=lambda match: (match.name in _SAD, match.score))
