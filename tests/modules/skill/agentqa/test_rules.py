@@ -13,7 +13,6 @@ import pytest
 
 import ravestate as rs
 from ravestate.modules import (
-    agenda,
     agentqa,
     emotion,
     idle,

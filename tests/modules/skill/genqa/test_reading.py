@@ -7,7 +7,7 @@ from types import ModuleType, SimpleNamespace
 import pytest
 from pypdf import PdfReader, PdfWriter
 
-from ravestate.modules.skill.genqa.reading import KINDS, Unreadable, kind_of, read
+from ravestate.modules.skill.genqa.reading import Unreadable, kind_of, read
 
 
 def passages(path: Path) -> dict[str, list[str]]:
