@@ -112,5 +112,5 @@ class History:
 
     def _clean(self, text: str) -> str:
         # A user may paste a book: anything far beyond the budget is dropped at once.
-        text = text[: 4 * self._characters]
+        text = text[: max(1000, 4 * self._characters)]
         return " ".join(_MARKERS.sub(" ", printable(text)).split())

@@ -84,7 +84,7 @@ class Turn:
     def _riddle(self, game: Game) -> Played | None:
         riddle = next(one for one in self._shows["riddles"] if one["ask"] == game.word)
         answer, over, seen = riddle["answers"][0], Game("riddle"), self._seen
-        lemmas = set(self._words) | ({word.lemma.lower() for word in seen.tree.words} if seen else set())
+        lemmas = {*self._words, *(word.lemma.lower() for word in (seen.tree.words if seen else ()))}
         if lemmas.intersection(riddle["answers"]):
             return self._say("riddle", "right", over, answer=answer)
         if self._unsure or self._no or lemmas & {"give", "tell"}:

@@ -1,4 +1,4 @@
-"""What an utterance is for the listener: tags for the table of answers, roles for the phrases, and meanings."""
+"""An utterance as the listener sees it: tags for the table of answers, roles for the phrases, and meanings."""
 
 from __future__ import annotations
 
@@ -27,6 +27,8 @@ FELT, GLAD, AMAZED = 0.55, 0.7, 0.8
 """The confidence in a sad feeling from which it decides, in another one, and in astonishment."""
 TURNED = 0.95
 """The confidence from which a glad feeling or a light moment ends a sad tone."""
+CLOUDED = 0.85
+"""The confidence from which a sad moment ends a glad tone."""
 ASKED = 0.8
 """The confidence in a request from which it is met."""
 FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.7
@@ -51,16 +53,7 @@ class Heard:
 
 @dataclass(slots=True)
 class Hearing:
-    """An utterance as the table of answers sees it.
-
-    The tags are: number, foreign, nonsense, signs, unparsed, asking (it ends with a question mark); pending (the agent has
-    asked), closed (with yes or no), answering; shown (the agent has just told a joke...), more (the user wants more); yes, no, unsure, few, short and single (words), verb, acting (an act),
-    felt (a feeling), sure (a moment), topical, others (it tells of others), fragment; question, polar, why, fact, choice,
-    opinion, hypothetical, may (*can I*), should (*what must I*), agree (*isn't it*), you_think, are_you, told (of what the user told),
-    agent (it has *you*), to_agent and of_user (by its subject); request, called (somebody has a
-    name), correcting, age; of the statement: mine, living, about_me, thing_told, described, past, used, plan, negated,
-    imagined, asserting (more than yes or no); the tone; and coin, which one half of the utterances have.
-    """
+    """An utterance as the table of answers sees it. The head of order.yaml explains the tags."""
 
     tags: set[str]
     roles: Roles = field(default_factory=Roles)
@@ -203,12 +196,14 @@ def _ranked(
     ranked: list[tuple[float, Moment]] = []
     if moment is not None and state.tone == "sad" and moment.tone != "sad" and "sad" not in moment.groups:
         score = score if score >= TURNED else 0.0  # no light talk in grief
+    if moment is not None and state.tone == "glad" and moment.tone == "sad":
+        score = score if score >= CLOUDED else 0.0  # tears of joy
     if moment is not None and moment.name in phrases.moments and score >= SURE:
         ranked.append((score + FINER, moment))
     if feeling is not None and (not asking or feeling.tone == "sad"):
         ranked.append((seen.feelings[feeling.name].score, feeling))
     for act in seen.acts.values():
-        leaves = act.name == "farewell" and act.text == seen.sentences[-1]
+        leaves = act.name == "farewell" and act.text in seen.sentences[-1:]
         few = len(act.text.split()) <= FEW_WORDS
         least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
         beside = (
@@ -233,13 +228,14 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
     If the user asks something, only the question and sad moments count.
     """
     best, sentence, score = None, "", 0.0
+    size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     content = {word.low for word in seen.tree.words if word.pos in ("NOUN", "VERB", "ADJ", "PROPN")}
     texts = list(dict.fromkeys((*seen.sentences[:4], *clauses(seen.sentences[:4]))))
     for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
         if match is None or (asking and match.text not in asking and not _is_sad(phrases, match)):
             continue
         found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
-        if few and match.score < SURE_OF_FEW:
+        if few and (size > FEW_WORDS or match.score < SURE_OF_FEW):  # "sorry", "lol" decide nothing if more was said
             continue
         second = not asking and match.score >= HALF and bool(content & set(match.example.split()))  # a word in common
         weight = (max(match.score, SURE) if second else match.score) if found else match.score / 2
@@ -254,7 +250,9 @@ def _is_sad(phrases: Material, match: Match) -> bool:
 
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
     """Return the strongest feeling, sad ones first, with its sentence."""
-    matches = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
+    known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
+    but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
+    matches = [one for one in known if one.name in _SAD or not but]
     if not matches:
         return None, sentence
     best = max(matches, key=lambda match: (match.name in _SAD, match.score))

@@ -129,7 +129,7 @@ class Listener:
     def _say(self, hearing: Hearing, state: State, chance: random.Random) -> Answer:
         for source in _with_fewer_questions(self._sources(hearing, state, chance), state):
             roles = hearing.roles
-            line = self._choose(source.groups, roles, state, chance)
+            line = self._choose(source, roles, state, chance)
             if line is None:
                 continue
             moment = source.moment
@@ -141,13 +141,13 @@ class Listener:
             return _said(line, roles, after)
         return Answer("Mhm.", state.toned(""))  # all phrases were said lately
 
-    def _choose(self, groups: Groups, roles: Roles, state: State, chance: random.Random) -> Line | None:
+    def _choose(self, source: _Source, roles: Roles, state: State, chance: random.Random) -> Line | None:
         """Return a line of the first group that has one: with known roles, and not said lately."""
-        for lines in groups:
+        for lines in source.groups:
             fit = [line for line in lines if line.roles <= roles.values.keys() and line.text not in state.recent]
             fit = [line for line in fit if roles.fill(line.text) not in state.said]
             if fit:
-                return chance.choice([line for line in fit if line.refers] or fit)
+                return chance.choice([line for line in fit if line.refers and not source.weak] or fit)
         return None
 
     def _sources(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:

@@ -83,7 +83,7 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
     being = _being(seen, material)
     pronouns = {word.low for word in seen.tree.words}
     genders = {_PRONOUNS[word] for word in pronouns if word in _PRONOUNS}
-    others = {"they", "them", "their"} | ({"it", "its"} if focus is not None and focus.kind == "pet" else set())
+    others = {"they", "them", "their", *(("it", "its") if focus is not None and focus.kind == "pet" else ())}
     if being is None and focus is not None and (genders or pronouns & others):
         being = focus if {focus.gender} | genders != {"f", "m"} else None
     words = _THEY[next(iter(genders))] if genders else _IT if pronouns & {"it", "its"} else None
