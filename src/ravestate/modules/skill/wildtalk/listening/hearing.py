@@ -17,10 +17,12 @@ from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
-SURE, MEANT = 0.6, 0.6
+SURE, MEANT = 0.8, 0.6
 """The confidence in a moment and an act from which they decide."""
-HALF = 0.5
-"""The confidence in a moment that needs a second sign: a word in common with its example."""
+HALF, HALF_ASKED = 0.62, 0.55
+"""The confidence in a moment that needs a second sign: a word in common with its example; and that in a question."""
+PLAIN = 0.7
+"""The confidence in a question that needs no second sign."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 FELT, GLAD, AMAZED = 0.55, 0.7, 0.8
@@ -33,10 +35,16 @@ ASKED = 0.8
 """The confidence in a request from which it is met."""
 FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.7
 """The words of a sentence that resembles many others, and the confidence that it needs."""
+PLAINLY = 12
+"""The words of a statement about one thing."""
 SHORT = 4
 """The words of a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that are only taken for sure ones."""
+_CONTENT = ("NOUN", "VERB", "ADJ", "PROPN")
+_COMMON = frozenset(("be", "do", "have", "go", "get", "say", "tell", "know", "think", "want", "come", "make", "see", "take"))
+_UNENDING = frozenset(("and", "but", "or", "because", "if", "the", "a", "an", "my", "your", "is", "'s", "are", "'re", "'m", "to"))
+"""Closed-class words that end no utterance."""
 _SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
 _THIRD = frozenset(("he", "she", "they"))
 
@@ -85,6 +93,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     asking = asking_sentence(seen)
     moment, sentence, score = moment_of(phrases, seen, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
+    if feeling is not None and asking and feeling.tone != "sad":
+        feeling = None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
     roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
     statement = roles.statement
@@ -120,6 +130,10 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "fragment": size <= SHORT + 2,
         "called": called != "",
         "request": is_request(seen) and seen.question is None,
+        "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
+        and not statement.conditional,
+        "being": roles.being is not None,
+        "broken": _is_broken(seen, size),
         "correcting": starts_no and verb and size > SHORT and bool(state.said) and seen.question is None
         and not (pending is not None and pending.closed),
     }  # fmt: skip
@@ -129,7 +143,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _statement_tags(phrases, seen, statement, roles, low)
         name = f"not {statement.verb}" if statement.negated else statement.verb
         found.verb = next((one for one in phrases.verbs.values() if name in one.words), None)
-        heads = {statement.object.head, statement.subject.head, *(phrase.head for phrase in statement.phrases)}
+        heads = {statement.object.head, statement.subject.head}
         about = next((one for one in phrases.topics.values() if heads & one.words), None) or about
     found.topic = about
     found.tags |= {tag for tag, holds in tags.items() if holds}
@@ -153,6 +167,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[s
         "agree": polar and subject != "you" and asked is not None and asked.negated,
         "you_think": polar and subject == "you" and any(word.dep == "ccomp" for word in seen.tree.words),
         "told": (not polar and "my" in low and subject != "I")
+        or (not polar and subject == "I" and not modal)
         or bool(low & {"remember", "my"} and low & {"remember", "know"}),
         "why": seen.question is QuestionWord.REASON,
         "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
@@ -200,7 +215,7 @@ def _ranked(
         score = score if score >= CLOUDED else 0.0  # tears of joy
     if moment is not None and moment.name in phrases.moments and score >= SURE:
         ranked.append((score + FINER, moment))
-    if feeling is not None and (not asking or feeling.tone == "sad"):
+    if feeling is not None:
         ranked.append((seen.feelings[feeling.name].score, feeling))
     for act in seen.acts.values():
         leaves = act.name == "farewell" and act.text in seen.sentences[-1:]
@@ -229,7 +244,9 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
     """
     best, sentence, score = None, "", 0.0
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
-    content = {word.low for word in seen.tree.words if word.pos in ("NOUN", "VERB", "ADJ", "PROPN")}
+    typical = {word for word in seen.tree.words if word.pos in _CONTENT and word.lemma.lower() not in _COMMON}
+    content = {form for word in typical for form in (word.low, word.lemma.lower())}
+    half, least = (HALF_ASKED, PLAIN) if asking else (HALF, SURE)
     texts = list(dict.fromkeys((*seen.sentences[:4], *clauses(seen.sentences[:4]))))
     for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
         if match is None or (asking and match.text not in asking and not _is_sad(phrases, match)):
@@ -237,11 +254,20 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
         found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
         if few and (size > FEW_WORDS or match.score < SURE_OF_FEW):  # "sorry", "lol" decide nothing if more was said
             continue
-        second = not asking and match.score >= HALF and bool(content & set(match.example.split()))  # a word in common
-        weight = (max(match.score, SURE) if second else match.score) if found else match.score / 2
+        if found is not None and not has_head(phrases, found, seen):
+            continue
+        second = match.score >= half and bool(content & set(match.example.split()))  # a word in common
+        sure = max(match.score, SURE) if second or match.score >= least else match.score
+        weight = sure if found else match.score / 2
         if weight > score:
             best, sentence, score = found or phrases.topics[match.name], match.text, weight
     return best, sentence, score
+
+
+def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
+    """Return whether an utterance has one of the words that a moment needs: nobody is mourned without a word for it."""
+    needed = phrases.heads.get(moment.heads, frozenset())
+    return not needed or any(needed & {word.low, word.lemma.lower()} for word in seen.tree.words)
 
 
 def _is_sad(phrases: Material, match: Match) -> bool:
@@ -251,6 +277,7 @@ def _is_sad(phrases: Material, match: Match) -> bool:
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
     """Return the strongest feeling, sad ones first, with its sentence."""
     known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
+    known = [one for one in known if has_head(phrases, phrases.feelings[one.name], seen)]
     but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
     matches = [one for one in known if one.name in _SAD or not but]
     if not matches:
@@ -271,6 +298,17 @@ def _least(match: Match, tone: str) -> float:
         else GLAD
     )
     return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
+
+
+def _is_broken(seen: Analysis, size: int) -> bool:
+    """Return whether an utterance breaks off: *wait, she is*."""
+    words = [word for word in seen.tree.words if word.pos != "PUNCT"]
+    return (
+        1 < size <= 2 * SHORT
+        and seen.question is None
+        and words[-1].low in _UNENDING
+        and not seen.text.rstrip().endswith((".", "!", "?"))
+    )
 
 
 def is_living(phrases: Material, statement: Statement) -> bool:

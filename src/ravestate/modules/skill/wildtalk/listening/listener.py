@@ -21,6 +21,8 @@ SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
 LONG, SHORT = 9, 3
 """The words of a request with a verb, and of one without, that names a performance."""
+BRIEF, BRIEFLY = 12, 6
+"""The characters of a sign of listening, and the answers after which it may come again."""
 STANCES = ("like", "curious", "cool")
 
 Groups = Sequence[Sequence[Line]]
@@ -144,8 +146,8 @@ class Listener:
     def _choose(self, source: _Source, roles: Roles, state: State, chance: random.Random) -> Line | None:
         """Return a line of the first group that has one: with known roles, and not said lately."""
         for lines in source.groups:
-            fit = [line for line in lines if line.roles <= roles.values.keys() and line.text not in state.recent]
-            fit = [line for line in fit if roles.fill(line.text) not in state.said]
+            known = [line for line in lines if line.roles <= roles.values.keys()]
+            fit = [line for line in known if not _said_lately(line.text, roles.fill(line.text), state)]
             if fit:
                 return chance.choice([line for line in fit if line.refers and not source.weak] or fit)
         return None
@@ -206,6 +208,12 @@ class Listener:
             if "living" in hearing.tags:
                 lines = [[line for line in group if line.roles & {"who", "they", "them"}] for group in lines]
             yield _Source(lines, hearing.topic)
+
+
+def _said_lately(template: str, text: str, state: State) -> bool:
+    """Return whether a phrase was said lately; a sign of listening may come again soon."""
+    lately = BRIEFLY if len(text) <= BRIEF else len(state.said)
+    return text in state.said[-lately:] or (len(text) > BRIEF and template in state.recent)
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:

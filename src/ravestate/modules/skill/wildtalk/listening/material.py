@@ -18,10 +18,10 @@ from .state import LASTING
 
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
-MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "moments")
+MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
 """The files of situations in a talk."""
 _POINTING = re.compile(r"\b(?:it|that|they|them)\b", re.IGNORECASE)
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts"))
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +59,8 @@ class Moment:
     examples: tuple[str, ...] = ()
     words: frozenset[str] = frozenset()
     """The nouns or verbs that are typical of it."""
+    heads: str = ""
+    """The list in heads.yaml with the words of which it needs one."""
 
     def lines(self, *groups: str) -> list[Sequence[Line]]:
         """Return its groups of these names, as far as it has them."""
@@ -93,6 +95,7 @@ class Material:
             for moments in files.values()
         ]
         """One matcher a file: all of them together learn faster than one of all examples."""
+        self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.verbs = _moments("verbs")
         self.plain = _moments("plain")
         self.order = [_row(row) for row in _read("order")]
@@ -129,7 +132,7 @@ def _moments(name: str) -> dict[str, Moment]:
         groups = {group: _lines(lines, key) for group, lines in value.items() if group not in _NOT_GROUPS}
         words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
         lasts = int(value.get("lasts", LASTING))
-        found[key] = Moment(key, groups, value.get("tone", ""), lasts, tuple(value.get("examples", ())), words)
+        found[key] = Moment(key, groups, value.get("tone", ""), lasts, tuple(value.get("examples", ())), words, value.get("heads", ""))
     return found
 
 
