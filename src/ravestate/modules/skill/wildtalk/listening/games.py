@@ -87,7 +87,7 @@ class Turn:
         lemmas = {*self._words, *(word.lemma.lower() for word in (seen.tree.words if seen else ()))}
         if lemmas.intersection(riddle["answers"]):
             return self._say("riddle", "right", over, answer=answer)
-        if self._unsure or self._no or lemmas & {"give", "tell"}:
+        if self._unsure or self._no or lemmas & {"give", "tell", "know"}:
             return self._say("riddle", "tell", over, answer=answer, Answer=answer.capitalize())
         if seen is not None and seen.question is not None and len(self._words) > 4:
             return None

@@ -17,15 +17,15 @@ from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
-SURE, MEANT = 0.8, 0.6
+SURE, MEANT = 0.8, 0.7
 """The confidence in a moment and an act from which they decide."""
-HALF, HALF_ASKED = 0.62, 0.55
+HALF, HALF_ASKED = 0.7, 0.62
 """The confidence in a moment that needs a second sign: a word in common with its example; and that in a question."""
 PLAIN = 0.7
 """The confidence in a question that needs no second sign."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
-FELT, GLAD, AMAZED = 0.55, 0.7, 0.8
+FELT, GLAD, AMAZED = 0.6, 0.8, 0.9
 """The confidence in a sad feeling from which it decides, in another one, and in astonishment."""
 TURNED = 0.95
 """The confidence from which a glad feeling or a light moment ends a sad tone."""
@@ -43,6 +43,8 @@ ENDINGS = ("stop", "quiet")
 """Acts that are only taken for sure ones."""
 _CONTENT = ("NOUN", "VERB", "ADJ", "PROPN")
 _COMMON = frozenset(("be", "do", "have", "go", "get", "say", "tell", "know", "think", "want", "come", "make", "see", "take"))
+_ASKING = frozenset(("who", "what", "when", "where", "why", "which", "how", "whose", "do", "does", "did", "is", "are", "was", "can", "could", "will", "would", "should", "may", "have"))
+"""Closed-class words that begin a question."""
 _UNENDING = frozenset(("and", "but", "or", "because", "if", "the", "a", "an", "my", "your", "is", "'s", "are", "'re", "'m", "to"))
 """Closed-class words that end no utterance."""
 _SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
@@ -94,7 +96,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     moment, sentence, score = moment_of(phrases, seen, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
-        feeling = None
+        match = seen.feelings[feeling.name]
+        feeling = feeling if match.score >= TURNED and match.text not in asking else None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
     roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
     statement = roles.statement
@@ -124,6 +127,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
         "sure": score >= SURE,
+        "certain": score >= TURNED,
         "topical": moment is not None and size > 2,
         "others": others,
         "asserting": verb and others,
@@ -137,13 +141,17 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "correcting": starts_no and verb and size > SHORT and bool(state.said) and seen.question is None
         and not (pending is not None and pending.closed),
     }  # fmt: skip
-    if seen.question is not None:
+    if asking:
         tags |= _question_tags(found, phrases, seen, low) | {"choice": choice[0] != ""}
     elif statement is not None:
         tags |= _statement_tags(phrases, seen, statement, roles, low)
         name = f"not {statement.verb}" if statement.negated else statement.verb
         found.verb = next((one for one in phrases.verbs.values() if name in one.words), None)
-        heads = {statement.object.head, statement.subject.head}
+        heads = {
+            word.lemma.lower()
+            for word in seen.tree.words
+            if word.dep in ("nsubj", "nsubjpass", "dobj", "attr") and seen.tree.head(word).dep == "ROOT"
+        } & {statement.object.head, statement.subject.head}
         about = next((one for one in phrases.topics.values() if heads & one.words), None) or about
     found.topic = about
     found.tags |= {tag for tag, holds in tags.items() if holds}
@@ -167,7 +175,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[s
         "agree": polar and subject != "you" and asked is not None and asked.negated,
         "you_think": polar and subject == "you" and any(word.dep == "ccomp" for word in seen.tree.words),
         "told": (not polar and "my" in low and subject != "I")
-        or (not polar and subject == "I" and not modal)
+        or (subject == "I" and not modal and not polar and seen.question is not QuestionWord.FORM)
         or bool(low & {"remember", "my"} and low & {"remember", "know"}),
         "why": seen.question is QuestionWord.REASON,
         "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
@@ -209,7 +217,8 @@ def _ranked(
 ) -> list[Moment]:
     """Return the feelings, acts and moments that decide, best first."""
     ranked: list[tuple[float, Moment]] = []
-    if moment is not None and state.tone == "sad" and moment.tone != "sad" and "sad" not in moment.groups:
+    light = moment is not None and moment.tone != "sad" and "sad" not in moment.groups
+    if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
         score = score if score >= TURNED else 0.0  # no light talk in grief
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
         score = score if score >= CLOUDED else 0.0  # tears of joy
@@ -218,7 +227,8 @@ def _ranked(
     if feeling is not None:
         ranked.append((seen.feelings[feeling.name].score, feeling))
     for act in seen.acts.values():
-        leaves = act.name == "farewell" and act.text in seen.sentences[-1:]
+        sad = feeling is not None and feeling.tone == "sad" and act.text == seen.feelings[feeling.name].text
+        leaves = act.name == "farewell" and act.text in seen.sentences[-1:] and not sad
         few = len(act.text.split()) <= FEW_WORDS
         least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
         beside = (
@@ -234,7 +244,10 @@ def asking_sentence(seen: Analysis) -> str:
     if seen.question is None or not seen.sentences:
         return ""
     marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
-    return marked[-1] if marked else seen.sentences[-1]
+    opened = [sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING]
+    if not marked and not opened and seen.text.rstrip().endswith("!"):  # "oh, we won!"
+        return ""
+    return (marked or opened or seen.sentences)[-1]
 
 
 def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Moment | None, str, float]:
@@ -249,10 +262,15 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
     half, least = (HALF_ASKED, PLAIN) if asking else (HALF, SURE)
     texts = list(dict.fromkeys((*seen.sentences[:4], *clauses(seen.sentences[:4]))))
     for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
-        if match is None or (asking and match.text not in asking and not _is_sad(phrases, match)):
+        if match is None:
+            continue
+        sad, beside = _is_sad(phrases, match), asking != "" and match.text not in asking
+        if beside and not sad and match.score < TURNED:
             continue
         found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
-        if few and (size > FEW_WORDS or match.score < SURE_OF_FEW):  # "sorry", "lol" decide nothing if more was said
+        if few and ((size > FEW_WORDS and not (sad and match.score >= SURE)) or match.score < SURE_OF_FEW):  # "sorry", "lol" decide nothing if more was said
+            continue
+        if match.score < TURNED and not beside and (asking != "") != _is_question(match.example):
             continue
         if found is not None and not has_head(phrases, found, seen):
             continue
@@ -262,6 +280,10 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
         if weight > score:
             best, sentence, score = found or phrases.topics[match.name], match.text, weight
     return best, sentence, score
+
+
+def _is_question(example: str) -> bool:
+    return example.split()[0] in _ASKING
 
 
 def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
@@ -304,7 +326,7 @@ def _is_broken(seen: Analysis, size: int) -> bool:
     """Return whether an utterance breaks off: *wait, she is*."""
     words = [word for word in seen.tree.words if word.pos != "PUNCT"]
     return (
-        1 < size <= 2 * SHORT
+        1 < size <= SHORT
         and seen.question is None
         and words[-1].low in _UNENDING
         and not seen.text.rstrip().endswith((".", "!", "?"))

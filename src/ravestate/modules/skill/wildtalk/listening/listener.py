@@ -21,7 +21,7 @@ SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
 LONG, SHORT = 9, 3
 """The words of a request with a verb, and of one without, that names a performance."""
-BRIEF, BRIEFLY = 12, 6
+BRIEF, BRIEFLY = 12, 12
 """The characters of a sign of listening, and the answers after which it may come again."""
 STANCES = ("like", "curious", "cool")
 
