@@ -1,4 +1,4 @@
-"""The encoder: a sentence is encoded once, whoever asks for it."""
+"""The encoder: each sentence is encoded once, for all readers."""
 
 from __future__ import annotations
 
