@@ -25,7 +25,7 @@ PLAIN = 0.7
 """The confidence in a question that needs no second sign."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
-FELT, GLAD, AMAZED = 0.6, 0.8, 0.9
+FELT, GLAD, AMAZED = 0.65, 0.8, 0.9
 """The confidence in a sad feeling from which it decides, in another one, and in astonishment."""
 TURNED = 0.95
 """The confidence from which a glad feeling or a light moment ends a sad tone."""
@@ -33,7 +33,7 @@ CLOUDED = 0.85
 """The confidence from which a sad moment ends a glad tone."""
 ASKED = 0.8
 """The confidence in a request from which it is met."""
-FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.7
+FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
 """The words of a sentence that resembles many others, and the confidence that it needs."""
 PLAINLY = 12
 """The words of a statement about one thing."""
@@ -267,7 +267,8 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
         sad, beside = _is_sad(phrases, match), asking != "" and match.text not in asking
         if beside and not sad and match.score < TURNED:
             continue
-        found, few = phrases.moments.get(match.name), len(match.text.split()) <= 2
+        found, part = phrases.moments.get(match.name), match.text not in seen.sentences
+        few = len(match.text.split()) <= (FEW_WORDS if part else 2)
         if few and ((size > FEW_WORDS and not (sad and match.score >= SURE)) or match.score < SURE_OF_FEW):  # "sorry", "lol" decide nothing if more was said
             continue
         if match.score < TURNED and not beside and (asking != "") != _is_question(match.example):
