@@ -90,6 +90,54 @@ def test_a_farewell_at_the_end_wins(talk: Any) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    "text", ["the baby wakes as soon as I put her down", "my friend is late again", "he fell asleep on my arm"]
+)
+def test_nobody_is_mourned_without_a_word_for_death(text: str, begin: Callable[[int], Any]) -> None:
+    for seed in range(5):
+        talk = begin(seed)
+        talk.say(text)
+        assert talk.state.moment not in ("grief", "pet_died_child", "widowed", "old_friend_died")
+
+
+@pytest.mark.parametrize(
+    "text", ["the lamp is on the left side", "my aunt has a garden", "they put it there last week"]
+)
+def test_where_nothing_fits_it_gives_a_short_sign_of_listening(text: str, begin: Callable[[int], Any]) -> None:
+    signs = {line.text for line in material().plain["statement"].groups["say"]}
+    assert {begin(seed).say(text) for seed in range(5)} <= signs
+    assert len(signs) >= 30
+    assert not [sign for sign in signs if sign.endswith("?")]
+
+
+def test_a_sentence_that_breaks_off_gets_time(talk: Any) -> None:
+    broken = {line.text for line in material().plain["broken"].groups["say"]}
+    assert talk.say("wait she's") in broken
+    assert talk.say("hold on my") in broken
+
+
+@pytest.mark.parametrize(
+    ("text", "moment"),
+    [
+        ("is there some neural net behind your answers?", "has_language_model"),
+        ("are you just reading a script to me?", "is_scripted"),
+        ("did that make you laugh?", "can_you_laugh"),
+        ("are you storing everything I say?", "keeps_everything"),
+        ("woohoo!!!", "cheer"),
+        ("you might ask how my day was", "ask_my_day"),
+        ("why are you sorry, nobody has died", "your_mistake_hurts"),
+    ],
+)
+def test_it_reacts_to_words_about_itself_and_the_talk(text: str, moment: str, talk: Any) -> None:
+    said = talk.say(text)
+    assert said in {line.text for line in lines_of(material().moments[moment])}
+
+
+def test_a_sad_sentence_outweighs_a_farewell_that_it_resembles(talk: Any) -> None:
+    talk.say("I am at the end of my tether")
+    assert talk.state.tone == "sad"
+
+
 def test_after_a_wish_for_no_questions_it_asks_none(talk: Any) -> None:
     talk.say("no more questions please")
     assert not any(talk.say(text).endswith("?") for text in PLAIN)

@@ -19,9 +19,9 @@ from .tongue import is_nonsense, is_number, tongue_of
 
 SURE, MEANT = 0.8, 0.7
 """The confidence in a moment and an act from which they decide."""
-HALF, HALF_ASKED = 0.7, 0.62
+HALF, HALF_ASKED = 0.7, 0.68
 """The confidence in a moment that needs a second sign: a word in common with its example; and that in a question."""
-PLAIN = 0.7
+PLAIN = 0.75
 """The confidence in a question that needs no second sign."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
@@ -42,10 +42,38 @@ SHORT = 4
 ENDINGS = ("stop", "quiet")
 """Acts that are only taken for sure ones."""
 _CONTENT = ("NOUN", "VERB", "ADJ", "PROPN")
-_COMMON = frozenset(("be", "do", "have", "go", "get", "say", "tell", "know", "think", "want", "come", "make", "see", "take"))
-_ASKING = frozenset(("who", "what", "when", "where", "why", "which", "how", "whose", "do", "does", "did", "is", "are", "was", "can", "could", "will", "would", "should", "may", "have"))
+_COMMON = frozenset(
+    ("be", "do", "have", "go", "get", "say", "tell", "know", "think", "want", "come", "make", "see", "take")
+)
+_ASKING = frozenset(
+    (
+        "who",
+        "what",
+        "when",
+        "where",
+        "why",
+        "which",
+        "how",
+        "whose",
+        "do",
+        "does",
+        "did",
+        "is",
+        "are",
+        "was",
+        "can",
+        "could",
+        "will",
+        "would",
+        "should",
+        "may",
+        "have",
+    )
+)
 """Closed-class words that begin a question."""
-_UNENDING = frozenset(("and", "but", "or", "because", "if", "the", "a", "an", "my", "your", "is", "'s", "are", "'re", "'m", "to"))
+_UNENDING = frozenset(
+    ("and", "but", "or", "because", "if", "the", "a", "an", "my", "your", "is", "'s", "are", "'re", "'m", "to")
+)
 """Closed-class words that end no utterance."""
 _SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
 _THIRD = frozenset(("he", "she", "they"))
@@ -111,7 +139,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
-    starts_no = bool(seen.tree.words) and seen.tree.words[0].low in ("no", "nah", "nope", "not")
+    starts_no = bool(seen.tree.words) and seen.tree.words[0].low in ("no", "nah", "nope")
     choice = _choice_in(seen)
     tags = {
         kind: True,
@@ -136,7 +164,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "request": is_request(seen) and seen.question is None,
         "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
         and not statement.conditional,
-        "being": roles.being is not None,
         "broken": _is_broken(seen, size),
         "correcting": starts_no and verb and size > SHORT and bool(state.said) and seen.question is None
         and not (pending is not None and pending.closed),
@@ -173,7 +200,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[s
         "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
         "should": not polar and subject == "I" and bool(modal),
         "agree": polar and subject != "you" and asked is not None and asked.negated,
-        "you_think": polar and subject == "you" and any(word.dep == "ccomp" for word in seen.tree.words),
+        "you_think": polar and subject == "you" and asked is not None and asked.verb in ("think", "believe", "suppose"),
         "told": (not polar and "my" in low and subject != "I")
         or (subject == "I" and not modal and not polar and seen.question is not QuestionWord.FORM)
         or bool(low & {"remember", "my"} and low & {"remember", "know"}),
@@ -228,6 +255,7 @@ def _ranked(
         ranked.append((seen.feelings[feeling.name].score, feeling))
     for act in seen.acts.values():
         sad = feeling is not None and feeling.tone == "sad" and act.text == seen.feelings[feeling.name].text
+        sad = sad or (moment is not None and moment.tone == "sad" and score >= act.score and len(seen.sentences) == 1)
         leaves = act.name == "farewell" and act.text in seen.sentences[-1:] and not sad
         few = len(act.text.split()) <= FEW_WORDS
         least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
@@ -236,6 +264,8 @@ def _ranked(
         )
         if act.name in phrases.acts and act.score >= least and not beside:
             ranked.append((act.score + leaves, phrases.acts[act.name]))
+        elif act.name == "greeting" and act.score >= MEANT and not asking:  # better than nothing
+            ranked.append((0.0, phrases.acts[act.name]))
     return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
 
 
@@ -244,7 +274,9 @@ def asking_sentence(seen: Analysis) -> str:
     if seen.question is None or not seen.sentences:
         return ""
     marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
-    opened = [sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING]
+    opened = [
+        sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING
+    ]
     if not marked and not opened and seen.text.rstrip().endswith("!"):  # "oh, we won!"
         return ""
     return (marked or opened or seen.sentences)[-1]
@@ -269,7 +301,9 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
             continue
         found, part = phrases.moments.get(match.name), match.text not in seen.sentences
         few = len(match.text.split()) <= (FEW_WORDS if part else 2)
-        if few and ((size > FEW_WORDS and not (sad and match.score >= SURE)) or match.score < SURE_OF_FEW):  # "sorry", "lol" decide nothing if more was said
+        if few and (
+            (size > FEW_WORDS and not (sad and match.score >= SURE)) or match.score < SURE_OF_FEW
+        ):  # "sorry", "lol" decide nothing if more was said
             continue
         if match.score < TURNED and not beside and (asking != "") != _is_question(match.example):
             continue

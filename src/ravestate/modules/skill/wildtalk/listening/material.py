@@ -132,7 +132,9 @@ def _moments(name: str) -> dict[str, Moment]:
         groups = {group: _lines(lines, key) for group, lines in value.items() if group not in _NOT_GROUPS}
         words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
         lasts = int(value.get("lasts", LASTING))
-        found[key] = Moment(key, groups, value.get("tone", ""), lasts, tuple(value.get("examples", ())), words, value.get("heads", ""))
+        found[key] = Moment(
+            key, groups, value.get("tone", ""), lasts, tuple(value.get("examples", ())), words, value.get("heads", "")
+        )
     return found
 
 
