@@ -305,7 +305,11 @@ def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Mome
             (size > FEW_WORDS and not (sad and match.score >= SURE)) or match.score < SURE_OF_FEW
         ):  # "sorry", "lol" decide nothing if more was said
             continue
-        if match.score < TURNED and not beside and (asking != "") != _is_question(match.example):
+        if (
+            match.score < (TURNED if asking else CLOUDED)
+            and not beside
+            and (asking != "") != _is_question(match.example)
+        ):
             continue
         if found is not None and not has_head(phrases, found, seen):
             continue
