@@ -49,7 +49,7 @@ def knower() -> rs.Module:
 
 def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
     where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
-    chosen = {"confirm": False, "gap": 0.0, **settings}
+    chosen = {"confirm": False, "gap": 0.0, "turns": 0, **settings}
     return simulate(
         persqa,
         chatter(),

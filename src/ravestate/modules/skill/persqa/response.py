@@ -52,7 +52,15 @@ def respond_to(
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
     heard = replace(
-        user, talk=user.talk.listening(now, leave=meaning.leave, touched=meaning.touched, person=meaning.person)
+        user,
+        talk=user.talk.listening(
+            now,
+            leave=meaning.leave,
+            touched=meaning.touched,
+            person=meaning.person,
+            said=meaning.said,
+            moved=meaning.moved,
+        ),
     )
     question = heard.talk.question
     lapsed = question is None or question.topic != CONFIRM or question.turns > 1

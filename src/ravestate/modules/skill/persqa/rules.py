@@ -56,7 +56,10 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
-    topic = due(settings.topics, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
+    if now.moved:
+        return rs.Resign("the user has just shown a feeling, or joked")
+    wanted = settings.topics if now.turns >= settings.turns else [one for one in settings.topics if one == NAME]
+    topic = due(wanted, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
     if not topic:
         return rs.Resign("there is nothing left to ask")
     ctx[talk] = replace(now.asking(topic, ctx.now), asked=ctx.now)

@@ -6,6 +6,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
+from .told import Told
+
 FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
 
@@ -17,6 +19,9 @@ ENOUGH = 1_000
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
+
+LONGEST = 100
+"""The number of the user's statements that a conversation remembers."""
 
 CORRECTABLE = 2
 """The number of utterances during which "no, Bremen" corrects the last fact."""
@@ -91,6 +96,13 @@ class Talk:
     spoke: float = 0.0
     """Seconds from the beginning of the context to the user's last words."""
 
+    said: tuple[Told, ...] = ()
+    """The user's last statements of any kind, oldest first."""
+    turns: int = 0
+    """The number of the user's utterances."""
+    moved: bool = False
+    """Whether the last one shows a feeling, or jokes."""
+
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
         tries = {**self.tries, topic: self.tries.get(topic, 0) + 1}
@@ -101,7 +113,16 @@ class Talk:
         question = self.question
         return question if question and question.turns <= 1 and now - question.since <= within else None
 
-    def listening(self, now: float, *, leave: bool, touched: Collection[str] = (), person: str = "") -> Talk:
+    def listening(
+        self,
+        now: float,
+        *,
+        leave: bool = False,
+        touched: Collection[str] = (),
+        person: str = "",
+        said: tuple[Told, ...] = (),
+        moved: bool = False,
+    ) -> Talk:
         """Count an utterance of the user; `leave` means a goodbye."""
         question = replace(self.question, turns=self.question.turns + 1) if self.question and not leave else None
         return replace(
@@ -113,6 +134,9 @@ class Talk:
             spoke=now,
             touched=self.touched | set(touched),
             person=person or self.person,
+            said=(*self.said, *said)[-LONGEST:],
+            turns=self.turns + 1,
+            moved=moved,
         )
 
     def speaking(self) -> Talk:

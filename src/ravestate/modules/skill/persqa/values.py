@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import unicodedata
+
+from text_to_num import text2num  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
 
 from ravestate.modules import nlp
 
@@ -38,13 +41,14 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         sure: Whether the words before it introduce this kind: *my name is*, or the agent asked for it.
     """
     kind = topic.kind
-    text = re.sub(r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now)$", "", _trimmed(text), flags=re.IGNORECASE)
+    text = re.sub(r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now|by the way)$", "", _trimmed(text), flags=re.IGNORECASE)
     text = re.sub(f"^(?:{_LEADS.get(kind, '')})", "", text, flags=re.IGNORECASE)
     words = text.lower().split()
     if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
         return None
     if kind == "number":
-        return text if text.isdecimal() and 0 < int(text) < 120 else None
+        number = number_in(text)
+        return number if 0 < int(number or 0) < 120 else None
     named = kind in ("name", "people")
     never = WORDS["function"] | (WORDS["determiners"] if named else frozenset[str]())
     tells = any(unicodedata.category(letter)[0] in "L" or unicodedata.category(letter) == "So" for letter in text)
@@ -55,12 +59,23 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     return tidy(gerund(text, seen) if kind == "activity" else text, topic)
 
 
+def number_in(text: str) -> str:
+    """Return a whole number in digits: *7* for *seven*; empty for other words."""
+    if text.isdecimal():
+        return text
+    with contextlib.suppress(ValueError):
+        return str(text2num(text.lower(), "en"))
+    return ""
+
+
 def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: bool) -> bool:
     """Return whether words are of the kind of a topic; `determined` means that a determiner begins them."""
     kind = topic.kind
     if kind in ("activity", "thing"):
         return _DEICTIC.match(text) is None
     labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
+    if kind == "place" and " in " in text:  # Sendai in Japan
+        labels |= {entity.label for entity in seen.entities if text.endswith(f" in {entity.text}")}
     digits = any(map(str.isdigit, text))
     if (labels & _TIMES and not labels & _PLACES) or (digits and kind != "organisation"):
         return kind in ("work", "subject")
