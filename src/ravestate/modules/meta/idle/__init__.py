@@ -5,4 +5,16 @@ from __future__ import annotations
 from . import rules
 from .names import SORROWS, Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
 
-__all__ = ["SORROWS", "Settings", "asked", "bored", "hushed", "impatient", "module", "remarked", "rules", "sorrow", "unanswered"]
+__all__ = [
+    "SORROWS",
+    "Settings",
+    "asked",
+    "bored",
+    "hushed",
+    "impatient",
+    "module",
+    "remarked",
+    "rules",
+    "sorrow",
+    "unanswered",
+]

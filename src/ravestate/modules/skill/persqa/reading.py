@@ -246,9 +246,9 @@ class Reader:
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
-        if number := re.fullmatch(r"(\d+|[a-z -]+?)(?: years?(?: old)?| old)?", text.lower()) and number_in(text):
-            if not re.search(r"\b(?:weeks?|months?|days?)\b", said.object.text):
-                yield Link("age", object, value=number)
+        years = re.fullmatch(r"([\w -]+?)(?: years?(?: old)?| old)?", text.lower())
+        if years and (number := number_in(years[1])):
+            yield Link("age", object, value=number)
         elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
             yield Link(found[0], object.owner)
         elif object.head == "student":
@@ -257,7 +257,7 @@ class Reader:
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
         elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
             yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
-        elif text and not object.preposition and not object.of("I") and object.head != "old":
+        elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half"):
             yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))

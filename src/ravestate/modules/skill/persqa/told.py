@@ -80,6 +80,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         if said.subject.names or reader.noun(said.subject) or WORDS["kin"] & {said.subject.head}:
             owner = said.subject.owner if said.subject.head == "name" else None  # my wife's name is..., and she...
             last = (owner or said.subject).name or (owner or said.subject).text
+            last = last.removeprefix("ex ")
         elif said.subject.person == "I" and said.object.names and not said.object.preposition:
             last = said.object.names[0]
         if said.question or said.request or said.subject.person == "you":
@@ -96,9 +97,9 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
 
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return what the user told that their question asks for: *what does Jonas play*, *who is getting married?*."""
-    told, kind = list(dict.fromkeys(told)), reader.seen.question
+    told, kind = list({one.text: one for one in told}.values()), reader.seen.question
     for said in reader.seen.statements:
-        about = next((phrase for phrase in said.phrases if phrase.preposition in ("about", "of")), None)
+        about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
         if said.question and said.verb in _REMINDING and about and about.person == "other":
             return [one for one in told if _covers(one, re.findall(r"\w+", about.text), known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
@@ -111,7 +112,8 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     names = {part.lower() for one in told for part in f"{one.subject} {one.who}".split()} - {"i"}
     sure = mine or not names.isdisjoint(map(str.lower, words))
     being = asked.verb == "be" and kind == nlp.QuestionWord.OBJECT
-    fit = [one for one in told if kind not in _FIT or _FIT[kind].search(one.text)]
+    person = kind == nlp.QuestionWord.PERSON
+    fit = [one for one in told if kind not in _FIT or (person and one.who) or _FIT[kind].search(one.text)]
     exact = [
         one
         for one in fit
@@ -119,7 +121,11 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
         and _covers(one, words, known)
         and (asked.subject.person != "I" or one.subject == "I" or one.subject.startswith("my "))
         and (not being or (sure and one.verb.endswith("be")))
-        and (sure or (one.verb == asked.triple.predicate and len(words) > 1 and _covers(one, filter(None, subjects), known)))
+        and (
+            sure
+            or (one.who and person and asked.verb != "be")
+            or (one.verb == asked.triple.predicate and len(words) > 1 and _covers(one, filter(None, subjects), known))
+        )
     ]
     if exact:
         return [max(exact, key=lambda one: (one.verb == asked.triple.predicate, told.index(one)))]
@@ -207,4 +213,5 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
 def _returned(text: str) -> str:
     """Return the user's words as the agent says them: *your* for *my*."""
     text = re.sub(r"\b(i|we) was\b", r"\1 were", text, flags=re.IGNORECASE)
+    text = re.sub(r"^(?:An?|The|This|That|It|There|[SH]?he|They)\b", lambda found: found[0].lower(), text)
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())

@@ -107,7 +107,14 @@ class _Hearing:
             yesno = seen.yesno if self.fresh else None  # a yes to something else must not delete anything
             no = yesno and (yesno.no or yesno.unsure)
             return Meaning("forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing", leave=self.leave)
-        if self.waits and self.pending and not self.pending.turns and "refuse" in self.acts and self.of_speakers() and not self.sorry:
+        if (
+            self.waits
+            and self.pending
+            and not self.pending.turns
+            and "refuse" in self.acts
+            and self.of_speakers()
+            and not self.sorry
+        ):
             return Meaning("declined", topic=topic)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
@@ -125,7 +132,8 @@ class _Hearing:
         free = tuple(told_in(self.reader, self.talk.said)[0])
         aside = self.leave or asks
         if facts or free:
-            return Meaning("told", tuple(facts), topic, self.leave, aloud=bool(facts) and not aside and not self.sorry, free=free)
+            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # others console
+            return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
         if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
             return corrected
         if identity := self.identity():
@@ -265,7 +273,7 @@ class _Hearing:
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
 
 
-_CALM = frozenset(["astonishing", "boredom", "compliment"])
+_CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings after which the agent may ask about something else."""
 _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
 
