@@ -262,6 +262,8 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
     if not topic:  # no topic covers it
         return Response(say("recall_not", known), user)
     answers = {name: known[name] for name in (topic, *TOPICS[topic].besides) if known.get(name)}
+    if topic == "home" and not answers and known.get("origin"):  # the nearest that the agent knows
+        answers = {"origin": known["origin"]}
     if answers:
         right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)
         intent = "recall_name" if topic == NAME else "recall"

@@ -120,8 +120,8 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    Prefer the topic with the fewest tries, and of those the name, then the follow-up of the `last` topic, then one that the
-    user's words have touched.
+    Prefer the topic with the fewest tries. Of those, prefer the name, then the follow-up of the `last` topic, then one that
+    the user's words have touched.
 
     Args:
         wanted: Names of topics.

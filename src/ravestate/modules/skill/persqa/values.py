@@ -6,7 +6,7 @@ import contextlib
 import re
 import unicodedata
 
-from text_to_num import text2num  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
+import text_to_num  # pyright: ignore[reportMissingTypeStubs]
 
 from ravestate.modules import nlp
 
@@ -74,7 +74,7 @@ def number_in(text: str) -> str:
     if text.isdecimal():
         return text
     with contextlib.suppress(ValueError):
-        return str(text2num(text.lower(), "en"))
+        return str(text_to_num.text2num(text.lower(), "en"))  # pyright: ignore[reportUnknownArgumentType, reportUnknownMemberType]
     return ""
 
 
