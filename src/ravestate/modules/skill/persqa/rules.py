@@ -153,7 +153,9 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
             users.add(key, after.name)
 
 
-@module.rule(when=reply, writes=verbaliser.intent, weight=1.6)  # what have you learnt about me: not the agent's own life
+@module.rule(
+    when=reply, writes=verbaliser.intent, weight=1.6
+)  # what have you learnt about me: not the agent's own life
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)

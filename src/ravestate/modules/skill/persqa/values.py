@@ -6,8 +6,6 @@ import contextlib
 import re
 import unicodedata
 
-import text_to_num  # pyright: ignore[reportMissingTypeStubs]
-
 from ravestate.modules import nlp
 
 from .kinds import FITTING, likeness
@@ -73,6 +71,8 @@ def number_in(text: str) -> str:
     """Return a whole number in digits: *7* for *seven*; empty for other words."""
     if text.isdecimal():
         return text
+    import text_to_num  # pyright: ignore[reportMissingTypeStubs]
+
     with contextlib.suppress(ValueError):
         return str(text_to_num.text2num(text.lower(), "en"))  # pyright: ignore[reportUnknownArgumentType, reportUnknownMemberType]
     return ""
