@@ -96,6 +96,21 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
     assert look() == {"Ada": {}}
 
 
+@pytest.mark.parametrize(
+    ("told", "wish", "question"),
+    [
+        ("I live in Dundee", "forget where I live", "where do I live?"),
+        ("Jonas plays the violin", "forget Jonas", "what does Jonas play, do you remember?"),
+    ],
+)
+def test_what_is_forgotten_is_not_found_in_the_talk(file: Path, told: str, wish: str, question: str) -> None:
+    with agent(file, knower()) as sim:
+        sim.say("my name is ada")
+        sim.say(told)
+        sim.say(wish)
+        assert not {"Dundee", "violin"} & set(answers(sim, question).strip(".").split())
+
+
 def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")

@@ -292,7 +292,7 @@ class Reader:
                     yield topic, self._fitting(topic, phrase.names)
         words = self.tree.words
         if here := _HERE.search(self.tree.text):
-            yield NAME, self._fitting(NAME, [here[1]], sure=False)
+            yield NAME, self._fitting(NAME, [here[1]], sure=here[1].istitle())
         for before, word in itertools.pairwise(words):
             own = (before.low, word.low) == ("my", "name")  # my name's Tom
             me = before.lemma == "call" and word.low == "me"

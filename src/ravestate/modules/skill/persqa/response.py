@@ -293,9 +293,11 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
                 left[topic] = kept
             if before != kept:
                 gone[topic] = without(before, kept)
-    if not gone and len(told) == len(user.told):
+    values = [value.lower() for values in gone.values() for value in values]
+    said = (one for one in user.talk.said if one.key not in free and not any(v in one.text.lower() for v in values))
+    if not gone and not meaning.free:
         return Response(say("strike_unknown", user.known), user)
-    user = replace(user, facts=left, talk=user.talk.striking(gone), told=told)
+    user = replace(user, facts=left, talk=replace(user.talk.striking(gone), said=tuple(said)), told=told)
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, None, memory)

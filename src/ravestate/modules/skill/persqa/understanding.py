@@ -253,7 +253,7 @@ class _Hearing:
             facts = facts or self.reader.facts() or [fact for fact in [self.reader.asks()] if fact]
             names = {object.text or "-", *(name for f in facts for name in f.values or self.known.get(f.topic, ()))}
             again = {one.key for one in told_in(self.reader)[0]}
-            free = tuple(one for one in self.told if {one.subject, one.object} & names or one.key in again)
+            free = tuple(one for one in (*self.told, *self.talk.said) if {one.subject, one.object} & names or one.key in again)
             if facts or free or object.of("I") or any(one.subject.person == "I" for one in self.seen.statements):
                 return Meaning("strike", tuple(facts), free=free)
         match = self.seen.act("forget_me")
