@@ -905,7 +905,7 @@ def test_nothing_heavy_is_imported_with_the_module() -> None:
 @pytest.mark.parametrize(
     ("text", "name"),
     [
-        ("Heyho! Udo here, the loudest man of the village", "Udo"),
+        ("Hello! Greta here, the loudest woman of the village", "Greta"),
         ("im jasmin btw", "Jasmin"),
         ("Good evening. I am Li Wenyan, mining engineer", "Li Wenyan"),
         ("im karl. no wait im claudia", "Claudia"),

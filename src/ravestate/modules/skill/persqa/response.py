@@ -14,7 +14,7 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
-from .talk import CONFIRM, FORGET, TRIES, Talk
+from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .topics import NAME, TOPICS, Fact, in_order
 from .understanding import EVERYTHING, Meaning
 from .wording import among, asking, clauses, joined, learned, memorable, same, say, stating, without
@@ -29,12 +29,10 @@ class Response:
     answer: Intent | None
     """The reply; None if there is none."""
     user: Acquaintance
-    """The user after the utterance."""
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
     """A task with memory (None where there is none) that comes before the reply. It returns the final response.
     It raises nothing: ``talk.trouble`` has a failure of memory."""
     forgotten: bool = False
-    """Whether the user has been forgotten."""
 
 
 def respond_to(
@@ -51,17 +49,13 @@ def respond_to(
     """
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
-    heard = replace(
-        user,
-        talk=user.talk.listening(
-            now,
-            leave=meaning.leave,
-            touched=meaning.touched,
-            person=meaning.person,
-            said=meaning.said,
-            moved=meaning.moved,
-        ),
-    )
+    talk = user.talk
+    noted = {
+        "touched": talk.touched | meaning.touched,
+        "said": (*talk.said, *meaning.said)[-LONGEST:],
+        "moved": meaning.moved,
+    }
+    heard = replace(user, talk=talk.listening(now, leave=meaning.leave, person=meaning.person, **noted))
     question = heard.talk.question
     lapsed = question is None or question.topic != CONFIRM or question.turns > 1
     if user.talk.doubt and lapsed and meaning.kind not in ("vouched", "told"):

@@ -59,7 +59,6 @@ class Told:
     by: str = ""
     """The name of the person who told it; empty while it is not known."""
     at: datetime | None = None
-    """The moment when they told it."""
     who: str = field(default="", compare=False)
     """The person whom a later *he* or *she* means."""
 

@@ -47,13 +47,10 @@ class Meaning:
     """The meaning of an utterance."""
 
     kind: Kind
-    """The act of the user."""
     facts: tuple[Fact, ...] = ()
-    """The facts that they tell, or ask for."""
     topic: str = ""
     """The topic of the question that they answer."""
     leave: bool = False
-    """Whether they say goodbye."""
     aloud: bool = True
     """Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns anything
     else that they say."""
@@ -64,7 +61,6 @@ class Meaning:
     person: str = ""
     """The topic of the relative whom they mention."""
     said: tuple[Told, ...] = ()
-    """All their statements."""
     moved: bool = False
     """Whether they show a feeling, or joke."""
 
@@ -253,7 +249,9 @@ class _Hearing:
             facts = facts or self.reader.facts() or [fact for fact in [self.reader.asks()] if fact]
             names = {object.text or "-", *(name for f in facts for name in f.values or self.known.get(f.topic, ()))}
             again = {one.key for one in told_in(self.reader)[0]}
-            free = tuple(one for one in (*self.told, *self.talk.said) if {one.subject, one.object} & names or one.key in again)
+            free = tuple(
+                one for one in (*self.told, *self.talk.said) if {one.subject, one.object} & names or one.key in again
+            )
             if facts or free or object.of("I") or any(one.subject.person == "I" for one in self.seen.statements):
                 return Meaning("strike", tuple(facts), free=free)
         match = self.seen.act("forget_me")
