@@ -21,7 +21,7 @@ def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path, backend: st
 
 
 def test_example_2_an_answer_is_asked_for_stored_and_known_after_a_restart(tmp_path: Path) -> None:
-    with Conversation(tmp_path, {"persqa": {"topics": ["home"]}}) as talk:
+    with Conversation(tmp_path, {"persqa": {"topics": ["home"], "turns": 0}}) as talk:
         assert spoken_by(talk.say("what is your favorite animal")) in (["genqa"], ["agentqa"])
         asked = [line.text for line in talk.silence(60.0) if line.module == "persqa"]
         assert any("home" in text or "live" in text or "town" in text for text in asked)
@@ -38,12 +38,16 @@ def test_example_2_an_answer_is_asked_for_stored_and_known_after_a_restart(tmp_p
 
 @pytest.mark.parametrize("backend", ["auto", "listen"])
 def test_example_3_a_greeting_the_agent_and_its_feelings(tmp_path: Path, backend: str) -> None:
-    with Conversation(tmp_path, {"emotion": {"shy": 1.0}, "wildtalk": {"backend": backend}}) as talk:
+    settings = {"emotion": {"shy": 1.0}, "wildtalk": {"backend": backend}, "persqa": {"topics": []}}
+    with Conversation(tmp_path, settings) as talk:
         assert spoken_by(talk.say("Hello")) == ["hibye"]
         assert spoken_by(talk.say("how are you"))[:1] == ["agentqa"]
         said = talk.say("What are you up to today", 5.0)
         assert spoken_by(said)[0] == "wildtalk"
         assert "emotion" in spoken_by(said)
+        for text in ("I see", "That sounds good", "It is Sunday"):  # the agent offers nothing in the first six turns
+            talk.say(text)
+        assert "agentqa" in spoken_by(talk.silence(120.0))
         assert spoken_by(talk.say("How old are you?"))[:1] == ["agentqa"]
 
 

@@ -250,7 +250,8 @@ def test_it_disturbs_no_quiet() -> None:
     async def ask(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = f"bored at {ctx.now:g} s"
 
-    with calm(bored, module()) as sim:
+    pace = {"emotion": CALM, "idle": {"bored_after": 5.0}}
+    with simulate(emotion, bored, module(), settings=pace) as sim:
         sim.say("You are so clever!")
         sim.advance(5.0)
         assert sim.said[2:] == ["bored at 5 s"]

@@ -92,12 +92,24 @@ def test_a_user_who_was_greeted_hears_no_second_hello() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "intent"), [("good night", "goodnight"), ("I'm going to bed", "goodnight"), ("see you later", "goodbye")]
+    ("text", "intent"),
+    [
+        ("good night", "goodnight"),
+        ("I'm going to bed", "goodnight"),
+        ("see you later", "goodbye"),
+    ],
 )
 def test_a_user_who_goes_to_bed_hears_good_night(text: str, intent: str) -> None:
     with simulate(hibye) as sim:
         sim.say(text)
         assert only(sim) in phrases(intent)
+
+
+@pytest.mark.parametrize("text", ["I'm at the end of my rope", "the moon is out", "they let him go"])
+def test_other_ends_are_no_farewell(text: str) -> None:
+    with simulate(hibye) as sim:
+        sim.say(text)
+        assert sim.said == []
 
 
 def test_a_sad_user_hears_no_cheerful_goodbye() -> None:

@@ -49,7 +49,7 @@ def knower() -> rs.Module:
 
 def agent(file: Path | None, *others: Any, **settings: Any) -> Simulation:
     where: dict[str, Any] = {"path": file} if file is not None else {"path": "/dev/null/no/memory.lbug"}
-    chosen = {"confirm": False, "gap": 0.0, **settings}
+    chosen = {"confirm": False, "gap": 0.0, "turns": 0, **settings}
     return simulate(
         persqa,
         chatter(),
@@ -900,3 +900,65 @@ def test_nothing_heavy_is_imported_with_the_module() -> None:
     code = "import sys; from ravestate.modules import persqa; persqa.module; print('spacy' in sys.modules, 'ladybug' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False False\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("Hello! Greta here, the loudest woman of the village", "Greta"),
+        ("im jasmin btw", "Jasmin"),
+        ("Good evening. I am Li Wenyan, mining engineer", "Li Wenyan"),
+        ("im karl. no wait im claudia", "Claudia"),
+        ("my name is marlies", "Marlies"),
+    ],
+)
+def test_a_name_beside_something_else(text: str, name: str) -> None:
+    with agent(None) as sim:
+        sim.say(text)
+        node = sim.read(persqa.who)
+        assert node is not None and node["name"] == name
+
+
+@pytest.mark.parametrize("text", ["nobody here", "he's called Jonathan and he plays the harp", "I'm lost here"])
+def test_no_name_of_the_users(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        sim.say(text)
+        assert sim.read(persqa.who) is None
+
+
+@pytest.mark.parametrize("text", ["nobody rang today either...", "I'm afraid of her face when I say it."])
+def test_sorrow_is_no_refusal(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        assert asked(sim) == "name"
+        assert answers(sim, text) == "I see."
+
+
+def test_somebody_elses_girlfriend_is_no_partner_of_the_user(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("my ex Ralf came by and hes got a new girlfriend called Tamara")
+        assert dict(sim.read(persqa.facts)) == {}
+
+
+def test_an_age_in_words(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("im seven and a half")
+        assert dict(sim.read(persqa.facts)) == {"age": ("7",)}
+
+
+def test_others_console(file: Path) -> None:
+    with agent(file) as sim:
+        assert answers(sim, "my son Fiete has a bad fever") == "I see."
+        assert dict(sim.read(persqa.facts)) == {"son": ("Fiete",)}
+
+
+def test_only_the_name_is_asked_for_in_the_first_turns_and_nothing_after_a_feeling(file: Path) -> None:
+    with agent(file, turns=3) as sim:
+        assert asked(sim) == "name"
+        sim.say("it is raining")
+        sim.say("my name is ada")
+        sim.advance(60.0)
+        assert sim.said[-1] != "" and sim.read(persqa.talk).question is None
+        sim.say("my dog died yesterday")
+        sim.advance(60.0)
+        assert sim.read(persqa.talk).question is None

@@ -57,6 +57,15 @@ MEANT = [
     ("my presentation is on Thursday", "when is my presentation?", "your presentation is on Thursday"),
     ("I drive for Transkorn", "who do I drive for, do you remember?", "you drive for Transkorn"),
     ("my friend Enno broke his arm", "who broke his arm, do you remember?", "Enno broke his arm"),
+    ("my daughter Nele is six weeks old", "how old is Nele, do you remember?", "Nele is six weeks old"),
+    ("my company makes pumps in Kassel", "Where does my company make pumps?", "your company makes pumps in Kassel"),
+    ("A tuba has four valves", "How many valves does a tuba have?", "a tuba has four valves"),
+    ("I met Jonas in the swimming pool. He plays the harp", "what does he play again?", "Jonas plays the harp"),
+    ("I met Jonas in the swimming pool. He plays the harp", "and where did I meet him?", "in the swimming pool"),
+    ("my sister Mona came, and she has just bought a boat", "who has the boat then?", "Mona has just bought a boat"),
+    ("my ex Ralf came by. he used to be a baker", "what was ralf before?", "Ralf used to be a baker"),
+    ("I do not live in Lund", "What have I told you about Lund?", "you do not live in Lund"),
+    ("I am a potter", "do you still know what I do?", "you are a potter"),
 ]
 
 
@@ -73,6 +82,8 @@ def test_a_question_that_nothing_answers_is_left_to_others(file: Path) -> None:
         sim.say("my presentation is on Thursday")
         assert answers(sim, "can I ask you something?") == "I know it."
         assert "Thursday" not in answers(sim, "when does my train leave?")
+        sim.say("I like the capital of Peru")
+        assert answers(sim, "what is the capital of Peru?") == "I know it."
 
 
 @pytest.mark.parametrize("text", ["forget Jonas", "forget that Jonas plays the violin"])
@@ -83,6 +94,21 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
         assert meant(answers(sim, text), "strike")
         assert dict(sim.read(persqa.told)) == {}
     assert look() == {"Ada": {}}
+
+
+@pytest.mark.parametrize(
+    ("told", "wish", "question"),
+    [
+        ("I live in Dundee", "forget where I live", "where do I live?"),
+        ("Jonas plays the violin", "forget Jonas", "what does Jonas play, do you remember?"),
+    ],
+)
+def test_what_is_forgotten_is_not_found_in_the_talk(file: Path, told: str, wish: str, question: str) -> None:
+    with agent(file, knower()) as sim:
+        sim.say("my name is ada")
+        sim.say(told)
+        sim.say(wish)
+        assert not {"Dundee", "violin"} & set(answers(sim, question).strip(".").split())
 
 
 def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, look: Look) -> None:

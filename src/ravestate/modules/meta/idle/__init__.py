@@ -3,6 +3,18 @@
 from __future__ import annotations
 
 from . import rules
-from .names import Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
+from .names import SORROWS, Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
 
-__all__ = ["Settings", "asked", "bored", "hushed", "impatient", "module", "remarked", "rules", "sorrow", "unanswered"]
+__all__ = [
+    "SORROWS",
+    "Settings",
+    "asked",
+    "bored",
+    "hushed",
+    "impatient",
+    "module",
+    "remarked",
+    "rules",
+    "sorrow",
+    "unanswered",
+]

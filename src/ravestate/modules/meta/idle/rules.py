@@ -10,13 +10,11 @@ from ravestate.language.feelings import feelings
 from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
-from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
+from .names import SORROWS, Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
 """The last characters of the agent's words in which a question counts."""
 
-SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
-"""Feelings of the user's in which a remark out of boredom would hurt."""
 SORROW_LASTS = 6
 """The user's utterances for which sorrow counts, the one with it included."""
 

@@ -31,6 +31,8 @@ class Settings(rs.Settings):
     """Topics to ask about, in this order. The agent learns about the others as well, if the user mentions them."""
     gap: Annotated[float, Field(ge=0)] = 180.0
     """Seconds from one question in a silence to the next."""
+    turns: Annotated[int, Field(ge=0)] = 3
+    """The user's first utterances, after which the agent asks for no more than their name."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True

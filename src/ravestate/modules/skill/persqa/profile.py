@@ -14,7 +14,6 @@ class News:
     """The result of learning."""
 
     facts: Facts
-    """All facts."""
     topics: tuple[str, ...]
     """The topics that the user told about."""
     changed: frozenset[str]

@@ -13,7 +13,7 @@ from ravestate.modules.meta.nlp.tree import Word
 
 from .kinds import likeness
 from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
-from .values import gerund, is_gerund, value_of
+from .values import gerund, is_gerund, number_in, value_of
 from .wording import Facts, among, without
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
@@ -25,6 +25,10 @@ _NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "na
 """Words between a relative and their name: *my mother's name is Anna*."""
 _TURN = re.compile(r", (?:and )?(not) |,? but (?!i\b)", re.IGNORECASE)
 _NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
+_HERE = re.compile(r"^(?:\w+[.!,;] )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)", re.IGNORECASE)
+_OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.IGNORECASE)
+_INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
+"""Words before a correction of the speaker's own: *I'm Voss, no wait, I'm Claudia*."""
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 
@@ -77,6 +81,8 @@ class Reader:
                     if values or link.phrase is None or _ANY.match(link.phrase.text):
                         gone.setdefault(link.topic, values)
                 elif not over:
+                    if values and _INSTEAD.search(self.tree.text):
+                        told.pop(link.topic, None)
                     _add(told, link.topic, values)
         for topic, values in self._named():
             if topic not in gone and (topic != NAME or topic not in told):
@@ -92,6 +98,8 @@ class Reader:
         """Return whether a negation covers a phrase: *Bonn* in *I live in Ulm, not in Bonn* and *I don't live in Bonn, but
         in Ulm*, but not *Ulm*."""
         text, turn = self.tree.text, _TURN.search(self.tree.text)
+        if not _NOT.search(_OPENING_NO.sub("", text)):
+            return False
         twice = turn and turn[1] and _NOT.search(text[: turn.start()])
         if turn is None or twice or not said.negated or phrase is None:
             return said.negated
@@ -108,6 +116,7 @@ class Reader:
             if unknown is not None and said.subject.person == "I":
                 asked = f"{_predicate(said)} {unknown.name}"
                 keys = (*(f"{asked} {phrase.head}" for phrase in said.phrases), asked)
+                keys = (*keys, f"know {asked}") if self.words & {"know", "remember"} else keys
                 if topic := self._asked_noun(said) or next(filter(None, map(ASKS.get, keys)), ""):
                     return Fact(topic)
             for link in self.links(said):
@@ -237,8 +246,9 @@ class Reader:
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
-        if number := re.fullmatch(r"(\d+)(?: years?(?: old)?| old)?", text):
-            yield Link("age", object, value=number[1])
+        years = re.fullmatch(r"([\w -]+?)(?: years?(?: old)?| old)?", text.lower())
+        if years and (number := number_in(years[1])):
+            yield Link("age", object, value=number)
         elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
             yield Link(found[0], object.owner)
         elif object.head == "student":
@@ -247,7 +257,7 @@ class Reader:
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
         elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
             yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
-        elif text and not object.preposition and not object.of("I") and object.head != "old":
+        elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half"):
             yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
@@ -281,10 +291,15 @@ class Reader:
                 if phrase.names and mine and not _is_former(phrase.text) and (topic := self.relative(phrase.head)):
                     yield topic, self._fitting(topic, phrase.names)
         words = self.tree.words
+        if here := _HERE.search(self.tree.text):
+            sure = any(word.text == here[1] and word.pos == "PROPN" for word in words)
+            yield NAME, self._fitting(NAME, [here[1]], sure=sure)
         for before, word in itertools.pairwise(words):
             own = (before.low, word.low) == ("my", "name")  # my name's Tom
             me = before.lemma == "call" and word.low == "me"
             topic = NAME if own or me else self.relative(word.lemma)
+            if topic not in ("", NAME) and self._is_anothers(word):
+                continue
             passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
             first = words[word.index + 1 + len(passed) :][:1]
             named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
@@ -294,6 +309,13 @@ class Reader:
             )
             if topic and first and named and said:
                 yield topic, self._fitting(topic, map(self._run, (*first, *self._joined(first[0]))))
+
+    def _is_anothers(self, word: Word) -> bool:
+        """Return whether a relative is somebody else's: *he's got a new girlfriend called Tamara*."""
+        if any(child.low in ("my", "our") for child in self.tree.children(word, "poss")):
+            return False
+        having = [said for said in self.seen.statements if said.object.head == word.lemma]
+        return any(said.subject.person == "other" and said.subject.text.lower() != "it" for said in having)
 
     def relative(self, noun: str) -> str:
         """Return the topic of a relative, a friend or a pet; empty for other nouns."""
@@ -324,7 +346,7 @@ class Reader:
         """Return a phrase with its article, as in the utterance."""
         inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
         articles = r"(?:(?:the|an?|our|this|that|these|those)\s+)?"
-        name = r"(?:-[\w-]+|\s(?:am|an der|upon|de|del)\s\w+)*"  # Stoke-on-Trent, Frankfurt am Main
+        name = r"(?:-[\w-]+|\s&\s\w+|\s(?:am|an der|upon|de|del)\s\w+)*"  # Stoke-on-Trent, Frankfurt am Main
         found = re.search(rf"(?<![\w']){articles}{inner}(?!\w){name}", self.tree.text, re.IGNORECASE)
         return found[0] if found else phrase.name or phrase.text
 

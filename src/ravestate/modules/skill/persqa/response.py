@@ -14,7 +14,7 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
-from .talk import CONFIRM, FORGET, TRIES, Talk
+from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .topics import NAME, TOPICS, Fact, in_order
 from .understanding import EVERYTHING, Meaning
 from .wording import among, asking, clauses, joined, learned, memorable, same, say, stating, without
@@ -29,12 +29,10 @@ class Response:
     answer: Intent | None
     """The reply; None if there is none."""
     user: Acquaintance
-    """The user after the utterance."""
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
     """A task with memory (None where there is none) that comes before the reply. It returns the final response.
     It raises nothing: ``talk.trouble`` has a failure of memory."""
     forgotten: bool = False
-    """Whether the user has been forgotten."""
 
 
 def respond_to(
@@ -51,9 +49,13 @@ def respond_to(
     """
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
-    heard = replace(
-        user, talk=user.talk.listening(now, leave=meaning.leave, touched=meaning.touched, person=meaning.person)
-    )
+    talk = user.talk
+    noted = {
+        "touched": talk.touched | meaning.touched,
+        "said": (*talk.said, *meaning.said)[-LONGEST:],
+        "moved": meaning.moved,
+    }
+    heard = replace(user, talk=talk.listening(now, leave=meaning.leave, person=meaning.person, **noted))
     question = heard.talk.question
     lapsed = question is None or question.topic != CONFIRM or question.turns > 1
     if user.talk.doubt and lapsed and meaning.kind not in ("vouched", "told"):
@@ -254,6 +256,8 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
     if not topic:  # no topic covers it
         return Response(say("recall_not", known), user)
     answers = {name: known[name] for name in (topic, *TOPICS[topic].besides) if known.get(name)}
+    if topic == "home" and not answers and known.get("origin"):  # the nearest that the agent knows
+        answers = {"origin": known["origin"]}
     if answers:
         right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)
         intent = "recall_name" if topic == NAME else "recall"
@@ -283,9 +287,11 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
                 left[topic] = kept
             if before != kept:
                 gone[topic] = without(before, kept)
-    if not gone and len(told) == len(user.told):
+    values = [value.lower() for values in gone.values() for value in values]
+    said = (one for one in user.talk.said if one.key not in free and not any(v in one.text.lower() for v in values))
+    if not gone and not meaning.free:
         return Response(say("strike_unknown", user.known), user)
-    user = replace(user, facts=left, talk=user.talk.striking(gone), told=told)
+    user = replace(user, facts=left, talk=replace(user.talk.striking(gone), said=tuple(said)), told=told)
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, None, memory)

@@ -56,7 +56,10 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
-    topic = due(settings.topics, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
+    if now.moved:
+        return rs.Resign("the user has just shown a feeling, or joked")
+    wanted = settings.topics if now.turns >= settings.turns else [one for one in settings.topics if one == NAME]
+    topic = due(wanted, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
     if not topic:
         return rs.Resign("there is nothing left to ask")
     ctx[talk] = replace(now.asking(topic, ctx.now), asked=ctx.now)
@@ -150,7 +153,9 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
             users.add(key, after.name)
 
 
-@module.rule(when=reply, writes=verbaliser.intent)
+@module.rule(
+    when=reply, writes=verbaliser.intent, weight=1.6
+)  # what have you learnt about me: not the agent's own life
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)

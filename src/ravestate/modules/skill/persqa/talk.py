@@ -6,6 +6,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
+from .told import Told
+
 FORGET = "forget"
 """The topic of the question whether the user really wants to be forgotten."""
 
@@ -17,6 +19,9 @@ ENOUGH = 1_000
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
+
+LONGEST = 100
+"""The number of the user's statements that a conversation remembers."""
 
 CORRECTABLE = 2
 """The number of utterances during which "no, Bremen" corrects the last fact."""
@@ -32,7 +37,6 @@ class Question:
     turns: int = 0
     """The number of utterances since, without an answer."""
     heard: bool = False
-    """Whether it has been said."""
     spoken_over: bool = False
     """Whether the agent has said something else since, unasked: a mere no may answer that."""
 
@@ -47,9 +51,7 @@ class Talk:
     """The state of the conversation."""
 
     question: Question | None = None
-    """The open question."""
     tries: Mapping[str, int] = field(default_factory=dict[str, int])
-    """The number of questions about each topic."""
     closed: frozenset[str] = frozenset()
     """Topics that this conversation does not ask about any more."""
     ignored: int = 0
@@ -59,13 +61,11 @@ class Talk:
     last: str = ""
     """The topic that was learnt or mentioned last."""
     latest: tuple[str, ...] = ()
-    """Its values."""
     age: int = 0
     """The number of utterances since then."""
     met: bool = False
     """Whether memory was asked about the user."""
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """The facts that memory had."""
     once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """All values of this conversation, also those that no longer hold."""
     newcomer: bool = False
@@ -91,6 +91,12 @@ class Talk:
     spoke: float = 0.0
     """Seconds from the beginning of the context to the user's last words."""
 
+    said: tuple[Told, ...] = ()
+    """The user's last statements of any kind, oldest first."""
+    turns: int = 0
+    moved: bool = False
+    """Whether the last one shows a feeling, or jokes."""
+
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
         tries = {**self.tries, topic: self.tries.get(topic, 0) + 1}
@@ -101,19 +107,11 @@ class Talk:
         question = self.question
         return question if question and question.turns <= 1 and now - question.since <= within else None
 
-    def listening(self, now: float, *, leave: bool, touched: Collection[str] = (), person: str = "") -> Talk:
+    def listening(self, now: float, *, leave: bool = False, person: str = "", **noted: Any) -> Talk:
         """Count an utterance of the user; `leave` means a goodbye."""
         question = replace(self.question, turns=self.question.turns + 1) if self.question and not leave else None
-        return replace(
-            self,
-            question=question,
-            ignored=0,
-            age=self.age + 1,
-            quiet=leave,
-            spoke=now,
-            touched=self.touched | set(touched),
-            person=person or self.person,
-        )
+        counts = {"ignored": 0, "age": self.age + 1, "turns": self.turns + 1, "quiet": leave, "spoke": now}
+        return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self) -> Talk:
         """Count an utterance of the agent: its question, an answer to the user, or something else."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from ravestate.errors import PlatformError
@@ -14,9 +14,9 @@ from ravestate.modules import nlp
 
 from .answers import spelled_out
 from .reading import Reader
-from .topics import NAME, TOPICS, WORDS
+from .topics import NAME, NOUNS, TOPICS, WORDS
 from .values import value_of
-from .wording import Facts, among
+from .wording import Facts
 
 _SAID_BACK = {
     "i": "you", "me": "you", "my": "your", "mine": "yours", "myself": "yourself", "am": "are", "'m": "are",
@@ -32,6 +32,15 @@ _FIT = {
     nlp.QuestionWord.PLACE: re.compile(r"\b(?:in|at|to|from|near|on) \w"),
 }
 """The form of what answers a question for a person, a time or a place."""
+_FIT[nlp.QuestionWord.AMOUNT] = re.compile(
+    r"\d|\b(?:half|(?:one|two|three|four|five|six|seven|eight|nine)(?:teen|ty)?|ten|eleven|twelve|(?:thir|fif|eigh)teen|"
+    r"(?:twen|thir|for|fif|eigh)ty|hundred|thousand|many|few|no)\b",
+    re.IGNORECASE,
+)
+_CONTENT = frozenset(["NOUN", "PROPN", "ADJ", "VERB", "NUM"])
+_MINE = frozenset(["i", "my", "me", "we", "our", "remember", "again", "he", "she", "him", "her", "his"])
+_REMINDING = frozenset(["tell", "say", "mention", "know", "learn", "remember"])
+_LABEL = re.compile(r"^be (?:called|named)$")
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
 
@@ -50,7 +59,8 @@ class Told:
     by: str = ""
     """The name of the person who told it; empty while it is not known."""
     at: datetime | None = None
-    """The moment when they told it."""
+    who: str = field(default="", compare=False)
+    """The person whom a later *he* or *she* means."""
 
     @property
     def key(self) -> str:
@@ -58,53 +68,86 @@ class Told:
         return f"{self.subject} / {self.verb} / {self.object}".lower()
 
 
-def told_in(reader: Reader) -> list[Told]:
-    """Return the free statements of an utterance."""
-    found: list[Told] = []
-    last = ""
+def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
+    """Return the free statements of an utterance, and all its statements. *He* is the person named last, perhaps `before`."""
+    free: list[Told] = []
+    heard: list[Told] = []
+    last = next((one.who for one in reversed(before) if one.who), "")
     for said in reader.seen.statements:
-        subject = last if said.subject.text.lower() in ("he", "she", "they") else _about(reader, said)
-        if said.subject.names or reader.noun(said.subject):
+        he = said.subject.text.lower() in ("he", "she", "they") and not _LABEL.search(said.triple.predicate)
+        subject = last if he else _about(reader, said)
+        if said.subject.names or reader.noun(said.subject) or WORDS["kin"] & {said.subject.head}:
             owner = said.subject.owner if said.subject.head == "name" else None  # my wife's name is..., and she...
             last = (owner or said.subject).name or (owner or said.subject).text
-        if subject and _is_worth_keeping(reader, said):
-            found.append(Told(subject, said.triple.predicate, said.object.text, _retold(reader, said)))
-    return found
+            last = last.removeprefix("ex ")
+        elif said.subject.person == "I" and said.object.names and not said.object.preposition:
+            last = said.object.names[0]
+        if said.question or said.request or said.subject.person == "you":
+            continue
+        text = _retold(reader, said)
+        if he and last:
+            text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)
+        one = Told(subject or said.subject.text, said.triple.predicate, said.object.text, text, who=last)
+        heard.append(one)
+        if subject and (not he or last in [one.who for one in heard[:-1]]) and _is_worth_keeping(reader, said):
+            free.append(one)
+    return free, heard
 
 
-def answers_in(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
-    """Return what answers the user's question: *what does Jonas play*, *where does my sister live*."""
-    told = list(told)
-    for said in filter(lambda one: one.question, reader.seen.statements):
-        subject, object = said.subject, said.object.text if isinstance(said.triple.object, str) else ""
-        # The user may have told about Rosa, or about their sister.
-        names = (
-            ("I",) if subject.person == "I" else (subject.text, *subject.names, *known.get(reader.noun(subject), ()))
-        )
-        names = names if isinstance(said.triple.subject, str) else ()
-        same = (one for one in told if one.verb == said.triple.predicate and (names or object))
-        same = (one for one in same if not names or among(one.subject, names))
-        if found := [one for one in same if not object or among(one.object, (object,))]:
-            return found
-    return []
-
-
-def recalled(reader: Reader, told: Iterable[Told]) -> list[Told]:
-    """Return what the user told that their question means, though in other words: *who is getting married, do you
-    remember?*."""
-    told, kind = list(told), reader.seen.question
-    mine = reader.words & {"i", "my", "me", "we", "our", "remember"}
-    fit = [one for one in told if kind not in _FIT or _FIT[kind].search(one.text)]
-    if not fit or not mine or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
+def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
+    """Return what the user told that their question asks for: *what does Jonas play*, *who is getting married?*."""
+    told, kind = list({one.text: one for one in told}.values()), reader.seen.question
+    for said in reader.seen.statements:
+        about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
+        if said.question and said.verb in _REMINDING and about and about.person == "other":
+            return [one for one in told if _covers(one, re.findall(r"\w+", about.text), known)][-3:]
+    asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
+    mine = bool(reader.words & _MINE)
+    if asked is None or kind is None or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
         return []
-    asked = [part for part in (reader.tree.text, *reader.tree.text.split(",")) if len(part.split()) > 3]
+    light = WORDS["light"] | WORDS["knowing"]
+    words = [word.lemma for word in reader.tree.words if word.pos in _CONTENT and word.lemma not in light]
+    subjects = [] if asked.subject.person == "I" else [asked.subject.name or asked.subject.head]
+    names = {part.lower() for one in told for part in f"{one.subject} {one.who}".split()} - {"i"}
+    sure = mine or not names.isdisjoint(map(str.lower, words))
+    being = asked.verb == "be" and kind == nlp.QuestionWord.OBJECT
+    person = kind == nlp.QuestionWord.PERSON
+    fit = [one for one in told if kind not in _FIT or (person and one.who) or _FIT[kind].search(one.text)]
+    exact = [
+        one
+        for one in fit
+        if words
+        and _covers(one, words, known)
+        and (asked.subject.person != "I" or one.subject == "I" or one.subject.startswith("my "))
+        and (not being or (sure and one.verb.endswith("be")))
+        and (
+            sure
+            or (one.who and person and asked.verb != "be")
+            or (one.verb == asked.triple.predicate and len(words) > 1 and _covers(one, filter(None, subjects), known))
+        )
+    ]
+    if exact:
+        return [max(exact, key=lambda one: (one.verb == asked.triple.predicate, told.index(one)))]
+    parts = [part for part in (reader.tree.text, *reader.tree.text.split(",")) if len(part.split()) > 3]
+    if not mine or not fit or not parts:
+        return []
     try:
-        rows = Encoder().encode([plain(_returned(text)) for text in (*asked, *(one.text for one in fit))])
+        rows = Encoder().encode([plain(_returned(text)) for text in (*parts, *(one.text for one in fit))])
     except PlatformError:  # without the model, only the words themselves are found
         return []
-    likeness = (rows[len(asked) :] @ rows[: len(asked)].T).max(axis=1) if asked else [0.0]
+    likeness = (rows[len(parts) :] @ rows[: len(parts)].T).max(axis=1)
     best = max(range(len(likeness)), key=likeness.__getitem__)
     return [fit[best]] if likeness[best] > LEAST else []
+
+
+def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
+    """Return whether a statement has all these words, or for a relative the name: *Rosa* for *sister*."""
+    had = _stems(f"{one.text} {one.verb} {one.subject}")
+    return all(_stems(" ".join((word, *known.get(NOUNS.get(word, ""), ())))) & had for word in words)
+
+
+def _stems(text: str) -> set[str]:
+    return {re.sub(r"(?<=..)(?:ies|ing|ed|es|s|e|y)$", "", word) for word in re.findall(r"\w+", text.lower())}
 
 
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
@@ -168,4 +211,6 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
 
 def _returned(text: str) -> str:
     """Return the user's words as the agent says them: *your* for *my*."""
+    text = re.sub(r"\b(i|we) was\b", r"\1 were", text, flags=re.IGNORECASE)
+    text = re.sub(r"^(?:An?|The|This|That|It|There|[SH]?he|They)\b", lambda found: found[0].lower(), text)
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())

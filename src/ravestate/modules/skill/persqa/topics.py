@@ -71,9 +71,7 @@ _ROWS = TypeAdapter(list[Topic]).validate_python([{"name": name, **row} for name
 TOPICS: Mapping[str, Topic] = _Topics((topic.name, topic) for topic in _ROWS)
 """All topics by name, in the order in which they are asked."""
 ASKED = tuple(topic.name for topic in _ROWS if topic.asked)
-"""The topics that the agent asks for."""
 WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", _TABLE).items()}
-"""The lists of words."""
 NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
 SAYS = {phrase.rstrip("~"): (topic.name, not phrase.endswith("~")) for topic in _ROWS for phrase in topic.says}
 ENDS = {phrase: topic.name for topic in _ROWS for phrase in topic.ends}

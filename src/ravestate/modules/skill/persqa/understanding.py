@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ravestate.modules import nlp
+from ravestate.modules import idle, nlp
 
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader
 from .talk import CONFIRM, FORGET, Talk
-from .told import Told, answers_in, recalled, told_in
+from .told import Told, recalled, told_in
 from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
 from .values import value_of
 from .wording import Facts, among
@@ -47,13 +47,10 @@ class Meaning:
     """The meaning of an utterance."""
 
     kind: Kind
-    """The act of the user."""
     facts: tuple[Fact, ...] = ()
-    """The facts that they tell, or ask for."""
     topic: str = ""
     """The topic of the question that they answer."""
     leave: bool = False
-    """Whether they say goodbye."""
     aloud: bool = True
     """Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns anything
     else that they say."""
@@ -63,6 +60,9 @@ class Meaning:
     """The topics that their words touch."""
     person: str = ""
     """The topic of the relative whom they mention."""
+    said: tuple[Told, ...] = ()
+    moved: bool = False
+    """Whether they show a feeling, or joke."""
 
 
 def understand(
@@ -73,7 +73,8 @@ def understand(
     touched = touched_by([word.lemma for word in seen.tree.words])
     relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
     person = next((topic for topic in map(hearing.reader.relative, relatives) if topic), "")
-    return replace(hearing.meaning(), touched=touched, person=person)
+    said = told_in(hearing.reader, talk.said)[1]
+    return replace(hearing.meaning(), touched=touched, person=person, said=tuple(said), moved=hearing.moved)
 
 
 class _Hearing:
@@ -90,6 +91,8 @@ class _Hearing:
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.leave = "farewell" in seen.acts
+        self.sorry = bool(idle.SORROWS & set(seen.feelings))
+        self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
 
     def meaning(self) -> Meaning:
         seen, topic, asks = self.seen, self.topic, self.seen.question is not None
@@ -100,22 +103,33 @@ class _Hearing:
             yesno = seen.yesno if self.fresh else None  # a yes to something else must not delete anything
             no = yesno and (yesno.no or yesno.unsure)
             return Meaning("forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing", leave=self.leave)
-        if self.waits and self.pending and not self.pending.turns and "refuse" in self.acts and self.of_speakers():
+        if (
+            self.waits
+            and self.pending
+            and not self.pending.turns
+            and "refuse" in self.acts
+            and self.of_speakers()
+            and not self.sorry
+        ):
             return Meaning("declined", topic=topic)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
         if asks or "ask_everything" in self.acts:
-            if inquiry := self.inquiry():
+            inquiry = self.inquiry()
+            if inquiry and (not inquiry.facts[0].topic or inquiry.facts[0].topic in (EVERYTHING, *self.known)):
                 return inquiry
-            if found := answers_in(self.reader, self.told, self.known) or recalled(self.reader, self.told):
+            if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
                 return Meaning("asked_told", free=tuple(found))
+            if inquiry:
+                return inquiry
         facts = self.reader.facts(self.known)
         told = {fact.topic for fact in facts if not fact.gone}
         facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
-        free = tuple(told_in(self.reader))
+        free = tuple(told_in(self.reader, self.talk.said)[0])
         aside = self.leave or asks
         if facts or free:
-            return Meaning("told", tuple(facts), topic, self.leave, aloud=bool(facts) and not aside, free=free)
+            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # others console
+            return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
         if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
             return corrected
         if identity := self.identity():
@@ -149,8 +163,10 @@ class _Hearing:
     def answered(self) -> Meaning | None:
         """Return the meaning of words that may answer the open question."""
         seen, topic, yesno = self.seen, self.topic, self.seen.yesno
-        if self.fresh and "nothing" in self.acts:
+        if self.fresh and "nothing" in self.acts and not self.sorry:
             return Meaning("none" if topic != NAME else "declined", topic=topic)
+        if topic == NAME and self.reader.words & {"he", "she", "they"}:
+            return None  # he's called Jonathan
         felt = seen.feelings and len(self.text.split()) > 2
         facts = (not felt and answer(self.text, topic, seen)) or (
             yesno.no and correction(self.text, topic, (), seen)
@@ -180,14 +196,16 @@ class _Hearing:
         """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
         seen, topic = self.seen, self.talk.doubt
         told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
-        if not told and seen.question is None and may_stand_alone(seen):
+        if not told and seen.question is None:
             told = answer(self.text, topic, seen)
+            told = told if may_stand_alone(seen, clear=bool(told)) else []
         refused = seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & self.acts
         return Meaning("vouched", tuple(told[:1])) if told or refused else None
 
     def identity(self) -> Meaning | None:
         """Return that the user says who they are, or who they are not."""
-        if "deny_identity" in self.seen.acts and self.known.get(NAME):
+        denied = self.seen.act("deny_identity")
+        if denied and self.known.get(NAME) and (denied.score > 0.6 or not self.corrected()):
             return Meaning("mistaken")
         other = any(
             said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
@@ -210,6 +228,7 @@ class _Hearing:
             if said.question and said.verb in ("be", *WORDS["knowing"]):
                 named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]
                 people = [topic for topic in self.known if TOPICS[topic].kind == "people"]  # who is Emma
+                people = people if self.seen.question != nlp.QuestionWord.AMOUNT else []
                 people = [topic for topic in people if any(among(name, self.known[topic]) for name in named)]
                 if topic := self.reader.noun(said.object) or next(iter(people), ""):
                     return Meaning("asked", (Fact(topic),))
@@ -229,8 +248,10 @@ class _Hearing:
             facts = facts or [Fact(topic) for topic in [self.reader.noun(object)] if topic]
             facts = facts or self.reader.facts() or [fact for fact in [self.reader.asks()] if fact]
             names = {object.text or "-", *(name for f in facts for name in f.values or self.known.get(f.topic, ()))}
-            again = {one.key for one in told_in(self.reader)}
-            free = tuple(one for one in self.told if {one.subject, one.object} & names or one.key in again)
+            again = {one.key for one in told_in(self.reader)[0]}
+            free = tuple(
+                one for one in (*self.told, *self.talk.said) if {one.subject, one.object} & names or one.key in again
+            )
             if facts or free or object.of("I") or any(one.subject.person == "I" for one in self.seen.statements):
                 return Meaning("strike", tuple(facts), free=free)
         match = self.seen.act("forget_me")
@@ -250,6 +271,8 @@ class _Hearing:
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
 
 
+_CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
+"""Feelings after which the agent may ask about something else."""
 _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import unicodedata
 
@@ -38,13 +39,16 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         sure: Whether the words before it introduce this kind: *my name is*, or the agent asked for it.
     """
     kind = topic.kind
-    text = re.sub(r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now)$", "", _trimmed(text), flags=re.IGNORECASE)
+    text = re.sub(
+        r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now|by the way)$", "", _trimmed(text), flags=re.IGNORECASE
+    )
     text = re.sub(f"^(?:{_LEADS.get(kind, '')})", "", text, flags=re.IGNORECASE)
     words = text.lower().split()
     if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
         return None
     if kind == "number":
-        return text if text.isdecimal() and 0 < int(text) < 120 else None
+        number = number_in(text)
+        return number if 0 < int(number or 0) < 120 else None
     named = kind in ("name", "people")
     never = WORDS["function"] | (WORDS["determiners"] if named else frozenset[str]())
     tells = any(unicodedata.category(letter)[0] in "L" or unicodedata.category(letter) == "So" for letter in text)
@@ -52,7 +56,26 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         return None
     if not _fits(text, words[0] in WORDS["determiners"], topic, seen, sure):
         return None
-    return tidy(gerund(text, seen) if kind == "activity" else text, topic)
+    return tidy(gerund(text, seen) if kind == "activity" else _typed(text, seen) if named else text, topic)
+
+
+def _typed(name: str, seen: nlp.Analysis) -> str:
+    """Return a name as typed, where the normal form took it for a slip."""
+    at = seen.normal.text.lower().find(name.lower())
+    start, end = seen.normal.span(at, at + len(name)) if at >= 0 else (0, 0)
+    typed = seen.normal.original[start:end]
+    return name if typed.lower() == name.lower() or not typed.replace(" ", "").isalpha() else typed
+
+
+def number_in(text: str) -> str:
+    """Return a whole number in digits: *7* for *seven*; empty for other words."""
+    if text.isdecimal():
+        return text
+    import text_to_num  # pyright: ignore[reportMissingTypeStubs]
+
+    with contextlib.suppress(ValueError):
+        return str(text_to_num.text2num(text.lower(), "en"))  # pyright: ignore[reportUnknownArgumentType, reportUnknownMemberType]
+    return ""
 
 
 def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: bool) -> bool:
@@ -61,6 +84,8 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
     if kind in ("activity", "thing"):
         return _DEICTIC.match(text) is None
     labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
+    if kind == "place":  # Sendai in Japan
+        labels |= {entity.label for entity in seen.entities if f"{text} in {entity.text}" in seen.tree.text}
     digits = any(map(str.isdigit, text))
     if (labels & _TIMES and not labels & _PLACES) or (digits and kind != "organisation"):
         return kind in ("work", "subject")
