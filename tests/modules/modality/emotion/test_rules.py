@@ -252,8 +252,8 @@ def test_it_disturbs_no_quiet() -> None:
 
     with calm(bored, module()) as sim:
         sim.say("You are so clever!")
-        sim.advance(5.0)
-        assert sim.said[2:] == ["bored at 5 s"]
+        sim.advance(15.0)
+        assert sim.said[2:] == ["bored at 15 s"]
         sim.advance(3.0)
         assert [a for a in sim.snapshot()["activations"] if "emotion" in str(a)] == []
 
@@ -328,7 +328,7 @@ def test_on_the_console_it_follows_a_streamed_answer(monkeypatch: pytest.MonkeyP
         assert screen.lines == "Thank"
         sim.advance(1.5)
         assert screen.lines == "Thank you, Ada"
-        sim.advance(5.0)
+        sim.advance(15.0)
         answer, emoji = screen.lines.splitlines()
         assert answer == "Thank you, Ada!"
         assert emoji in EMOJI["shy"]
