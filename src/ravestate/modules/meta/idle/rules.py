@@ -6,7 +6,7 @@ import asyncio
 
 import ravestate as rs
 from ravestate.language.acts import acts, heard
-from ravestate.language.feelings import feelings
+from ravestate.language.feelings import SORROW_LASTS, SORROWS, feelings
 from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
@@ -14,11 +14,6 @@ from .names import Settings, asked, bored, dismissed, hushed, impatient, module,
 
 LONGEST = 1000
 """The last characters of the agent's words in which a question counts."""
-
-SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
-"""Feelings of the user's in which a remark out of boredom would hurt."""
-SORROW_LASTS = 6
-"""The user's utterances for which sorrow counts, the one with it included."""
 
 
 @module.rule(
