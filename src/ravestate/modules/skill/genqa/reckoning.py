@@ -424,12 +424,8 @@ def _until(asked: re.Match[str], now: time) -> str:
         return ""
     if asked["half"]:
         hour = hour % 12 + 12 * (asked["half"] == "p")
-    part = (
-        {"half": 30, "quarter": 15, None: 0}.get(asked["part"])
-        if not (asked["part"] or "").isdigit()
-        else int(asked["part"])
-    )
-    then = 60 * hour + int(asked["minute"] or 0) + (part or 0) * (1 if asked["side"] in ("past", "after") else -1)
+    part = int({"half": "30", "quarter": "15", None: "0"}.get(asked["part"], asked["part"]))
+    then = 60 * hour + int(asked["minute"] or 0) + part * (1 if asked["side"] in ("past", "after") else -1)
     round_the_clock = 60 * (24 if asked["half"] or asked["name"] or hour > 12 else 12)
     left = (then - 60 * now.hour - now.minute) % round_the_clock
     hours, minutes = (0, left) if asked["unit"] == "minutes" else divmod(left, 60)
