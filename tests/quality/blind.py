@@ -76,6 +76,11 @@ def facts(kinds: Sequence[str] = ()) -> list[tuple[str, str]]:
 
 TRICKY = ("denied", "past", "hearsay", "conditional", "nothing", "question")
 """Kinds of sentences from which something wrong is easily stored."""
+SINGLE = (
+    "name", "home", "origin", "birthplace", "childhood", "age", "occupation", "employer", "subject", "university",
+)  # fmt: skip
+"""Topics with one value, as those that begin with ``favourite``: a new value replaces the old one."""
+_KNOWN = re.compile(r"\[knows ([^]=]+)=([^]]*)\] ")
 
 
 def stored(text: str) -> frozenset[str]:
@@ -87,6 +92,8 @@ def stored(text: str) -> frozenset[str]:
     told += [
         f"{'user' if one.subject.lower() == 'i' else one.subject} / {one.verb} / {one.object}" for one in meaning.free
     ]
+    if known := _KNOWN.match(text):  # a topic that is denied as a whole loses the value that is known
+        told = [f"{fact}={known[2]}" if fact == f"not {known[1]}" else fact for fact in told]
     return _facts(";".join(told))
 
 
@@ -95,32 +102,75 @@ def _facts(label: str) -> frozenset[str]:
     return frozenset(fact for fact in found if fact and fact != NONE)
 
 
-def _same(expected: frozenset[str], seen: frozenset[str]) -> bool:
-    """Return whether the facts are those expected; ``a~b`` allows two wordings, ``a|b`` names two values."""
-    return len(expected) == len(seen) and all(any(_fits(one, other) for other in seen) for one in expected)
+def _wanted(label: str) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the facts that must be stored, and those that may be: true, but not worth a demand.
+
+    These have a ``+``, or deny the old value of a topic with one value, whose new value replaces it.
+    """
+    named = _facts(label)
+    told = {fact.partition("=")[0] for fact in named}
+    may = {fact for fact in named if fact.startswith("+") or _replaced(fact, told)}
+    return named - may, frozenset(fact.removeprefix("+") for fact in may)
+
+
+def _replaced(fact: str, told: set[str]) -> bool:
+    topic = fact.removeprefix("not ").partition("=")[0]
+    return fact.startswith("not ") and topic in told and (topic in SINGLE or topic.startswith("favourite "))
+
+
+def _same(label: str, seen: frozenset[str]) -> bool:
+    """Return whether the facts are all that must be stored, and none that may not."""
+    must, _ = _wanted(label)
+    return _harmless(label, seen) and all(any(_fits(one, other) for other in seen) for one in must)
+
+
+def _harmless(label: str, seen: frozenset[str]) -> bool:
+    """Return whether no fact is one that may not be stored."""
+    must, may = _wanted(label)
+    return all(any(_fits(one, other) for one in must | may) for other in seen)
 
 
 def _fits(expected: str, seen: str) -> bool:
+    """Return whether a fact is the one expected.
+
+    ``a~b`` allows two wordings, ``a|b`` names two values, and ``fact or fact`` says the same in two ways.
+    """
+    return any(_says(way, seen) for way in expected.split(" or "))
+
+
+def _says(expected: str, seen: str) -> bool:
     topic, equals, values = expected.partition("=")
     other, _, found = seen.partition("=")
+    if not equals and "/" in expected:
+        parts, others = expected.split("/"), seen.split("/")
+        return len(parts) == len(others) and all(
+            _plain(o) in _ways(part) for part, o in zip(parts, others, strict=True)
+        )
     if topic.strip() != other.strip():
         return False
     if not equals:
         return True
-    wanted, given = values.split("|"), {value.strip() for value in found.split("|")}
-    return len(wanted) == len(given) and all(given & {way.strip() for way in value.split("~")} for value in wanted)
+    wanted, given = values.split("|"), {_plain(value) for value in found.split("|")}
+    return len(wanted) == len(given) and all(given & _ways(value) for value in wanted)
+
+
+def _ways(wordings: str) -> set[str]:
+    return {_plain(way) for way in wordings.split("~")}
+
+
+def _plain(words: str) -> str:
+    """Return words without the determiner before them."""
+    return re.sub(r"^(?:an?|the|my|our|this) (?=\S)", "", words.strip())
 
 
 def measured_facts() -> list[Result]:
     """Measure what is stored: all right, and nothing wrong in tricky sentences."""
     seen = {text: stored(text) for text, _ in facts()}
-    right = [text for text, label in facts() if _same(_facts(label), seen[text])]
+    right = [text for text, label in facts() if _same(label, seen[text])]
     tricky = facts(TRICKY)
-    clean = [
-        text for text, label in tricky if all(any(_fits(one, other) for one in _facts(label)) for other in seen[text])
-    ]
+    clean = [text for text, label in tricky if _harmless(label, seen[text])]
     told = [case for case in facts() if case not in tricky]
-    kept = [text for text, label in told if _same(_facts(label), seen[text])]
+    kept = [text for text, label in told if _same(label, seen[text])]
     return [
         Result("facts", len(seen), {"right": len(right) / len(seen)}),
         Result("facts, told", len(told), {"right": len(kept) / len(told)}),

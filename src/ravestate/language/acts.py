@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 
 from .contractions import word_set
+from .feelings import clauses
 from .matcher import Match, Matcher, bundled_matcher
 from .normal import normalise, plain
 from .sentences import sentences as sentences_of
@@ -31,13 +32,15 @@ _GOES_ON = word_set("is was are were be means of for to that which by in on at s
 
 
 def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
-    """Return the sentences of an utterance in the normal form; the first 2000 characters count.
+    """Return the sentences of an utterance in the normal form, encoded in one run; the first 2000 characters count.
 
     Args:
         text: The user's words.
         names: Names that keep or get their capitals.
     """
-    return sentences_of(normalise(text[:LONGEST], names).text)
+    said = sentences_of(normalise(text[:LONGEST], names).text)
+    bundled_matcher("acts").prepare([*said, *clauses(said, names)])
+    return said
 
 
 def acts(sentences: Sequence[str]) -> dict[str, Match]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,6 +45,7 @@ class Encoder:
         self._mean: bool | None = None
         self._lock = threading.Lock()
         self._latest: dict[str, NDArray[np.float32]] = {}
+        self._running: dict[str, threading.Event] = {}
 
     def load(self) -> None:
         """Load the model now; otherwise the first call of another method does, with the same errors.
@@ -62,15 +63,32 @@ class Encoder:
         model = self._loaded()  # first: it says what to install
         import numpy as np
 
+        mine = threading.Event()
         with self._lock:
             known = {text: self._latest[text] for text in texts if text in self._latest}
-        new = [text for text in dict.fromkeys(texts) if text not in known]
-        if new:
-            known.update(zip(new, self._encode(new), strict=True))
-        with self._lock:  # the latest last
-            others = {text: vector for text, vector in self._latest.items() if text not in known}
-            self._latest = dict([*others.items(), *known.items()][-REMEMBERED:])
+            new = [text for text in dict.fromkeys(texts) if text not in known and text not in self._running]
+            others = {self._running[text] for text in texts if text in self._running}
+            self._running.update(dict.fromkeys(new, mine))
+        try:
+            known.update(zip(new, self._encode(new), strict=True) if new else ())
+        finally:
+            with self._lock:
+                for text in new:
+                    del self._running[text]
+                self._remember(known)
+            mine.set()
+        for other in others:  # another thread encodes the same utterance
+            other.wait()
+        with self._lock:
+            known = {text: self._latest[text] for text in texts if text in self._latest} | known
+        lost = [text for text in dict.fromkeys(texts) if text not in known]
+        known.update(zip(lost, self._encode(lost), strict=True) if lost else ())
         return np.stack([known[text] for text in texts]) if texts else np.zeros((0, model.width), dtype=np.float32)
+
+    def _remember(self, known: Mapping[str, NDArray[np.float32]]) -> None:
+        """Keep vectors as the latest."""
+        others = {text: vector for text, vector in self._latest.items() if text not in known}
+        self._latest = dict([*others.items(), *known.items()][-REMEMBERED:])
 
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the vectors of texts that stay the same from start to start, such as examples.

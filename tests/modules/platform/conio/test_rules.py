@@ -110,7 +110,7 @@ def test_typing_counts_as_activity(keys: Keys, monkeypatch: pytest.MonkeyPatch) 
     async def ask(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = "Are you there?"
 
-    with simulate(parrot, lonely, conio) as sim:
+    with simulate(parrot, lonely, conio, settings={"idle": {"bored_after": 5.0}}) as sim:
         for _ in range(10):
             sim.advance(2.0)
             told[0]()

@@ -225,7 +225,7 @@ class Reader:
         elif verbs[0] != "be" and _LEISURE.search(self.tree.text):
             wanted = direct or free
         else:
-            habit = said.holds and verb.tag in ("VBP", "VB") and direct and not chained
+            habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and direct and not chained
             wanted = habit and likeness(gerund(written, self.seen), "activity") > 0.2
         return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 

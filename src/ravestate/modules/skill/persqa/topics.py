@@ -120,8 +120,8 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    Prefer the topic with the fewest tries, and of those the name, then the follow-up of the `last` topic, then one that the
-    user's words have touched.
+    The topic with the fewest tries comes first. Among equals the name wins, then the follow-up of the `last` topic, then a
+    topic that the user has touched.
 
     Args:
         wanted: Names of topics.
