@@ -9,6 +9,7 @@ import pytest
 
 from ravestate.errors import PlatformError
 from ravestate.language import Encoder
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.agentqa import Life, Match, Router, Topic, read_life
 from ravestate.modules.skill.agentqa.router import Miss
 
@@ -62,6 +63,7 @@ def test_an_indirect_question_counts_where_something_is_asked(router: Router) ->
 
 
 def test_without_numpy_the_examples_themselves_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ravestate.language.acts.bundled_matcher", bundled_matcher.__wrapped__)  # none is loaded yet
     monkeypatch.setitem(sys.modules, "numpy", None)
     router = Router(read_life())
     with pytest.raises(PlatformError, match=r"need numpy: pip install 'ravestate\[sentences\]'"):
