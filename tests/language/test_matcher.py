@@ -86,19 +86,14 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return seen
 
 
-def test_many_sentences_need_one_run(matcher: Matcher, runs: list[list[str]]) -> None:
-    assert len(matcher.match_all(["shall we dance a polka", "who painted the purple cow"])) == 2
-    assert len(runs) == 1
-
-
-def test_an_utterance_needs_one_run_for_all_matchers(matcher: Matcher, runs: list[list[str]]) -> None:
+def test_each_sentence_of_an_utterance_is_encoded_once_for_all_matchers(matcher: Matcher, runs: list[list[str]]) -> None:
     for name in MATCHERS:
         bundled_matcher(name).load()
     pipeline("").load()
     runs.clear()
     seen = analyse("Hey, my polka is purple. Can I book a table?", pipeline(""), designed=matcher)
     assert len(seen.sentences) == 2
-    assert len(runs) == 1
+    assert len(runs) == len({text for texts in runs for text in texts})
 
 
 def test_vectors_of_examples_come_from_a_file_the_next_time(
@@ -107,9 +102,9 @@ def test_vectors_of_examples_come_from_a_file_the_next_time(
     monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)
     texts = ["a purple cow", "a yellow horse"]
     first = Encoder().encode_lasting(texts)
-    assert len(runs) == 1
+    assert runs == [["a purple cow"], ["a yellow horse"]]
     assert (Encoder().encode_lasting(texts) == first).all()
-    assert len(runs) == 1
+    assert len(runs) == 2
 
 
 def test_files_that_nobody_reads_any_more_are_removed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -131,8 +131,11 @@ class Encoder:
         if self._mean is None:
             self._mean = _pools_by_mean(model.folder)
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
-        for indices, hidden, mask in model.run(list(texts)):
-            rows[indices] = _pooled(hidden, mask, self._mean)
+        for number, text in enumerate(
+            texts
+        ):  # one by one: a quantised model scales over a batch, so that each changes the others
+            _, hidden, mask = next(model.run([text]))
+            rows[number] = _pooled(hidden, mask, self._mean)[0]
         norms = np.linalg.norm(rows, axis=1, keepdims=True)
         return rows / np.maximum(norms, 1e-12)
 
