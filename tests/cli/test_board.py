@@ -34,8 +34,7 @@ class Command:
 
     def __init__(self, *arguments: str) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-c", "from ravestate.cli import main; raise SystemExit(main())", "board", *arguments,
-             "--set", "webio.port=0"],
+            [sys.executable, "-m", "ravestate", "board", *arguments, "--set", "webio.port=0"],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )  # fmt: skip
 

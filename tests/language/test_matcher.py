@@ -86,7 +86,9 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return seen
 
 
-def test_each_sentence_of_an_utterance_is_encoded_once_for_all_matchers(matcher: Matcher, runs: list[list[str]]) -> None:
+def test_each_sentence_of_an_utterance_is_encoded_once_for_all_matchers(
+    matcher: Matcher, runs: list[list[str]]
+) -> None:
     for name in MATCHERS:
         bundled_matcher(name).load()
     pipeline("").load()

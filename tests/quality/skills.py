@@ -115,6 +115,7 @@ def agentqa_asks(sentence: str) -> str:
 
 def agentqa_remarks(sentence: str) -> str:
     """Return the topic of a remark that the agent must not take for small talk."""
+    _load()
     found = remark_in(sentence, read_life(), ["Robin"]) or act_in(_seen(sentence), read_life())
     return "-" if found is None else found.topic
 

@@ -10,6 +10,12 @@ from .matcher import Match, bundled_matcher
 from .normal import plain
 from .shape import shape
 
+SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
+"""Feelings of the user's in which cheerfulness or a remark out of boredom would hurt."""
+SORROW_LASTS = 6
+"""The user's utterances for which sorrow counts, the one with it included."""
+SURE = 0.8
+"""The confidence from which a question is one of surprise: "how do you know that?"."""
 SHORTEST = 3
 """The minimum number of words of a clause that shows a feeling of its own: "brilliant, it is broken" is no praise."""
 
@@ -38,6 +44,8 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
         for match in (*whole, *matcher.match_all(parts)):
             if match is None or (match.name not in _ASKED and _asks(sentence)):
                 continue
+            if match.name == "astonishing" and match.score < SURE and "?" in sentence:
+                continue  # a plain question
             if match.name not in found or found[match.name].score < match.score:
                 found[match.name] = match
     return found

@@ -2,8 +2,10 @@
 
 import pytest
 
+from ravestate.language.acts import acts, heard
 from ravestate.language.bundled import ModelMissing
-from ravestate.language.matcher import Matcher
+from ravestate.language.feelings import feelings
+from ravestate.language.matcher import Matcher, bundled_matcher
 from ravestate.modules import emotion
 from ravestate.modules.modality.emotion import recogniser
 from ravestate.modules.modality.emotion.recogniser import recognise
@@ -84,3 +86,13 @@ def test_without_the_model_the_examples_count_and_other_words_say_what_to_instal
 
 def test_the_package_offers_it() -> None:
     assert emotion.recognise("I love you.") == "affectionate"
+
+
+@pytest.mark.parametrize(
+    "text", ["aww, you poor computer", "Bad. My chest aches when I laugh.", "Is that not hard for you?"]
+)
+def test_sympathy_and_complaints_are_no_insults(text: str) -> None:
+    said = heard(text)
+    bundled_matcher("acts").load()
+    bundled_matcher("feelings").load()
+    assert "insult" not in {**acts(said), **feelings(said)}

@@ -243,6 +243,26 @@ def test_hibyes_greeting_and_the_emoji_go_together() -> None:
         assert sim.said[1] in EMOJI["happy"]
 
 
+def test_it_is_not_cheerful_in_a_sad_stretch_of_the_talk() -> None:
+    with calm(happy=1.0, surprised=1.0) as sim:
+        sim.say("My father died last week.")
+        for text in ("He made me laugh so often, and that was wonderful!", "Wow!", "Thanks.", "Why is that so?"):
+            sim.say(text)
+        assert not {"happy", "surprised"} & set(felt(sim))
+        for _ in range(2):
+            sim.say("The table has four legs.")
+        sim.say("I passed my exam!")
+        assert felt(sim)[-1] == "happy"
+
+
+@pytest.mark.parametrize("text", ["What is that to you?", "When does the train leave?", "What is 7 percent of 1300?"])
+def test_plain_questions_do_not_surprise_it(text: str) -> None:
+    with simulate(emotion, seed=1) as sim:
+        for _ in range(20):
+            sim.say(text)
+        assert "surprised" not in felt(sim)
+
+
 def test_it_disturbs_no_quiet() -> None:
     bored = rs.Module("lonely", requires=[rawio, idle])
 
@@ -253,8 +273,8 @@ def test_it_disturbs_no_quiet() -> None:
     pace = {"emotion": CALM, "idle": {"bored_after": 5.0}}
     with simulate(emotion, bored, module(), settings=pace) as sim:
         sim.say("You are so clever!")
-        sim.advance(5.0)
-        assert sim.said[2:] == ["bored at 5 s"]
+        sim.advance(15.0)
+        assert sim.said[2:] == ["bored at 15 s"]
         sim.advance(3.0)
         assert [a for a in sim.snapshot()["activations"] if "emotion" in str(a)] == []
 
@@ -329,7 +349,7 @@ def test_on_the_console_it_follows_a_streamed_answer(monkeypatch: pytest.MonkeyP
         assert screen.lines == "Thank"
         sim.advance(1.5)
         assert screen.lines == "Thank you, Ada"
-        sim.advance(5.0)
+        sim.advance(15.0)
         answer, emoji = screen.lines.splitlines()
         assert answer == "Thank you, Ada!"
         assert emoji in EMOJI["shy"]

@@ -15,6 +15,10 @@ from ravestate.testing import simulate
 
 TOPICS = [
     "identity",
+    "gender",
+    "inside",
+    "laughing",
+    "health",
     "name",
     "age",
     "hobbies",

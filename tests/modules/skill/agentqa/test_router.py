@@ -9,6 +9,7 @@ import pytest
 
 from ravestate.errors import PlatformError
 from ravestate.language import Encoder
+from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.agentqa import Life, Match, Router, Topic, read_life
 from ravestate.modules.skill.agentqa.router import Miss
 
@@ -62,6 +63,7 @@ def test_an_indirect_question_counts_where_something_is_asked(router: Router) ->
 
 
 def test_without_numpy_the_examples_themselves_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ravestate.language.acts.bundled_matcher", bundled_matcher.__wrapped__)  # none is loaded yet
     monkeypatch.setitem(sys.modules, "numpy", None)
     router = Router(read_life())
     with pytest.raises(PlatformError, match=r"need numpy: pip install 'ravestate\[sentences\]'"):
@@ -73,3 +75,25 @@ def test_a_missing_model_says_what_to_do(tmp_path: Path) -> None:
     router = Router(read_life(), Encoder(tmp_path / "none"))
     with pytest.raises(PlatformError, match=r"model\.onnx"):
         router.route("how old are you")
+
+
+@pytest.mark.parametrize(
+    ("text", "topic"),
+    [
+        ("Good evening. I am Nora, and I repair clocks.", None),
+        ("Good morning. They say that you talk.", None),
+        ("you're all right", None),
+        ("And what is time for you, machine?", None),
+        ("so what did you learn about me today?", None),
+        ("Do you contain a neural network?", "inside"),
+        ("Does a language model write your answers?", "inside"),
+        ("are you a boy?", "gender"),
+        ("did you laugh at my joke?", "laughing"),
+        ("do you ever fall ill?", "health"),
+    ],
+)
+def test_greetings_and_questions_about_its_nature_are_told_from_how_are_you(text: str, topic: str | None) -> None:
+    router = Router(read_life())
+    router.load()
+    found = router.route(text, question="?" in text)
+    assert (found.topic if isinstance(found, Match) else None) == topic

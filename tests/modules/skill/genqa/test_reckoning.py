@@ -1,6 +1,6 @@
 """Sums, units and dates are worked out, safely."""
 
-from datetime import date
+from datetime import date, time
 
 import pytest
 
@@ -29,6 +29,10 @@ TODAY = date(2026, 6, 1)
         ("60 mph in km/h", "96.6 km/h"),
         ("how much is 240 a month in a year?", "2,880"),
         ("322 in dozens", "26.8 dozens"),
+        ("Turn 25 kN into kilograms-force", "2,549 kilograms-force"),
+        ("what is 2.5 bar in psi", "36.3 psi"),
+        ("how many pascals are in 3 millibars", "300 pascals"),
+        ("150 hp in kilowatts", "112 kilowatts"),
         ("7 percent of 1300, and half of that", "91. That is 45.5"),
         ("what date is 90 days after 1 March 2024", "30 May 2024"),
     ],
@@ -49,6 +53,23 @@ def test_a_sum_is_worked_out(text: str, result: str) -> None:
 )
 def test_dates_are_counted(text: str, result: str) -> None:
     assert reckon(text, (), TODAY) == result
+
+
+@pytest.mark.parametrize(
+    ("text", "result"),
+    [
+        ("how many minutes till half past three", "40 minutes"),
+        ("how many minutes until a quarter to four?", "55 minutes"),
+        ("how long is it until 18:30", "3 hours and 40 minutes"),
+        ("how long till 5 pm", "2 hours and 10 minutes"),
+        ("how long do we have till noon", "21 hours and 10 minutes"),
+        ("how many minutes to twenty past two", "690 minutes"),
+        ("how long until ten to three", "right now"),
+    ],
+)
+def test_the_time_until_a_time_of_day_is_counted(text: str, result: str) -> None:
+    assert reckon(text, (), TODAY, now=time(14, 50)) == f"That is {result}."
+    assert not reckon(text, (), TODAY)
 
 
 @pytest.mark.parametrize(

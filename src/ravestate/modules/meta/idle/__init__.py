@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from . import rules
-from .names import SORROWS, Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
+from .names import Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
 
 __all__ = [
-    "SORROWS",
     "Settings",
     "asked",
     "bored",

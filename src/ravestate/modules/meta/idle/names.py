@@ -9,9 +9,6 @@ from pydantic import Field
 import ravestate as rs
 from ravestate.modules import rawio
 
-SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
-"""Feelings of the user's in which a remark out of boredom would hurt."""
-
 Seconds = Annotated[float, Field(ge=0)]
 
 

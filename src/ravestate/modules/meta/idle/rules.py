@@ -6,17 +6,14 @@ import asyncio
 
 import ravestate as rs
 from ravestate.language.acts import acts, heard
-from ravestate.language.feelings import feelings
+from ravestate.language.feelings import SORROW_LASTS, SORROWS, feelings
 from ravestate.language.sentences import sentences
 from ravestate.modules import rawio
 
-from .names import SORROWS, Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
+from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
 """The last characters of the agent's words in which a question counts."""
-
-SORROW_LASTS = 6
-"""The user's utterances for which sorrow counts, the one with it included."""
 
 
 @module.rule(

@@ -19,7 +19,7 @@ class Settings(rs.Settings):
 
     shy: Probability = 0.1
     """The probability that the agent is shy when the user talks about it."""
-    surprised: Probability = 0.03
+    surprised: Probability = 0.0
     """The probability that a question surprises the agent."""
     happy: Probability = 0.25
     """The probability that a greeting or thanks makes the agent happy."""
@@ -50,3 +50,6 @@ sad = module.signal("sad")
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
 """The agent's last feeling; None before the first."""
+
+sorrow: rs.Slot[int] = module.slot("sorrow", 0)
+"""The number of further utterances for which the user's last words of sorrow count."""

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 
 from ravestate.language.acts import LONGEST, heard
 from ravestate.language.addressing import addressed
-from ravestate.language.feelings import feelings
+from ravestate.language.feelings import SORROWS, feelings
 from ravestate.language.matcher import bundled_matcher
 
 from .feeling import Feeling
@@ -60,3 +60,8 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
         if name in found:
             return feeling
     return next((feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])), None)
+
+
+def sorrowful(text: str, names: Collection[str] = ()) -> bool:
+    """Return whether a text is sad, worried or angry; the matcher of feelings is loaded."""
+    return not SORROWS.isdisjoint(feelings(heard(text, names), names))

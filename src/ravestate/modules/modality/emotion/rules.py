@@ -8,14 +8,18 @@ import ravestate as rs
 from ravestate.language.acts import heard
 from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.feelings import SORROW_LASTS
 from ravestate.language.heap import give_back
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
 
 from .chance import OCCASIONS, by_chance
 from .feeling import EMOJI, Feeling
-from .names import Settings, affectionate, felt, happy, module, sad, shy, surprised
-from .recogniser import recognise
+from .names import Settings, affectionate, felt, happy, module, sad, shy, sorrow, surprised
+from .recogniser import recognise, sorrowful
+
+CHEERFUL: frozenset[Feeling] = frozenset({"happy", "surprised"})
+"""Feelings that would hurt a sad user."""
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
     "shy": shy, "surprised": surprised, "happy": happy, "affectionate": affectionate, "sad": sad,
@@ -33,21 +37,25 @@ def learn(ctx: rs.RuleContext) -> None:
         warn_once(ctx.log, error)
 
 
-@module.rule(when=rawio.input.changed, reads=interloc.agent, emits=SIGNALS.values())
+@module.rule(when=rawio.input.changed, reads=(interloc.agent, sorrow), writes=sorrow, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
     """Raise the feeling that fits the user's words, or a spontaneous one. The encoder takes a few milliseconds, so this
-    runs in a thread. Without the sentence model only the examples of feelings count."""
+    runs in a thread. Without the sentence model only the examples of feelings count. In a sad stretch of the talk nothing
+    is cheerful."""
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)
     feeling: Feeling | None = None
+    left = max(0, ctx[sorrow] - 1)
     with contextlib.suppress(ModelMissing):  # `learn` reports it
         feeling = recognise(text, names)
+        left = SORROW_LASTS if sorrowful(text, names) else left
     if feeling is None:
         likely: dict[Feeling, float] = {name: getattr(settings, name) for name in OCCASIONS}
         said = [addressed(sentence, names) for sentence in heard(text, names)]
         feeling = by_chance(said, likely, ctx.random)
-    if feeling is not None:
+    ctx[sorrow] = left
+    if feeling is not None and not (left and feeling in CHEERFUL):
         ctx.emit(SIGNALS[feeling])
 
 

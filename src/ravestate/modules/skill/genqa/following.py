@@ -96,13 +96,13 @@ def _about(answerer: Answerer, question: Question, reading: Reading, latest: str
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
     """Return the result of a sum; None if the utterance is none."""
-    told, today = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone().date()
+    told, now = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone()
     text = heard.text
     try:
-        result = reckon(text, told, today, settings.rates)
+        result = reckon(text, told, now.date(), settings.rates, now.time())
         if not result and thread and not thread[-1].title and not heard.is_finite:
             text = _again(text, thread[-1].question)
-            result = reckon(text, told[:-1], today, settings.rates) if text else ""
+            result = reckon(text, told[:-1], now.date(), settings.rates) if text else ""
     except Unanswerable as error:
         result = str(error)
     except ImportError as error:

@@ -8,7 +8,7 @@ import operator
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import date, datetime
+from datetime import date, datetime, time
 from functools import cache
 from typing import Any
 
@@ -28,6 +28,12 @@ _DATE = re.compile(
 )
 
 
+_UNTIL = re.compile(
+    r"(?:and |so |okay |ok )?how (?:many (?P<unit>minutes|hours)|much time|long)"
+    r"(?: (?:more|is|it|there|are|left|still|do|i|we|have|got|to go))* (?:until|till|til|to|before) "
+    r"(?:(?:a )?(?P<part>half|quarter|\d{1,2})(?: minutes?)? (?P<side>past|after|to|before) )?"
+    r"(?:(?P<hour>\d{1,2})(?:[:.](?P<minute>[0-5]\d))?(?: ?(?P<half>[ap])\.?m\.?| o'?clock)?|(?P<name>noon|midday|midnight))"
+)
 _DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
 
 
@@ -73,7 +79,9 @@ def words_for(name: str) -> frozenset[str]:
     return frozenset(str(lexicon("reckoning.yaml")[name]).split())
 
 
-def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None) -> str:
+def reckon(
+    text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None, now: time | None = None
+) -> str:
     """Return the result of a sum in words; empty if the text is none.
 
     Args:
@@ -81,6 +89,7 @@ def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, floa
         told: The latest answers, oldest first, for *that*.
         today: The date, for *how long ago*.
         rates: The value of one unit of each currency, in any common unit.
+        now: The time of day, for *how long till noon*.
 
     Raises:
         Unanswerable: It is a sum without a result.
@@ -94,12 +103,14 @@ def reckon(text: str, told: Sequence[str], today: date, rates: Mapping[str, floa
     if len(text) > LONGEST:
         return ""
     two = re.fullmatch(r"(.*\d.*),? and (.+ (?:that|it)\b.*)", text, re.IGNORECASE)
-    if two and (first := reckon(two[1].rstrip(","), told, today, rates)):  # 7 percent of 1300, and half of that
+    if two and (first := reckon(two[1].rstrip(","), told, today, rates, now)):  # 7 percent of 1300, and half of that
         second = reckon(two[2], (*told, first), today, rates)
         return f"{first} {second}" if second else ""
     spoken = _in_digits(text.strip(" ?!."))
     if re.fullmatch(r"\d+ ?/ ?\d+", spoken):  # a rating, or a date
         return ""
+    if now and (asked := _UNTIL.fullmatch(spoken)):
+        return _until(asked, now)
     return _dates(spoken, told, today) or _sum(spoken, told, rates or {}) or _times(spoken, told)
 
 
@@ -404,6 +415,24 @@ def apart(one: Dated, other: Dated, unit: str = "year") -> str:
     count = {"day": days, "week": days // 7, "month": gone.years * 12 + gone.months, "year": years}[unit]
     rest = f" and {days % 7} days" if unit == "week" and days % 7 else ""
     return f"From {first} to {last} it is {count:,} {unit}{'' if count == 1 else 's'}{rest}."
+
+
+def _until(asked: re.Match[str], now: time) -> str:
+    """Return the minutes or hours until a time of day; without *am* and *pm* until the next such time."""
+    hour = int(asked["hour"] or (0 if asked["name"] == "midnight" else 12))
+    if hour > 24:
+        return ""
+    if asked["half"]:
+        hour = hour % 12 + 12 * (asked["half"] == "p")
+    part = int({"half": "30", "quarter": "15", None: "0"}.get(asked["part"], asked["part"]))
+    then = 60 * hour + int(asked["minute"] or 0) + part * (1 if asked["side"] in ("past", "after") else -1)
+    round_the_clock = 60 * (24 if asked["half"] or asked["name"] or hour > 12 else 12)
+    left = (then - 60 * now.hour - now.minute) % round_the_clock
+    hours, minutes = (0, left) if asked["unit"] == "minutes" else divmod(left, 60)
+    parts = [
+        f"{count} {noun}{'' if count == 1 else 's'}" for count, noun in ((hours, "hour"), (minutes, "minute")) if count
+    ]
+    return f"That is {' and '.join(parts) or 'right now'}."
 
 
 def _moved(start: Dated, by: Quantity, *, back: bool) -> str:

@@ -59,9 +59,7 @@ async def answer_hello(ctx: rs.RuleContext) -> None:
     ctx[verbaliser.intent] = Intent("returned" if returned else "hello", package=__package__)
 
 
-@module.rule(
-    when=goodbye, reads=(rawio.input, idle.sorrow), writes=(verbaliser.intent, parted), weight=0.9 * GENERAL
-)
+@module.rule(when=goodbye, reads=(rawio.input, idle.sorrow), writes=(verbaliser.intent, parted), weight=0.9 * GENERAL)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
     """Answer a goodbye; wish a good night to a user who goes to bed, and say nothing cheerful to a sad one."""
     ctx[parted] = ctx.now

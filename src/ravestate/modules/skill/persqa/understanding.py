@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ravestate.modules import idle, nlp
+from ravestate.language.feelings import SORROWS
+from ravestate.modules import nlp
 
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
@@ -91,7 +92,7 @@ class _Hearing:
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.leave = "farewell" in seen.acts
-        self.sorry = bool(idle.SORROWS & set(seen.feelings))
+        self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
 
     def meaning(self) -> Meaning:
