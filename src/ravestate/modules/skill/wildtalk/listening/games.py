@@ -71,12 +71,17 @@ class Turn:
         """End the game."""
         return self._say("play", "over", None)
 
+    def gives_up(self) -> bool:
+        """Return whether the user wants the solution: *I give up*."""
+        game = self._state.game
+        return game is not None and game.word != "" and game.kind in ("riddle", "holder") and "give" in self._words
+
     def move(self) -> Played | None:
         """Return the next move; None if the utterance does not belong to the game."""
         game = self._state.game
         if game is None or not self._words:
             return None
-        if len(self._words) > LONGEST and game.kind not in ("knock", "holder") and not self._solved(game):
+        if len(self._words) > LONGEST and game.kind not in ("knock", "holder") and not self.solves():
             return None
         if not game.word and game.kind != "play" and not (game.kind == "knock" or game.turn == 2):  # "Another one?"
             return self.start(game.kind) if self._yes else self.stop() if self._no else self._learnt(game)
@@ -97,11 +102,12 @@ class Turn:
     def _lemmas(self) -> set[str]:
         return {*self._words, *(word.lemma.lower() for word in (self._seen.tree.words if self._seen else ()))}
 
-    def _solved(self, game: Game) -> bool:
+    def solves(self) -> bool:
         """Return whether an utterance of any length has the solution of the riddle."""
-        answers = [
-            one["answers"] for one in self._shows["riddles"] if game.kind == "riddle" and one["ask"] == game.word
-        ]
+        game = self._state.game
+        if game is None or game.kind != "riddle":
+            return False
+        answers = [one["answers"] for one in self._shows["riddles"] if one["ask"] == game.word]
         return bool(answers and self._lemmas().intersection(answers[0]))
 
     def _holder(self, game: Game) -> Played | None:

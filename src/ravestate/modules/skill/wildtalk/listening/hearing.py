@@ -76,6 +76,10 @@ _TAGGED = re.compile(
     r"\W(?:right|huh|eh|innit|yeah|okay|ok)\?+$|\b(?:n't|not|\w+n't) (?:i|you|he|she|it|we|they)\?+$", re.IGNORECASE
 )
 """The end of a statement that wants a nod: *we did it, right?*"""
+_LEAVING = re.compile(
+    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
+)
+"""The farewell at the end of an utterance: *I have to go now, bye!*"""
 _RHETORICAL = re.compile(r"(?:\?[?!]|!\?)[?!]*$")
 """The end of a question that vents."""
 _UNENDING = frozenset(
@@ -164,6 +168,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
         "single": size <= 1,
+        "leaving": not asking and bool(_LEAVING.search(seen.text)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
@@ -223,6 +228,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         and not opened
         and bool({"said", "told", "wrong"}.intersection(words))
         and ("you" in words or (subject == "I" and tagged)),
+        "opened": opened,
         "will": bool(modal & {"will", "'ll"}),
         "worried": polar and not addressed and (subject == "I" or (pointed and (feeling or "will" in modal))),
         "world": not polar or (opened and (subject in ("", "other") or asked is None or asked.verb == "know")),
@@ -230,11 +236,22 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
         "should": not polar
         and subject == "I"
-        and (bool(modal & {"should", "must", "shall"}) or (bool(modal) and bool(low & {"do", "say"}))),
+        and (
+            seen.question is QuestionWord.FORM
+            or bool(modal & {"should", "must", "shall"})
+            or (bool(modal) and bool(low & {"do", "say"}))
+        ),
         "agree": polar and subject != "you" and asked is not None and asked.negated,
         "you_think": polar and subject == "you" and asked is not None and asked.verb in ("think", "believe", "suppose"),
         "told": (not polar and mine and subject != "you" and not modal)
-        or (subject == "I" and not polar and not modal | low & {"am", "'m"} and seen.question is not QuestionWord.FORM)
+        or (
+            subject == "I"
+            and opened
+            and "we" not in words
+            and not polar
+            and not modal | low & {"am", "'m"}
+            and seen.question is not QuestionWord.FORM
+        )
         or bool(recalled and "you" in low)
         or ("know" in words and subject == "you" and "my" in words),
         "why": seen.question is QuestionWord.REASON,
@@ -321,7 +338,7 @@ def asking_sentence(seen: Analysis) -> str:
         opened = [sentence for sentence in opened if len(sentence.split()) > FEW_WORDS - 1]
         if not marked and not opened:
             return ""
-    return (marked or opened or seen.sentences)[-1]
+    return [*seen.sentences, *opened, *marked][-1]
 
 
 def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Moment | None, str, float]:

@@ -83,7 +83,7 @@ class Listener:
             return False
         if state.game is not None:
             turn = Turn(self._phrases.shows, heard.text, seen, state, random.Random(0))
-            return "stop" in seen.acts or ("farewell" not in seen.acts and turn.move() is not None)
+            return "stop" in seen.acts or (("farewell" not in seen.acts or turn.solves()) and turn.move() is not None)
         if pending is None or not (pending.then or pending.start) or seen.question is not None:
             return False
         size = len(heard.text.split())
@@ -128,8 +128,8 @@ class Listener:
         more = state.show != "" and MORE.search(heard.text) is not None
         low = heard.text.lower()
         switched = HOLDER.search(low) or GUESSER.search(low) or (more and state.game and state.game.kind == "riddle")
-        if state.game is not None and "farewell" not in acts and not switched:
-            played = turn.stop() if "stop" in acts else turn.move()
+        if state.game is not None and ("farewell" not in acts or turn.solves()) and not switched:
+            played = turn.stop() if "stop" in acts and not turn.gives_up() else turn.move()
             if played is not None:
                 return played
         if seen is not None and state.pending is not None and state.pending.start and seen.yesno.yes:
