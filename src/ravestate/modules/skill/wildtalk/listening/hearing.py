@@ -80,6 +80,8 @@ _LEAVING = re.compile(
     r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
 )
 """The farewell at the end of an utterance: *I have to go now, bye!*"""
+_OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
+"""The offer to tell something."""
 _RHETORICAL = re.compile(r"(?:\?[?!]|!\?)[?!]*$")
 """The end of a question that vents."""
 _UNENDING = frozenset(
@@ -229,6 +231,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         and bool({"said", "told", "wrong"}.intersection(words))
         and ("you" in words or (subject == "I" and tagged)),
         "opened": opened,
+        "offer": _OFFER.match(asking) is not None,
         "will": bool(modal & {"will", "'ll"}),
         "worried": polar and not addressed and (subject == "I" or (pointed and (feeling or "will" in modal))),
         "world": not polar or (opened and (subject in ("", "other") or asked is None or asked.verb == "know")),
@@ -246,7 +249,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         "told": (not polar and mine and subject != "you" and not modal)
         or (
             subject == "I"
-            and opened
+            and words[0] in _ASKING
             and "we" not in words
             and not polar
             and not modal | low & {"am", "'m"}
@@ -299,6 +302,8 @@ def _ranked(
         score = score if score >= TURNED else 0.0  # no light talk in grief
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
         score = score if score >= CLOUDED else 0.0  # tears of joy
+    if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
+        score = 0.0  # "I must tell you, I am afraid"
     if moment is not None and moment.name in phrases.moments and score >= SURE:
         ranked.append((score + FINER, moment))
     if feeling is not None:

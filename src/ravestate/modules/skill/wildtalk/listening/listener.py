@@ -117,7 +117,13 @@ class Listener:
             return "holder" if HOLDER.search(heard.text.lower()) else ""
         wants = heard.seen.question is not None or is_request(heard.seen)
         acts = [act for act in heard.seen.acts.values() if act.name in SHOWS and act.score >= ASKED]
-        most = 2 * LONG if acts else LONG if wants else SHORT  # "no, a riddle, I said"
+        most = (
+            2 * LONG
+            if acts or heard.text.lower().startswith(("tell me", "sing", "give me"))
+            else LONG
+            if wants
+            else SHORT
+        )  # "no, a riddle, I said"
         found = named(self._phrases.shows, heard.text, most=most)
         return found or (max(acts, key=lambda act: act.score).name if acts else "")
 
