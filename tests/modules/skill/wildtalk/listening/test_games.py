@@ -121,3 +121,38 @@ def test_a_story_about_something_known_is_told(talk: Any) -> None:
 def test_a_farewell_in_a_game_is_answered_as_such(talk: Any) -> None:
     talk.say("riddle")
     assert talk.say("goodbye") not in SHOWS["play"]["over"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "oh dear, that was weak. now please give me a riddle",
+        "a riddle is what I asked for! come on",
+        "give me a riddle",
+    ],
+)
+def test_a_riddle_that_was_asked_for_comes_at_once(text: str, talk: Any) -> None:
+    assert asked(talk.say(text))
+
+
+def test_a_long_right_answer_to_a_riddle_counts(talk: Any) -> None:
+    riddle = asked(talk.say("a riddle please"))
+    assert riddle["answers"][0] in talk.say(f"oh that must be a {riddle['answers'][0]}, ha, one point for me")
+
+
+def test_one_more_gives_one_more(talk: Any) -> None:
+    first = asked(talk.say("a riddle please"))
+    assert asked(talk.say("hm, one more"))["ask"] != first["ask"]
+
+
+def test_it_thinks_of_an_animal_and_answers_with_yes_and_no(talk: Any) -> None:
+    assert talk.say("no, you think of an animal and I guess it") in SHOWS["holder"]["start"]
+    animal = talk.state.game.word
+    has_fur = "fur" in SHOWS["animal"]["known"][animal]
+    assert talk.say("does it have fur?") in SHOWS["holder"]["yes" if has_fur else "no"]
+    assert animal in talk.say(f"then it is {animal}")
+
+
+def test_it_guesses_the_animal_that_the_user_thinks_of(talk: Any) -> None:
+    talk.say("now I think of an animal and you have to find it")
+    assert talk.state.game.kind == "animal"

@@ -256,3 +256,24 @@ def test_the_tone_is_right_in_most_of_a_list_of_utterances(begin: Callable[[int]
             wrong.append(f"{text}: {talk.state.tone or '-'}, not {tone}")
     assert len(rows) == 80
     assert len(wrong) <= 0.35 * len(rows), wrong
+
+
+@pytest.mark.parametrize(
+    ("text", "group"),
+    [
+        ("is that a stupid idea of mine", "reassure"),
+        ("and so, will it be very loud?", "reassure"),
+        ("do you know how often I told them??", "near"),
+        ("but you said that you like trains?", "contested"),
+        ("now the soup is on, adieu!", "leaving"),
+    ],
+)
+def test_no_excuse_comes_where_no_fact_is_asked_for(text: str, group: str, begin: Callable[[int], Any]) -> None:
+    lines = {line.text for line in lines_of(material().plain[group])}
+    assert {begin(seed).say(text) for seed in range(5)} <= lines
+
+
+@pytest.mark.parametrize("text", ["I only wondered whether the light is still on", "no eggs left in the fridge again"])
+def test_a_remark_is_neither_a_question_nor_a_correction(text: str, begin: Callable[[int], Any]) -> None:
+    excuses = {line.text for name in ("fact", "told_before", "correcting") for line in lines_of(material().plain[name])}
+    assert not {begin(seed).say(text) for seed in range(5)} & excuses

@@ -17,12 +17,20 @@ LONGEST = 6
 CHAINED = 2
 """The words of a move in word chain: *a tiger*."""
 
+HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
+"""The request that the agent thinks of an animal."""
+GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
+"""The announcement that the user does."""
+
 Played = tuple[str, State]
 
 
 def named(shows: Mapping[str, Any], text: str, *, most: int = 3) -> str:
     """Return the performance that a text of at most so many words names: *word chain*, *a riddle please*."""
-    words = re.findall(r"[a-z]+", text.lower())
+    low = text.lower()
+    if GUESSER.search(low) or HOLDER.search(low):
+        return "animal" if GUESSER.search(low) else "holder"
+    words = re.findall(r"[a-z]+", low)
     said = f" {' '.join(words)} "
     if not words or len(words) > most or words[0] == "no":
         return ""
@@ -55,20 +63,30 @@ class Turn:
         if kind == "animal":
             question, text = next(iter(self._shows["animal"]["questions"].items()))
             return self._say("animal", "start", Game("animal", question), question=text)
+        if kind == "holder":
+            return self._say(kind, "start", Game(kind, self._chance.choice(list(self._shows["animal"]["known"]))))
         return self._say(kind, "start", Game(kind))
 
     def stop(self) -> Played:
         """End the game."""
         return self._say("play", "over", None)
 
+    def gives_up(self) -> bool:
+        """Return whether the user wants the solution: *I give up*."""
+        game = self._state.game
+        return game is not None and game.word != "" and game.kind in ("riddle", "holder") and "give" in self._words
+
     def move(self) -> Played | None:
         """Return the next move; None if the utterance does not belong to the game."""
         game = self._state.game
-        if game is None or not self._words or (len(self._words) > LONGEST and game.kind != "knock"):
+        if game is None or not self._words:
+            return None
+        if len(self._words) > LONGEST and game.kind not in ("knock", "holder") and not self.solves():
             return None
         if not game.word and game.kind != "play" and not (game.kind == "knock" or game.turn == 2):  # "Another one?"
             return self.start(game.kind) if self._yes else self.stop() if self._no else self._learnt(game)
         moves = {"play": self._choice, "riddle": self._riddle, "chain": self._chain, "animal": self._animal}
+        moves["holder"] = self._holder
         return moves.get(game.kind, self._knock)(game)
 
     def _learnt(self, game: Game) -> Played | None:
@@ -81,10 +99,33 @@ class Turn:
             return self.start(wanted or self._chance.choice(list(kinds)))
         return self.stop() if self._no else None
 
+    def _lemmas(self) -> set[str]:
+        return {*self._words, *(word.lemma.lower() for word in (self._seen.tree.words if self._seen else ()))}
+
+    def solves(self) -> bool:
+        """Return whether an utterance of any length has the solution of the riddle."""
+        game = self._state.game
+        if game is None or game.kind != "riddle":
+            return False
+        answers = [one["answers"] for one in self._shows["riddles"] if one["ask"] == game.word]
+        return bool(answers and self._lemmas().intersection(answers[0]))
+
+    def _holder(self, game: Game) -> Played | None:
+        """Answer a question about the animal that the agent thinks of."""
+        known, lemmas = self._shows["animal"]["known"], self._lemmas()
+        guess = next((one for one in known if one.split()[-1] in lemmas), "")
+        if guess == game.word:
+            return self._say("holder", "right", Game("holder"), animal=game.word)
+        if not guess and (self._unsure or lemmas & {"give", "tell"}):
+            return self._say("holder", "tell", Game("holder"), animal=game.word)
+        trait = next((name for name, words in self._shows["holder"]["traits"].items() if lemmas & set(words)), "")
+        if guess or trait:
+            return self._say("holder", "yes" if trait in known[game.word] and not guess else "no", game)
+        return self._say("holder", "unsure", game) if self._seen is not None and self._seen.question else None
+
     def _riddle(self, game: Game) -> Played | None:
         riddle = next(one for one in self._shows["riddles"] if one["ask"] == game.word)
-        answer, over, seen = riddle["answers"][0], Game("riddle"), self._seen
-        lemmas = {*self._words, *(word.lemma.lower() for word in (seen.tree.words if seen else ()))}
+        answer, over, seen, lemmas = riddle["answers"][0], Game("riddle"), self._seen, self._lemmas()
         if lemmas.intersection(riddle["answers"]):
             return self._say("riddle", "right", over, answer=answer)
         if self._unsure or self._no or lemmas & {"give", "tell", "know"}:

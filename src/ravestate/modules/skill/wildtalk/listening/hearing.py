@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from dataclasses import dataclass, field
 
 from ravestate.language.feelings import clauses
@@ -71,6 +72,18 @@ _ASKING = frozenset(
     )
 )
 """Closed-class words that begin a question."""
+_TAGGED = re.compile(
+    r"\W(?:right|huh|eh|innit|yeah|okay|ok)\?+$|\b(?:n't|not|\w+n't) (?:i|you|he|she|it|we|they)\?+$", re.IGNORECASE
+)
+"""The end of a statement that wants a nod: *we did it, right?*"""
+_LEAVING = re.compile(
+    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
+)
+"""The farewell at the end of an utterance: *I have to go now, bye!*"""
+_OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
+"""The offer to tell something."""
+_RHETORICAL = re.compile(r"(?:\?[?!]|!\?)[?!]*$")
+"""The end of a question that vents."""
 _UNENDING = frozenset(
     ("and", "but", "or", "because", "if", "the", "a", "an", "my", "your", "is", "'s", "are", "'re", "'m", "to")
 )
@@ -112,7 +125,7 @@ def hear(phrases: Material, heard: Heard, state: State, chance: random.Random) -
     tongue = tongue_of(text, phrases.tongues)
     signs = {"number": is_number(text), "foreign": tongue != "", "nonsense": is_nonsense(text)}
     signs |= {"signs": not any(map(str.isalnum, text)), "asking": text.rstrip().endswith("?")}
-    signs |= {"coin": chance.random() < 0.5, "unparsed": seen is None, state.tone: True}
+    signs |= {"coin": chance.random() < 0.5, "unparsed": seen is None, state.tone: True, "tone": state.tone != ""}
     found = Hearing({tag for tag, holds in signs.items() if holds}, tongue=tongue)
     if seen is not None:
         _understand(found, phrases, heard, seen, state)
@@ -139,7 +152,13 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
-    starts_no = bool(seen.tree.words) and seen.tree.words[0].low in ("no", "nah", "nope")
+    refused = [word.low for word in seen.tree.words[:2]]
+    starts_no = (
+        refused[:1] in (["no"], ["nah"], ["nope"])
+        and (  # not "no milk left"
+            refused[1:] in ([","], ["."], ["!"], ["no"]) or "i" in refused or "you" in refused
+        )
+    )
     choice = _choice_in(seen)
     tags = {
         kind: True,
@@ -151,6 +170,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
         "single": size <= 1,
+        "leaving": not asking and bool(_LEAVING.search(seen.text)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
@@ -169,7 +189,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         and not (pending is not None and pending.closed),
     }  # fmt: skip
     if asking:
-        tags |= _question_tags(found, phrases, seen, low) | {"choice": choice[0] != ""}
+        tags |= _question_tags(found, phrases, seen, asking, low) | {"choice": choice[0] != ""}
     elif statement is not None:
         tags |= _statement_tags(phrases, seen, statement, roles, low)
         name = f"not {statement.verb}" if statement.negated else statement.verb
@@ -185,7 +205,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.roles = roles.having(called=called, first=choice[0], second=choice[1])
 
 
-def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[str]) -> dict[str, bool]:
+def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: str, low: set[str]) -> dict[str, bool]:
     asked = next((one for one in seen.statements if one.question), None)
     subject = "" if asked is None else asked.subject_person
     about = _about_in(seen)
@@ -193,22 +213,55 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, low: set[s
     owned = asked is not None and asked.subject.of("you") and about != ""
     opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opinion"].words
     polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
+    words = re.findall(r"[\w']+", asking.lower())
+    addressed = bool({"you", "u", "your", "yourself"}.intersection(words))
+    opened = bool(words) and (words[0] in _ASKING or not polar)
+    pointed = asked is not None and asked.subject.text.lower() in ("it", "this", "that", "there", "everything")
+    tagged = _TAGGED.search(asking) is not None
+    feeling = "tone" in found.tags or any(word.pos == "ADJ" for word in seen.tree.words)
+    recalled = {"remember", "recall"} & low
+    mine = asked is not None and (asked.subject.of("I") or asked.object.of("I"))
     return {
         "question": True,
         "polar": polar,
+        "tagged": tagged,
+        "rhetorical": _RHETORICAL.search(asking) is not None and (subject in ("I", "you") or "tone" in found.tags),
+        "contested": polar
+        and not opened
+        and bool({"said", "told", "wrong"}.intersection(words))
+        and ("you" in words or (subject == "I" and tagged)),
+        "opened": opened,
+        "offer": _OFFER.match(asking) is not None,
+        "will": bool(modal & {"will", "'ll"}),
+        "worried": polar and not addressed and (subject == "I" or (pointed and (feeling or "will" in modal))),
+        "world": not polar or (opened and (subject in ("", "other") or asked is None or asked.verb == "know")),
         "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
         "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
-        "should": not polar and subject == "I" and bool(modal),
+        "should": not polar
+        and subject == "I"
+        and (
+            seen.question is QuestionWord.FORM
+            or bool(modal & {"should", "must", "shall"})
+            or (bool(modal) and bool(low & {"do", "say"}))
+        ),
         "agree": polar and subject != "you" and asked is not None and asked.negated,
         "you_think": polar and subject == "you" and asked is not None and asked.verb in ("think", "believe", "suppose"),
-        "told": (not polar and "my" in low and subject != "I")
-        or (subject == "I" and not modal and not polar and seen.question is not QuestionWord.FORM)
-        or bool(low & {"remember", "my"} and low & {"remember", "know"}),
+        "told": (not polar and mine and subject != "you" and not modal)
+        or (
+            subject == "I"
+            and words[0] in _ASKING
+            and "we" not in words
+            and not polar
+            and not modal | low & {"am", "'m"}
+            and seen.question is not QuestionWord.FORM
+        )
+        or bool(recalled and "you" in low)
+        or ("know" in words and subject == "you" and "my" in words),
         "why": seen.question is QuestionWord.REASON,
         "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
-        "hypothetical": bool(low & {"would", "could", "if", "imagine"}),
+        "hypothetical": bool(low & {"would", "if", "imagine"}),
         "agent": seen.about_agent,
-        "to_agent": seen.about_agent and (asked is None or subject == "you" or asked.subject.of("you")),
+        "to_agent": addressed and (asked is None or subject == "you" or asked.subject.of("you")),
         "of_user": subject == "I",
         "opinion": found.thing != "" and (owned or opining),
     }
@@ -249,6 +302,8 @@ def _ranked(
         score = score if score >= TURNED else 0.0  # no light talk in grief
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
         score = score if score >= CLOUDED else 0.0  # tears of joy
+    if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
+        score = 0.0  # "I must tell you, I am afraid"
     if moment is not None and moment.name in phrases.moments and score >= SURE:
         ranked.append((score + FINER, moment))
     if feeling is not None:
@@ -260,7 +315,9 @@ def _ranked(
         few = len(act.text.split()) <= FEW_WORDS
         least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
         beside = (
-            act.text != asking or act.name == "greeting" if asking else few and len(seen.sentences) > 1 and not leaves
+            act.text != asking or act.name in ("greeting", "farewell")
+            if asking
+            else few and len(seen.sentences) > 1 and not leaves
         )
         if act.name in phrases.acts and act.score >= least and not beside:
             ranked.append((act.score + leaves, phrases.acts[act.name]))
@@ -277,9 +334,16 @@ def asking_sentence(seen: Analysis) -> str:
     opened = [
         sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING
     ]
-    if not marked and not opened and seen.text.rstrip().endswith("!"):  # "oh, we won!"
-        return ""
-    return (marked or opened or seen.sentences)[-1]
+    if not marked and not opened and (seen.question is QuestionWord.YES_NO or seen.text.rstrip().endswith("!")):
+        return ""  # "I was curious whether you sleep", "oh, we won!"
+    if len(seen.sentences) > 1:  # "What?? The whole roof is gone"
+        marked = [sentence for sentence in marked if len(sentence.split()) > FEW_WORDS - 1]
+        if not marked and not opened and seen.question is QuestionWord.YES_NO:
+            return ""
+        opened = [sentence for sentence in opened if len(sentence.split()) > FEW_WORDS - 1]
+        if not marked and not opened:
+            return ""
+    return [*seen.sentences, *opened, *marked][-1]
 
 
 def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Moment | None, str, float]:

@@ -6,12 +6,13 @@ The listener takes the first phrase that was not said lately and whose roles are
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp.analysis import Analysis
 
-from .games import Played, Turn, named
+from .games import GUESSER, HOLDER, Played, Turn, named
 from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
 from .material import Line, Material, Moment, material
 from .roles import Roles, has_verb, is_request, roles_of
@@ -23,6 +24,10 @@ LONG, SHORT = 9, 3
 """The words of a request with a verb, and of one without, that names a performance."""
 BRIEF, BRIEFLY = 12, 12
 """The characters of a sign of listening, and the answers after which it may come again."""
+MORE = re.compile(r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)?\W*(?:please|pls)?\W*$", re.IGNORECASE)
+"""The request for another performance: *meh, one more*."""
+OFFER = re.compile(r"\bI(?:'ve)? (?:have|know|got|ask)\b.*\briddle|\bask you a riddle", re.IGNORECASE)
+"""The offer of a riddle for the agent."""
 STANCES = ("like", "curious", "cool")
 
 Groups = Sequence[Sequence[Line]]
@@ -78,7 +83,7 @@ class Listener:
             return False
         if state.game is not None:
             turn = Turn(self._phrases.shows, heard.text, seen, state, random.Random(0))
-            return "stop" in seen.acts or ("farewell" not in seen.acts and turn.move() is not None)
+            return "stop" in seen.acts or (("farewell" not in seen.acts or turn.solves()) and turn.move() is not None)
         if pending is None or not (pending.then or pending.start) or seen.question is not None:
             return False
         size = len(heard.text.split())
@@ -106,24 +111,36 @@ class Listener:
 
     def _request(self, heard: Heard) -> str:
         """Return the performance that the user asks for."""
-        if heard.seen is None or heard.seen.yesno.no:
+        if heard.seen is None or OFFER.search(heard.text):
             return ""
+        if heard.seen.yesno.no:
+            return "holder" if HOLDER.search(heard.text.lower()) else ""
         wants = heard.seen.question is not None or is_request(heard.seen)
-        found = named(self._phrases.shows, heard.text, most=LONG if wants else SHORT)
         acts = [act for act in heard.seen.acts.values() if act.name in SHOWS and act.score >= ASKED]
+        most = (
+            2 * LONG
+            if acts or heard.text.lower().startswith(("tell me", "sing", "give me"))
+            else LONG
+            if wants
+            else SHORT
+        )  # "no, a riddle, I said"
+        found = named(self._phrases.shows, heard.text, most=most)
         return found or (max(acts, key=lambda act: act.score).name if acts else "")
 
     def _play(self, heard: Heard, state: State, chance: random.Random, moment: str) -> Played | None:
         seen = heard.seen
         turn = Turn(self._phrases.shows, heard.text, seen, state, chance)
         acts = frozenset[str]() if seen is None else seen.acts.keys()
-        if state.game is not None and "farewell" not in acts:
-            played = turn.stop() if "stop" in acts else turn.move()
+        more = state.show != "" and MORE.search(heard.text) is not None
+        low = heard.text.lower()
+        switched = HOLDER.search(low) or GUESSER.search(low) or (more and state.game and state.game.kind == "riddle")
+        if state.game is not None and ("farewell" not in acts or turn.solves()) and not switched:
+            played = turn.stop() if "stop" in acts and not turn.gives_up() else turn.move()
             if played is not None:
                 return played
         if seen is not None and state.pending is not None and state.pending.start and seen.yesno.yes:
             return turn.start(state.pending.start)
-        request = self._request(heard) or ((state.show or "story") if moment == "another" else "")
+        request = self._request(heard) or ((state.show or "story") if more or moment == "another" else "")
         return turn.start(request) if request else None
 
     # ---------------------------------------------------------------------------------- phrases
