@@ -112,7 +112,8 @@ class _Hearing:
             and self.of_speakers()
             and not self.sorry
         ):
-            return Meaning("declined", topic=topic)
+            other = asks or any(map(str.isdigit, self.text))  # no time, what is 12 x 3
+            return Meaning("declined", topic=topic, aloud=not other)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
         if asks or "ask_everything" in self.acts:
@@ -212,7 +213,8 @@ class _Hearing:
             said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
             for said in self.seen.statements
         )  # my name is..., who am I talking to
-        if other or "identify" not in self.seen.acts:
+        match = self.seen.act("identify")
+        if other or match is None or match.text.endswith("?"):  # me?
             return None
         name = Reader(self.seen).remaining_name()
         return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
@@ -242,6 +244,8 @@ class _Hearing:
         wishes = [said for said in self.seen.statements if said.verb in WORDS["forgetting"]]
         for said in filter(self.is_wish, wishes):
             object, low = said.object, said.object.text.lower()
+            if low == "it":
+                continue  # an idiom: never mind
             if object.person == "I" or (object.head or low) in WORDS["everything"] or low.endswith(" data"):
                 about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", self.seen.text, re.IGNORECASE)
                 return Meaning("forget") if about_me else None
