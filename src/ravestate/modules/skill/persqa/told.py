@@ -89,6 +89,9 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             last = said.object.names[0]
         if said.question or said.request or said.subject.person == "you":
             continue
+        top = reader.verb(said)
+        if top is not None and top.dep == "relcl" and not subject and said.subject.text.islower():
+            continue  # the main clause has it: there is a girl who waves at me
         text = _retold(reader, said)
         if he and last:
             text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)

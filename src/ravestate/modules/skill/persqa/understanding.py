@@ -91,6 +91,7 @@ class _Hearing:
         self.reader = Reader(seen, asked, talk.person)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
+        self.sum = any(map(str.isdigit, self.text))  # no time, 12 x 3
         self.leave = "farewell" in seen.acts
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -112,8 +113,7 @@ class _Hearing:
             and self.of_speakers()
             and not self.sorry
         ):
-            other = asks or any(map(str.isdigit, self.text))  # no time, what is 12 x 3
-            return Meaning("declined", topic=topic, aloud=not other)
+            return Meaning("declined", topic=topic, aloud=not asks and not self.sum)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
         if asks or "ask_everything" in self.acts:
@@ -166,7 +166,7 @@ class _Hearing:
         """Return the meaning of words that may answer the open question."""
         seen, topic, yesno = self.seen, self.topic, self.seen.yesno
         if self.fresh and "nothing" in self.acts and not self.sorry:
-            return Meaning("none" if topic != NAME else "declined", topic=topic)
+            return Meaning("none" if topic != NAME else "declined", topic=topic, aloud=not self.sum)
         if topic == NAME and self.reader.words & {"he", "she", "they"}:
             return None  # he's called Jonathan
         felt = seen.feelings and len(self.text.split()) > 2
@@ -186,7 +186,9 @@ class _Hearing:
             return None
         if yesno.unsure or yesno.no:
             declined = topic in (NAME, "home", "origin")
-            return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
+            return Meaning(
+                "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
+            )
         mere = (
             len(seen.text) < 40
             and len(self.text.split()) <= 4
