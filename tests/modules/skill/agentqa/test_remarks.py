@@ -38,7 +38,9 @@ def test_a_negation_takes_a_wish_back(text: str) -> None:
     assert "quiet" not in acts(heard(text))
 
 
-@pytest.mark.parametrize("text", ["don't talk", "please don't disturb me now", "stop it, please"])
+@pytest.mark.parametrize(
+    "text", ["please don't disturb me now", "do not say one more word to me", "I asked you to be silent"]
+)
 def test_a_wish_for_quiet_may_be_negated_itself(text: str) -> None:
     bundled_matcher("acts").load()
     assert "quiet" in acts(heard(text))
