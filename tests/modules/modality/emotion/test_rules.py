@@ -270,8 +270,7 @@ def test_it_disturbs_no_quiet() -> None:
     async def ask(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = f"bored at {ctx.now:g} s"
 
-    pace = {"emotion": CALM, "idle": {"bored_after": 5.0}}
-    with simulate(emotion, bored, module(), settings=pace) as sim:
+    with simulate(emotion, bored, module(), settings={"emotion": CALM}) as sim:
         sim.say("You are so clever!")
         sim.advance(15.0)
         assert sim.said[2:] == ["bored at 15 s"]

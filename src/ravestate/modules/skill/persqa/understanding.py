@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from ravestate.language.feelings import SORROWS
+from ravestate.language.matcher import bundled_matcher
+from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from . import kinds
@@ -189,11 +191,8 @@ class _Hearing:
             return Meaning(
                 "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
             )
-        mere = (
-            len(seen.text) < 40
-            and len(self.text.split()) <= 4
-            and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
-        )
+        known = plain(seen.text) in bundled_matcher("answers").exact  # what only resembles a yes may be a statement
+        mere = known and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
