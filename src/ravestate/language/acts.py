@@ -24,6 +24,10 @@ FORMULA_WORDS = 4
 ADDRESS_WORDS = 3
 """The number of other words that make no more of a greeting: "hello my dear robot"."""
 
+WISHES = frozenset({"quiet", "stop", "forget_me", "farewell", "play"})
+"""Acts that a negation takes back: "don't be quiet"."""
+
+_NEGATION = re.compile(r"\b(?:do not|don['’]?t|did not|didn['’]?t|not|never)\s+(?:you |ever )?", re.IGNORECASE)
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
@@ -81,8 +85,17 @@ def only(act: str, sentences: Sequence[str]) -> bool:
 def _read(sentences: Sequence[str]) -> list[_Sentence]:
     matcher = bundled_matcher("acts")
     sentences = [sentence[:LONGEST] for sentence in sentences]
-    matches = matcher.match_all(sentences)
+    matches = [None if _taken_back(matcher, one) else one for one in matcher.match_all(sentences)]
     return [_Sentence(matcher, *pair) for pair in zip(sentences, matches, strict=True)]
+
+
+def _taken_back(matcher: Matcher, found: Match | None) -> bool:
+    """Return whether a negation takes a wish back: the words without it resemble the same wish, unlike in "don't talk"."""
+    if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
+        return False
+    asserted = _NEGATION.sub("", found.text, count=1)
+    wish = matcher.match(asserted) if asserted != found.text else None
+    return wish is not None and wish.name == found.name and not _NEGATION.search(wish.example)
 
 
 class _Sentence:

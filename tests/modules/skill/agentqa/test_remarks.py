@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from ravestate.modules.skill.agentqa import Life, Topic, read_life
-from ravestate.modules.skill.agentqa.remarks import remark_in
+from ravestate.language.acts import acts, heard
+from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.meta.nlp.analysis import MATCHERS, analyse
+from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.skill.agentqa import Life, Router, Topic, read_life
+from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
+from ravestate.modules.skill.agentqa.router import Miss
 
 
 @pytest.mark.parametrize("text", ["", "😀", "x" * 100_000, "you are " * 50_000, "i feel so so so " * 20_000])
@@ -25,3 +30,30 @@ def test_the_agent_may_be_called_by_its_name() -> None:
 def test_the_gravest_of_several_remarks_counts() -> None:
     found = remark_in("You are stupid. My cat died. I want to die.", read_life())
     assert found is not None and (found.topic, found.text) == ("distress", "i want to die")
+
+
+@pytest.mark.parametrize("text", ["please don't stay silent", "do not shut up, I like it", "I never told you to hush"])
+def test_a_negation_takes_a_wish_back(text: str) -> None:
+    bundled_matcher("acts").load()
+    assert "quiet" not in acts(heard(text))
+
+
+@pytest.mark.parametrize(
+    "text", ["please don't disturb me now", "do not say one more word to me", "I asked you to be silent"]
+)
+def test_a_wish_for_quiet_may_be_negated_itself(text: str) -> None:
+    bundled_matcher("acts").load()
+    assert "quiet" in acts(heard(text))
+
+
+def test_a_mild_word_beside_a_question_is_no_insult() -> None:
+    for name in MATCHERS:
+        bundled_matcher(name).load()
+    life = read_life()
+    assert act_in(analyse("useless. how much salt for 1 l of soup", pipeline("")), life) is None
+    assert act_in(analyse("you are useless. how much salt?", pipeline("")), life) is not None
+
+
+@pytest.mark.parametrize("text", ["ok. bus 12 or 15 for the station?", "okay okay. who would be king of the moon?"])
+def test_an_okay_before_a_question_does_not_ask_how_the_agent_is(router: Router, text: str) -> None:
+    assert isinstance(router.route(text, question=True), Miss)

@@ -4,7 +4,7 @@ from datetime import date, time
 
 import pytest
 
-from ravestate.modules.skill.genqa.reckoning import LONGEST, Unanswerable, dates_in, focused, measured, reckon
+from ravestate.modules.skill.genqa.reckoning import LONGEST, Unanswerable, dates_in, focused, measured, reckon, scaled
 
 TODAY = date(2026, 6, 1)
 
@@ -156,3 +156,18 @@ def test_the_number_that_was_asked_for_is_meant() -> None:
 
 def test_a_long_text_is_no_sum() -> None:
     assert reckon("1+" * LONGEST + "1", (), TODAY) == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "result"),
+    [
+        ("the stew for 3 takes 450 g beans, and I cook for 8", "That is 1,200 g."),
+        ("90 ml oil for 6, what for 4?", "That is 60 ml."),
+        ("5 eggs for 2 people, how many for 6 people", "That is 15 eggs."),
+        ("the room was 80 euros for 2 and we stayed for 3 nights", ""),
+        ("for 4", ""),
+        ("300 g for 0, and for 5", ""),
+    ],
+)
+def test_an_amount_is_scaled(text: str, result: str) -> None:
+    assert scaled(text) == result

@@ -161,3 +161,28 @@ def test_a_denial_covers_only_its_own_words(text: str, topic: str, value: str) -
 )
 def test_what_is_over_planned_or_of_another_kind_is_no_fact(text: str) -> None:
     assert not understand(seen(text), Talk(), {}, 1.0, 90.0).facts
+
+
+@pytest.mark.parametrize(
+    "text", ["me? a penguin with a hat, of course", "ok forget it. what is 2 plus 2", "forget it, hand me a joke"]
+)
+def test_idioms_and_echoes_are_not_about_the_user(text: str) -> None:
+    assert understand(seen(text), Talk(), {"name": ("Ada",)}, 1.0, 90.0).kind == "nothing"
+
+
+def test_a_refusal_beside_a_sum_is_silent() -> None:
+    meaning = understand(seen("no time. 12 x 30 / 5"), Talk().asking("name", 0.0), {}, 1.0, 90.0)
+    assert meaning.kind == "nothing" or not meaning.aloud
+
+
+@pytest.mark.parametrize("text", ["how do I ask Nora for a dance?", "do you think Nora would like that?"])
+def test_advice_is_no_memory(text: str) -> None:
+    told = understand(seen("my cousin Nora likes a dance"), Talk(), {}, 1.0, 90.0).said
+    assert told and understand(seen(text), Talk(), {}, 1.0, 90.0, told).kind != "asked_told"
+
+
+def test_a_relative_clause_is_retold_as_a_sentence() -> None:
+    said = understand(seen("there is a boy called Ole who shouts at me sometimes"), Talk(), {}, 1.0, 90.0).said
+    assert [one.text for one in said] == ["there is a boy called Ole who shouts at you sometimes"]
+    said = understand(seen("I saw my cousin Nora who lives in Ulm"), Talk(), {}, 1.0, 90.0).said
+    assert not any("Nora who" in one.text for one in said if one.verb != "see")

@@ -14,6 +14,8 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .life import Life
 
+_YOU = frozenset(["you", "your"])
+
 
 @dataclass(frozen=True, slots=True)
 class Remark:
@@ -49,11 +51,15 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
 
 
 def act_in(analysis: Analysis, life: Life) -> Remark | None:
-    """Return the remark that is an act or a feeling of a topic; the first topic in the life counts."""
+    """Return the remark that is an act or a feeling of a topic; the first topic in the life counts.
+
+    A feeling without *you* counts alone, and not beside other sentences: *useless. how long do eggs boil*.
+    """
     for name, topic in life.topics.items():
         for known in topic.acts:
             found = analysis.acts.get(known) or analysis.feelings.get(known)
-            if found is not None:
+            aside = known not in analysis.acts and len(analysis.sentences) > 1
+            if found is not None and not (aside and _YOU.isdisjoint(plain(found.text).split())):
                 return Remark(name, plain(found.text))
     return None
 

@@ -18,12 +18,14 @@ from .comparing import aged, begun, compared
 from .lexicon import variants_of
 from .names import Settings
 from .question import Parse, Question, as_question, is_vague, parse
-from .reckoning import Unanswerable, dates_in, focused, reckon
+from .reckoning import Unanswerable, dates_in, focused, reckon, scaled
 from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
 CLEAR = 0.9
 """The confidence of an answer that ends the search."""
+AGAIN = 5
+"""The maximum number of words that repeat a sum with another number: *and how about 300?*."""
 MOST = 8
 """The maximum number of readings that are tried."""
 
@@ -99,7 +101,7 @@ def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answe
     told, now = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone()
     text = heard.text
     try:
-        result = reckon(text, told, now.date(), settings.rates, now.time())
+        result = reckon(text, told, now.date(), settings.rates, now.time()) or scaled(heard.tree.text)
         if not result and thread and not thread[-1].title and not heard.is_finite:
             text = _again(text, thread[-1].question)
             result = reckon(text, told[:-1], now.date(), settings.rates) if text else ""
@@ -122,7 +124,7 @@ def _again(text: str, before: str) -> str:
     dates, old = dates_in(text), dates_in(before)
     if dates and old:
         return before.lower().replace(old[-1].shown, dates[-1].shown)
-    numbers = re.findall(r"\d[\d.,]*", text)
+    numbers = re.findall(r"\d[\d.,]*", text) if len(text.split()) <= AGAIN else []
     return re.sub(r"\d[\d.,]*(?!.*\d)", numbers[0], before) if len(numbers) == 1 else ""
 
 

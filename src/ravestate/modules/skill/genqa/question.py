@@ -15,6 +15,7 @@ from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .lexicon import variants_of, words_of
+from .reckoning import scaled
 
 LONGEST = 600
 """The maximum length of an utterance in characters; a longer one is not a question about the world."""
@@ -279,7 +280,10 @@ def not_asked(heard: Parse, analysis: Analysis) -> str:
         return ""
     if len(analysis.text) > LONGEST:
         return "it is too long for a question"
-    if heard.kind is not None:
+    words = [word for word in heard.asked if word.pos != "PUNCT"]
+    if len(words) == 1 and not words[0].index and words[0].tag not in WH and len(analysis.sentences) > 1:
+        return "it only repeats a word"  # Holiday? In this weather?
+    if heard.kind is not None or scaled(analysis.text):
         return ""
     if any(match.score >= 0.5 for match in analysis.acts.values()):
         return "it is small talk"

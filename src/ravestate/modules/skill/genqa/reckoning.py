@@ -34,6 +34,16 @@ _UNTIL = re.compile(
     r"(?:(?:a )?(?P<part>half|quarter|\d{1,2})(?: minutes?)? (?P<side>past|after|to|before) )?"
     r"(?:(?P<hour>\d{1,2})(?:[:.](?P<minute>[0-5]\d))?(?: ?(?P<half>[ap])\.?m\.?| o'?clock)?|(?P<name>noon|midday|midnight))"
 )
+_HEADS = r"(?: (?:people|persons|guests|friends|servings|portions|of us))?"
+_SCALED = (
+    re.compile(
+        rf"(?:.*\D)?\bfor (?P<few>\d+){_HEADS}\b(?P<rest>\D*?) (?P<amount>\d[\d.,]*) ?(?P<word>[a-z]+)\b\D*\bfor (?P<many>\d+){_HEADS}"
+    ),
+    re.compile(
+        rf"\D*\b(?P<amount>\d[\d.,]*) ?(?P<word>[a-z]+)\b\D*\bfor (?P<few>\d+){_HEADS}(?:\W| and| but| what| how)\D*\bfor (?P<many>\d+){_HEADS}"
+    ),
+)
+"""An amount for some, and the number for which it is wanted: *300 g rice for 4, and for 6?*."""
 _DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
 
 
@@ -112,6 +122,21 @@ def reckon(
     if now and (asked := _UNTIL.fullmatch(spoken)):
         return _until(asked, now)
     return _dates(spoken, told, today) or _sum(spoken, told, rates or {}) or _times(spoken, told)
+
+
+def scaled(text: str) -> str:
+    """Return the amount for more or fewer people; empty if the text does not ask for it.
+
+    Example:
+        >>> scaled("300 g rice for 4, and for 6?")
+        'That is 450 g.'
+    """
+    spoken = _in_digits(text.strip(" ?!.")) if len(text) <= LONGEST else ""
+    found = next(filter(None, (pattern.fullmatch(spoken) for pattern in _SCALED)), None)
+    if found is None or not int(found["few"]) or found["word"] in ("for", "and"):
+        return ""
+    amount = float(found["amount"].strip(",.").replace(",", "")) * int(found["many"]) / int(found["few"])
+    return f"That is {_number(amount)} {found['word']}."
 
 
 def _times(spoken: str, told: Sequence[str]) -> str:

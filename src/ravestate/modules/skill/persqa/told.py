@@ -40,6 +40,11 @@ _FIT[nlp.QuestionWord.AMOUNT] = re.compile(
 _CONTENT = frozenset(["NOUN", "PROPN", "ADJ", "VERB", "NUM"])
 _MINE = frozenset(["i", "my", "me", "we", "our", "remember", "again", "he", "she", "him", "her", "his"])
 _REMINDING = frozenset(["tell", "say", "mention", "know", "learn", "remember"])
+_ADVICE = re.compile(
+    r"\bhow (?:do|can|could|would|might) (?:i|we)\b|\b(?:should|shall|may|might|can) (?:i|we)\b|\b(?:do|would) you think\b",
+    re.IGNORECASE,
+)
+"""Questions for advice or an opinion, not for memories."""
 _LABEL = re.compile(r"^be (?:called|named)$")
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
@@ -84,6 +89,9 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             last = said.object.names[0]
         if said.question or said.request or said.subject.person == "you":
             continue
+        top = reader.verb(said)
+        if top is not None and top.dep == "relcl" and not subject and said.subject.text.islower():
+            continue  # the main clause has it: there is a girl who waves at me
         text = _retold(reader, said)
         if he and last:
             text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)
@@ -103,6 +111,8 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
             return [one for one in told if _covers(one, re.findall(r"\w+", about.text), known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
     mine = bool(reader.words & _MINE)
+    if _ADVICE.search(reader.tree.text) and "remember" not in reader.words:
+        return []
     if asked is None or kind is None or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
         return []
     light = WORDS["light"] | WORDS["knowing"]
@@ -200,7 +210,12 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
         return ""
     while top.dep == "xcomp":
         top = tree.head(top)
-    words = [top, *(word for child in tree.children(top) if child.dep not in _ASIDE for word in tree.subtree(child))]
+    relative = top.dep == "relcl"  # the girl who lives next door
+    parts = [child for child in tree.children(top) if child.dep not in _ASIDE]
+    parts = [
+        child for child in parts if not (relative and child.dep.startswith("nsubj") and child.tag in ("WP", "WDT"))
+    ]
+    words = [top, *(word for child in parts for word in tree.subtree(child))]
     text = spelled_out(tree.phrase(words))
     if said.subject.text.lower().split()[-1:] and said.subject.text.lower().split()[-1] not in re.findall(
         r"\w+", text.lower()

@@ -93,6 +93,7 @@ class _Hearing:
         self.reader = Reader(seen, asked, talk.person)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
+        self.sum = any(map(str.isdigit, self.text))  # no time, 12 x 3
         self.leave = "farewell" in seen.acts
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -114,7 +115,7 @@ class _Hearing:
             and self.of_speakers()
             and not self.sorry
         ):
-            return Meaning("declined", topic=topic)
+            return Meaning("declined", topic=topic, aloud=not asks and not self.sum)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
         if asks or "ask_everything" in self.acts:
@@ -167,7 +168,7 @@ class _Hearing:
         """Return the meaning of words that may answer the open question."""
         seen, topic, yesno = self.seen, self.topic, self.seen.yesno
         if self.fresh and "nothing" in self.acts and not self.sorry:
-            return Meaning("none" if topic != NAME else "declined", topic=topic)
+            return Meaning("none" if topic != NAME else "declined", topic=topic, aloud=not self.sum)
         if topic == NAME and self.reader.words & {"he", "she", "they"}:
             return None  # he's called Jonathan
         felt = seen.feelings and len(self.text.split()) > 2
@@ -187,7 +188,9 @@ class _Hearing:
             return None
         if yesno.unsure or yesno.no:
             declined = topic in (NAME, "home", "origin")
-            return Meaning("unsure" if yesno.unsure else "declined" if declined else "none", topic=topic)
+            return Meaning(
+                "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
+            )
         known = plain(seen.text) in bundled_matcher("answers").exact  # what only resembles a yes may be a statement
         mere = known and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         return Meaning("which", topic=topic) if mere else None
@@ -211,7 +214,8 @@ class _Hearing:
             said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
             for said in self.seen.statements
         )  # my name is..., who am I talking to
-        if other or "identify" not in self.seen.acts:
+        match = self.seen.act("identify")
+        if other or match is None or match.text.endswith("?"):  # me?
             return None
         name = Reader(self.seen).remaining_name()
         return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
@@ -241,6 +245,8 @@ class _Hearing:
         wishes = [said for said in self.seen.statements if said.verb in WORDS["forgetting"]]
         for said in filter(self.is_wish, wishes):
             object, low = said.object, said.object.text.lower()
+            if low == "it":
+                continue  # an idiom: never mind
             if object.person == "I" or (object.head or low) in WORDS["everything"] or low.endswith(" data"):
                 about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", self.seen.text, re.IGNORECASE)
                 return Meaning("forget") if about_me else None
