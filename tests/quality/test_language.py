@@ -11,7 +11,14 @@ from quality.measure import labelled
 from ravestate.language.examples import bundled
 
 FLOOR = 0.97
-FLOORS = {"acts_rows": 0.9, "feelings_rows": 0.93, "emotion_rows": 0.95, "quiet_rows": 0.9, "typed_rows": 0.93}
+FLOORS = {
+    "acts_rows": 0.9,
+    "intents_rows": 0.93,
+    "feelings_rows": 0.93,
+    "emotion_rows": 0.95,
+    "quiet_rows": 0.9,
+    "typed_rows": 0.93,
+}
 """Sets that are recognised by examples, no sentence of which is an example; and what people type in a hurry."""
 LABELS = {
     "questions_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
