@@ -247,14 +247,17 @@ async def _for_ever(ended: list[str]) -> None:
         ended.append("for ever")
 
 
+async def _end() -> None:
+    """End at once."""
+
+
 async def _fail() -> None:
-    await asyncio.sleep(0)
     raise rs.PlatformError("too slow")
 
 
 def test_when_one_of_several_ends_the_others_do_and_its_fault_is_not_lost() -> None:
     ended: list[str] = []
-    asyncio.run(until_first_ends(_for_ever(ended), asyncio.sleep(0)))
+    asyncio.run(until_first_ends(_for_ever(ended), _end()))
     with pytest.raises(rs.PlatformError, match="too slow"):
         asyncio.run(until_first_ends(_fail(), _for_ever(ended), _for_ever(ended)))
     assert ended == ["for ever"] * 3

@@ -21,7 +21,7 @@ _last = 0
 
 def _next_id(type: str) -> str:
     """Return an id that is greater than earlier ones, so that sorting by id sorts nodes by age."""
-    global _last
+    global _last  # ids grow over the whole process, whichever thread or context makes the node
     with _lock:
         _last = max(_last + 1, time.time_ns() // 1000)
         return f"{type}:{_last:014x}{secrets.token_hex(4)}"
