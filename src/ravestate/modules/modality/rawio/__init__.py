@@ -4,12 +4,28 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .names import input, module, output, picture, piece, speaking, typing
+from .names import heard, hearing, input, module, output, picture, piece, sound, speaking, typing
+from .sound import IN_RATE, OUT_RATE, Line
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-__all__ = ["input", "module", "output", "picture", "piece", "say", "speaking", "typing"]
+__all__ = [
+    "IN_RATE",
+    "OUT_RATE",
+    "Line",
+    "heard",
+    "hearing",
+    "input",
+    "module",
+    "output",
+    "picture",
+    "piece",
+    "say",
+    "sound",
+    "speaking",
+    "typing",
+]
 
 
 def say(context: Context, text: str) -> None:

@@ -6,6 +6,8 @@ from typing import Any
 
 import ravestate as rs
 
+from .sound import Line
+
 module = rs.Module("rawio")
 
 input = module.slot("input", "", type=str, always=True, input=True)
@@ -26,3 +28,12 @@ typing = module.signal("typing", input=True, keep="latest")
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The picture that the user showed last: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
+
+sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
+"""The line to the user's microphone and loudspeaker, from a platform that carries sound; None if there is none."""
+
+hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
+"""The words so far of an utterance that the user is still speaking, for platforms that show captions."""
+
+heard: rs.Slot[str] = module.slot("heard", "", type=str, input=True)
+"""The part of the agent's last utterance that the user heard. A platform that speaks writes it when the sound ends."""

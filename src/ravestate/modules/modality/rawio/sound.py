@@ -1,0 +1,45 @@
+"""Sound in both directions: the line between a user's microphone and loudspeaker and the agent."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Protocol
+
+IN_RATE = 16_000
+"""The sampling rate of the user's sound (Hz)."""
+
+OUT_RATE = 24_000
+"""The sampling rate of the agent's sound (Hz)."""
+
+
+class Line(Protocol):
+    """A microphone and a loudspeaker. All sound is mono PCM: 16 bits, signed, little-endian.
+
+    A platform that carries sound, such as a web page, puts a line into `rawio.sound`. A platform that understands and
+    makes speech uses it.
+    """
+
+    def blocks(self) -> AsyncIterator[bytes]:
+        """Yield the user's sound at `IN_RATE`, in blocks of about 20 ms, until the line is closed."""
+        ...
+
+    def play(self, sound: bytes) -> None:
+        """Queue sound at `OUT_RATE` for the loudspeaker. It plays after the sound that is queued already."""
+        ...
+
+    def stop(self) -> None:
+        """Drop all queued sound, and silence the loudspeaker at once."""
+        ...
+
+    @property
+    def played(self) -> float:
+        """The seconds of sound that the loudspeaker has played since the line was opened, without pauses."""
+        ...
+
+    async def drained(self) -> None:
+        """Wait until all queued sound has been played or dropped."""
+        ...
+
+    def close(self) -> None:
+        """Close the line: `blocks` ends, and no further sound plays."""
+        ...
