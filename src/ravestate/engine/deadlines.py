@@ -14,16 +14,15 @@ class Kind(enum.IntEnum):
 
     RIPEN = 0  # all spikes of an activation are old enough
     RECHECK = 1  # the order of recovering utilities changes
-    PATIENCE = 2  # the patience of a pressured activation ends
-    STANDBY = 3  # the patience of a pressured stand-by rival ends
-    EXPIRE = 4  # a spike is too old for an incomplete activation
-    FORGET = 5  # a spike is too old for every detached need
-    TIMEOUT = 6  # a run times out
-    WATCH = 7  # the spikes of an `until` condition are old enough
+    PATIENCE = 2  # the patience of a pressured rival ends
+    EXPIRE = 3  # a spike is too old for an incomplete activation
+    FORGET = 4  # a spike is too old for every detached need
+    TIMEOUT = 5  # a run times out
+    WATCH = 6  # the spikes of an `until` condition are old enough
 
 
 # Reading an attribute of an enumeration costs more than using its value.
-RIPEN, RECHECK, PATIENCE, STANDBY, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
+RIPEN, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
 

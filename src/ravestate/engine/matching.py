@@ -7,9 +7,10 @@ from typing import Any
 from ravestate.engine import trace
 from ravestate.engine.activation import CANCEL, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.conflict_sets import ConflictSets
-from ravestate.engine.deadlines import WATCH
+from ravestate.engine.deadlines import PATIENCE, WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
+from ravestate.engine.horizon import SEEN
 from ravestate.engine.loops import MANY, Lineage
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
@@ -117,6 +118,8 @@ class Matching(ConflictSets):
             self._kill(next(iter(live)), "overflow")
         if signal.watchers and self._watches:
             self._watch(spike)
+        if self.hoping and (SEEN, signal.index) in self.hoping:
+            self._stirred[SEEN, signal.index] = None
         for need in signal.uncontested:
             self._offer(need, spike)
         if signal.contests:
@@ -155,6 +158,16 @@ class Matching(ConflictSets):
         self._activations += 1
         activation = self._new_activation(clause, self._activations)
         self._acquire(activation, need, spike)
+        if not need.detached:
+            group = spike.group.root()
+            if group.interested:
+                self._dirty[group] = None
+            if group.pressed and clause.index in group.pressed:
+                # The stand-by was under pressure, and this is what became of it.
+                until = group.pressed[clause.index]
+                activation.pressed = {group: until}
+                if until > self.now:
+                    self._deadlines.add(until, PATIENCE, (group, activation))
         if clause.simple:
             self._complete(activation)
             return

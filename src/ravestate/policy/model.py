@@ -141,6 +141,8 @@ class Clause:
     """Whether some, but not all, of the clause's needs are detached."""
     simple: bool = False
     """Whether the clause has one need without `min_age` and no guard: an activation with a spike is ready at once."""
+    apart: bool = False
+    """Whether an activation of the clause holds spikes of one group only: its firm needs are all kin."""
     reflexive: bool = False
     """Whether the clause hears a built-in flag; its activations then change neither flag (L22)."""
     cyclic: bool = False
