@@ -138,8 +138,8 @@ def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
 
 def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another_cause() -> None:
     # L15, L16: r1 holds s0 and s1 and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
-    # consumed, and r1 lacks it: it has its patience of 1 s. But r0 did not ask again, as its group is that of s0
-    # alone. So r1 was never under pressure, and r0 waited for ever.
+    # consumed, and r1 lacks it. Its patience for s0 began at 0 s, when it lacked s1 for the first time, and is over. But
+    # r0 did not ask again, as its group is that of s0 alone, and waited for ever.
     def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
         return (tuple(Want(signal, max_age=None) for signal in signals),)
 
@@ -160,7 +160,7 @@ def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another
     )
     play = Play(world).play()
     assert runs(play) == ["r2", "r0"]
-    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("4.5 s < Run(")
+    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("3.5 s < Run(")
     assert not play.engine.waiting
 
 

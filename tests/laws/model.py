@@ -65,6 +65,7 @@ class Act:
     held: dict[int, Spike] = field(default_factory=dict)  # place of a need → spike
     state: int = GATHERS
     turn: int = 0  # when it became ready
+    gated: bool = False  # it lacks nothing, but a predicate on a slot was false
     pressed: dict[Group, float] = field(default_factory=dict)  # group → end of its patience there
     parents: tuple[Spike, ...] = ()
     took: list[Group] = field(default_factory=list)
@@ -96,6 +97,8 @@ class Model:
         self.now = 0.0
         self.values: dict[int, Any] = {}
         self.spikes: list[Spike] = []
+        self.writing = False  # whether the signals of a write are being raised
+        self.newborn: Spike | None = None  # it has not been offered to all
         self.acts: list[Act] = []
         self.running: dict[int, Act] = {}
         self.retired: set[int] = set()
@@ -164,13 +167,19 @@ class Model:
                 for need in act.clause.needs:
                     if need.detached:
                         self.look(act, need)
-        held = {spike for act in self.acts for spike in act.held.values()}
+        held = {self.newborn, *(spike for act in self.acts for spike in act.held.values())}
         self.spikes = [s for s in self.spikes if s in held or 0 <= s.signal.retain and s.born + s.signal.retain > self.now]
         for act in list(self.acts):
-            if act.state == GATHERS and not act.lacks() and self.ripe(act) and self.opens(act.clause, act.rule):
-                act.state = READY
-                self.turns += 1
-                act.turn = self.turns
+            if act.state == GATHERS and not act.lacks() and self.ripe(act):
+                if act.gated and self.writing:
+                    continue  # gates are judged anew when the signals of a write are out
+                act.gated = not self.opens(act.clause, act.rule)
+                if not act.gated:
+                    act.state = READY
+                    self.turns += 1
+                    act.turn = self.turns
+            else:
+                act.gated = False
 
     def ripe(self, act: Act) -> bool:
         return all(act.held[n.index].born + n.min_age <= self.now for n in act.clause.needs)
@@ -450,6 +459,7 @@ class Model:
         rule = -1 if run is None or run.rule.detached else run.rule.index
         spike = Spike(self.born, signal, payload, self.now, group, parents, rule, self.count)
         self.spikes.append(spike)
+        self.newborn = spike
         mine = [s for s in self.spikes if s.signal is signal]
         if len(mine) > signal.limit:
             self.withdraw(mine[0])
@@ -463,6 +473,7 @@ class Model:
                     self.judge(act, need.clause)
         for need in signal.listeners:
             self.offer(need, spike)
+        self.newborn = None
 
     def passes(self, need: Any, payload: Any, rule: Any) -> bool:
         return all(self.test(predicate, payload, rule) for predicate in need.predicates)
@@ -613,12 +624,14 @@ class Model:
         if slot.keep_latest:
             for signal in slot.signals:
                 self.supersede(signal)
+        self.writing = True
         which = (0, 1 if value else 2) if slot.is_flag else (0,)
         for place in which:
             self.birth(slot.signals[place], value, parents, group, run)
         self.regate()
 
     def regate(self) -> None:
+        self.writing = False
         self.settle()
         self.watch_all()
 
@@ -632,6 +645,7 @@ class Model:
         entry = Entry(key, old[key] if remove else item)
         self.values[slot.index] = MappingProxyType(items)
         parents, group = self.origin(run)
+        self.writing = True
         for signal in raised:
             if signal.keep_latest:
                 self.supersede(signal)

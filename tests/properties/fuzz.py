@@ -15,11 +15,15 @@ from typing import Any
 
 from laws.model import Model
 from properties.worlds import Act, Counted, Endless, Gate, Op, Play, RuleOf, SignalOf, SlotOf, Want, World, compiled
+from ravestate.declare.core import RuleFailure
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import DeclarationErrors
 
 BIRTHS = 2_000
-STEPS = 4_000
+MOMENTS = 300
+"""Moments of a play that are compared."""
+
+STEPS = 3_000
 """Steps of derivations after which the interpreter, which has no cache, leaves a play."""
 
 
@@ -145,7 +149,7 @@ class Maker:
         for _ in range(2 if self.chance(0.2) else 1):
             parts: list[Any] = [self.want(heard) for _ in range(self.dice.choice([1, 1, 1, 2, 2, 3]))]
             if self.chance(0.12):
-                parts.append(Gate(f"v{self.dice.randrange(len(self.slots))}", self.dice.choice(["odd", "odd", "fussy"])))
+                parts.append(Gate(f"v{self.dice.randrange(len(self.slots))}", self.dice.choice(["odd", "odd", "never"])))
             clauses.append(tuple(parts))
         return tuple(clauses)
 
@@ -224,7 +228,7 @@ def story(world: World, machine: Any) -> list[str]:
                 numbers[effect.run] = len(numbers)
                 needs = run.clause.needs
                 held = run.held if isinstance(play.engine, Model) else run.spikes
-                spikes = [f"{n.signal.name}={held[n.index].payload!r}@{held[n.index].born:g}" for n in needs]
+                spikes = [f"{n.signal.name}={shown(held[n.index].payload)}@{held[n.index].born:g}" for n in needs]
                 values = sorted((name, dict(v) if hasattr(v, "keys") else v) for name, v in effect.values.items())
                 line += f"run {effect.rule.name}[{run.clause.number}] on {' '.join(spikes)}, reading {values}"
             case Ended():
@@ -239,13 +243,21 @@ def story(world: World, machine: Any) -> list[str]:
 
     play = Play(world, started=told, machine=machine, budget=4)
     try:
-        play.play()
-        play.settle(100.0)
+        for _ in range(MOMENTS):
+            if not play.step():
+                break
     except Endless as endless:
         lines.append(f"endless: {endless}")
     except Enough:
         lines.append(ENOUGH)
     return lines
+
+
+def shown(payload: Any) -> str:
+    """Return a payload as text; a failure without its wording."""
+    if isinstance(payload, RuleFailure):
+        return f"{payload.rule}: {type(payload.exception).__name__}"
+    return repr(payload)
 
 
 def difference(world: World) -> str:
@@ -344,8 +356,24 @@ def smaller_rules(rule: RuleOf) -> Iterator[RuleOf]:
             yield replace(rule, acts=(*rule.acts[:n], option, *rule.acts[n + 1 :]))
 
 
+def keeps_to_its_word(rule: RuleOf, slots: tuple[SlotOf, ...]) -> bool:
+    """Return whether a rule's function writes and emits only what the rule declares."""
+    for act in rule.acts:
+        for op in (*(op for _, op in act.steps), *act.last):
+            if op[0] == "emit" and op[1] not in rule.emits:
+                return False
+            if op[0] in ("write", "store", "discard") and op[1] not in rule.writes:
+                return False
+            if op[0] in ("store", "discard") and slots[int(op[1][1:])].kind != "collection":
+                return False
+    return True
+
+
 def compiles(world: World) -> bool:
-    """Return whether a world's policy has no fault."""
+    """Return whether a world's policy has no fault, and its rules do what they declare."""
+    adds = [op[1] for _, op in world.inputs if op[0] == "add"]
+    if not all(keeps_to_its_word(rule, world.slots) for rule in (*world.rules, *adds)):
+        return False
     try:
         compiled(world)
     except DeclarationErrors:
@@ -360,7 +388,7 @@ def shrink(world: World) -> World:
     while found:
         found = False
         for candidate in smaller(world):
-            if compiles(candidate) and verdict(candidate) == fault:
+            if len(repr(candidate)) < len(repr(world)) and compiles(candidate) and verdict(candidate) == fault:
                 world, found = candidate, True
                 break
     return world
@@ -372,7 +400,9 @@ def main(count: int, first: int, most: int = 1) -> int:
     start = time.process_time()
     for seed in range(first, first + count):
         world = world_of(seed)
-        if verdict(world):
+        fault = verdict(world)
+        if fault:
+            print(f"seed {seed}: {fault}", flush=True)
             faults.append(seed)
             if len(faults) <= most:
                 least = shrink(world)

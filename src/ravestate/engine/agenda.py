@@ -20,7 +20,7 @@ from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Ac
 from ravestate.engine.consent import Refusal, ask, stalemate
 from ravestate.engine.deadlines import PATIENCE, RECHECK, TIMEOUT
 from ravestate.engine.effects import Run
-from ravestate.engine.group import Group
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.loops import MANY, TURNS
 from ravestate.engine.slots import Slots
 from ravestate.engine.standing import Standing
@@ -67,7 +67,7 @@ class Agenda(Slots):
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
-        """Start the ready activations that need no consent, unless a guard is false or another run is in the way."""
+        """Start the ready activations that need no consent, as they became ready, unless a guard is false."""
         free = self._free
         self._free = []
         for activation in free:
@@ -240,6 +240,8 @@ class Agenda(Slots):
         if activation.interests:
             self._lose_interest(activation)
         activation.recheck = NEVER
+        if activation.pressed:
+            activation.pressed = NOTHING
         activation.blockers = activation.waits_for = activation.firm = ()
         stands_on = activation.stands_on = activation.firm_spikes()
         if rule.slots:

@@ -54,10 +54,17 @@ class Holdings(State):
             for spike in reversed(self.live.get(need.signal.index, {})):
                 if spike is held:
                     break
-                if spike.born + need.min_age <= self.now and self._fits(need, spike):
-                    self._release(activation, need, "")
-                    self._acquire(activation, need, spike)
+                ripe = spike.born + need.min_age <= self.now <= spike.born + need.max_age
+                if ripe and all(self._test(p, spike.payload, activation.clause.rule) for p in need.predicates):
+                    self._swap(activation, need, spike)
                     break
+
+    def _swap(self, activation: Activation, need: Need, spike: Spike) -> None:
+        """Let a detached need hold another spike."""
+        self._release(activation, need, "")
+        self._acquire(activation, need, spike)
+        if activation.state is GATHERING:
+            self._update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
         """Give a need whose spike was lost the oldest live spike that fits, if there is one (L12)."""
@@ -125,6 +132,7 @@ class Holdings(State):
                 if activation.ripens != NEVER:
                     activation.ripens = NEVER
                 if not clause.guards or all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+                    self.gated.pop(activation, None)
                     self._complete(activation)
                     return
                 self.gated[activation] = None
@@ -156,6 +164,8 @@ class Holdings(State):
         """
         if not late:
             activation.step(COMPLETE)
+            if activation.clause.asks_detached:
+                self._look_again(activation)
             if self._loops.runs > MANY and self._loops.defer(activation):
                 return
         clause = activation.clause
@@ -356,4 +366,4 @@ class Holdings(State):
         for spike in spikes:
             for other in list(spike.holders) if len(spike.holders) > 1 else ():
                 if other is not run and other.clause.rule is rule and other.state < RUNNING:
-                    self._lose(other, self._of_spike(other, spike), reason, run)
+                    self._lose(other, [n for n in self._of_spike(other, spike) if not n.detached], reason, run)

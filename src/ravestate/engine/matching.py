@@ -154,6 +154,8 @@ class Matching(ConflictSets):
                     self._stir(activation)
                     self._update(activation)
         if need.detached and clause.asks_detached:
+            if not need.min_age:
+                self._show(need, spike)
             return  # a detached need only looks: it starts no activation
         self._activations += 1
         activation = self._new_activation(clause, self._activations)
@@ -178,6 +180,13 @@ class Matching(ConflictSets):
                 if other.bit & activation.missing:
                     self.lacking.setdefault(other, {})[activation] = None
         self._update(activation)
+
+    def _show(self, need: Need, spike: Spike) -> None:
+        """Give a new spike to the activations that look at its signal already, for they hold the newest (L19)."""
+        for activation in list(self.active.get(need.clause.rule.index, ())):
+            if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
+                if activation.spikes[need.index] is not spike:
+                    self._swap(activation, need, spike)
 
     def _watch(self, spike: Spike) -> None:
         """Offer a new spike to the `until` conditions of runs (L21)."""

@@ -12,7 +12,7 @@ from typing import Any
 
 from ravestate.declare.condition import Holds
 from ravestate.declare.core import RuleFailure
-from ravestate.engine.activation import GATHERING, RUNNING, Activation
+from ravestate.engine.activation import RUNNING, Activation
 from ravestate.engine.deadlines import (
     EXPIRE,
     PATIENCE,
@@ -121,7 +121,7 @@ class State:
             group, rival = owner
             if isinstance(rival, int):
                 return bool(group.root().interested)
-            return rival.state == GATHERING and rival.pressed.get(group.root()) == time
+            return rival.state < RUNNING and rival.pressed.get(group.root()) == time
         if kind is RECHECK:
             return owner.recheck == time
         if kind is TIMEOUT:
