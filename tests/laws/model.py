@@ -64,7 +64,6 @@ class Act:
     clause: Any
     held: dict[int, Spike] = field(default_factory=dict)  # place of a need → spike
     state: int = GATHERS
-    turn: int = 0  # when it became ready
     gated: bool = False  # it lacks nothing, but a predicate on a slot was false
     pressed: dict[Group, float] = field(default_factory=dict)  # group → end of its patience there
     parents: tuple[Spike, ...] = ()
@@ -107,7 +106,7 @@ class Model:
         self.blamed: set[int] = set()
         self.chains: dict[tuple[Any, bool], set[int]] = {}
         self.out: list[Effect] = []
-        self.born = self.steps = self.count = self.turns = self.groups = 0
+        self.born = self.steps = self.count = self.groups = 0
 
     # ------------------------------------------------------------------------------- time
 
@@ -176,8 +175,6 @@ class Model:
                 act.gated = not self.opens(act.clause, act.rule)
                 if not act.gated:
                     act.state = READY
-                    self.turns += 1
-                    act.turn = self.turns
             else:
                 act.gated = False
 
@@ -236,7 +233,8 @@ class Model:
         return False
 
     def start_free(self) -> bool:
-        free = sorted((a for a in self.acts if a.state == READY and not self.asks(a)), key=lambda act: act.turn)
+        free = [act for act in self.acts if act.state == READY and not self.asks(act)]
+        free.sort(key=lambda act: (max(spike.id for spike in act.held.values()), act.clause.index, act.id))
         for act in free:
             if act.state == READY and self.guarded(act):
                 self.start(act)
@@ -700,7 +698,7 @@ class Model:
         wiper = self.run_of(event)
         doomed = [s for s in self.known() if any(one.signal.name == event.signal for one in s.line())]
         for spike in doomed:
-            for act in self.acts:
+            for act in sorted(self.acts, key=lambda act: (act.clause.index, act.id)):
                 if act.state == RUNS and act is not wiper and act.rule.interruptible and spike in act.held.values():
                     self.cancel(act, "wiped")
             self.withdraw(spike)

@@ -67,8 +67,8 @@ class Agenda(Slots):
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
-        """Start the ready activations that need no consent, as they became ready, unless a guard is false."""
-        free = self._free
+        """Start the ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
+        free = sorted(self._free, key=_newest) if len(self._free) > 1 else self._free
         self._free = []
         for activation in free:
             clause = activation.clause
@@ -291,6 +291,12 @@ class Agenda(Slots):
             self._set_flag(self._activity, activity)
             return True
         return False
+
+
+def _newest(activation: Activation) -> tuple[int, int, int]:
+    """Return the sort key of an activation that needs no consent: its newest spike, then the order of declaration."""
+    newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
+    return (newest, activation.clause.index, activation.id)
 
 
 def _endless(rules: Sequence[RulePlan]) -> str:

@@ -169,7 +169,7 @@ class Engine(Agenda):
         wiper = self._run(event.run)
         known = {spike for spikes in (*self.live.values(), self._watched_by) for spike in spikes}
         for spike in sorted((s for s in known if s.comes_from(signal.name)), key=lambda spike: spike.id):
-            for holder in list(spike.holders):
+            for holder in sorted(spike.holders, key=lambda holder: (holder.clause.index, holder.id)):
                 if holder.state == RUNNING and holder is not wiper and holder.clause.rule.interruptible:
                     self._cancel(holder, "wiped")
             self._kill(spike, "wiped")
