@@ -89,7 +89,7 @@ def test_interrupted_it_says_how_to_go_on(
     monkeypatch.setattr(collecting, "read", interrupted)
     code, _, errors = call(capsys, "genqa", "index", "docs")
     assert code == 130
-    assert "what was read so far is kept, and the same command continues" in errors
+    assert "interrupted: to continue, run the same command again" in errors
     monkeypatch.undo()
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(docs.parent / "data"))

@@ -71,7 +71,7 @@ def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: C
         (("--format", "png"), "invalid choice: 'png'"),
         (("--without", "nlp"), "--without works only on the complete agent: name no MODULE or file with it"),
         (("--unfold", "helo"), "--unfold helo: the agent has no such module; did you mean 'hello'?"),
-        (("--unfold", "hello", "--no-fold"), "--unfold folds the other modules, --no-fold folds none: use only one"),
+        (("--unfold", "hello", "--no-fold"), "and --no-fold folds no module: use only one of them"),
     ],
 )
 def test_wrong_use_is_2_and_writes_nothing(

@@ -17,7 +17,7 @@ SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
     """Refuse a JSON value that a user may not write to a slot. `Slot.check` makes further checks during the write.
 
-    The type of the current value, `holds`, stands in if the slot declares none.
+    If the slot declares no type, the value must have the type of the current value, `holds`.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")

@@ -7,7 +7,8 @@ Making records is expensive for a busy agent, so a rate limit applies: a burst, 
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent also share one limit on the records that they keep. Beyond it, the recorders with the most records are cut to the same length.
+All recorders of an agent also share one limit on the records that they keep. If they exceed it, the longest recorders
+are all cut to the same length.
 """
 
 from __future__ import annotations
@@ -216,7 +217,7 @@ class Recorders:
         self._of: WeakKeyDictionary[Context, ref[Recorder]] = WeakKeyDictionary()  # the context holds its recorder
 
     def of(self, context: Context, *, whole: bool = False) -> Recorder:
-        """Return the recorder of a context, new at the first call; `whole` is as for `Recorder`."""
+        """Return the recorder of a context; the first call makes it. For `whole`, see `Recorder`."""
         known = self._of.get(context)
         found = None if known is None else known()
         if found is None:

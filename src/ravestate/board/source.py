@@ -221,7 +221,7 @@ class RecordedSource:
         return State(slots, [], *self.clock())
 
     def explain(self, rule: str) -> Explained:
-        """Refuse to explain the state of a rule: only a running agent has one."""
+        """Refuse the request: a recording has no live state of a rule."""
         raise RavestateError("this is a recording: there is no agent to ask")
 
     async def act(self, command: ClientFrame) -> None:

@@ -131,7 +131,7 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """As `read_trace`, in a separate process with a time limit: this process's other threads keep running."""
+    """Do as `read_trace`, but in a process with a time limit, so that the other threads of this process keep running."""
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:

@@ -78,7 +78,7 @@ _LAST = (0, 2)  # the ranks of `_urgency` whose vertices get the last free numbe
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return a vertex's sort key (rank, gain): sinks, sources, sinks and sources among strong edges, the rest."""
+    """Return a vertex's sort key (rank, gain). Ranks: sinks, sources, the same among strong edges alone, the rest."""
     if out == 0:
         return (0, 0)
     if into == 0:

@@ -76,7 +76,7 @@ def _start(
 
 
 def _dummies_centred(graph: LayeredGraph, vertices: Sequence[int]) -> list[int]:
-    """Return `vertices` in another order: the dummies in the middle."""
+    """Return `vertices` with the dummies moved to the middle."""
     others = [v for v in vertices if graph.kind[v] != "dummy"]
     half = len(others) // 2
     return [*others[:half], *(v for v in vertices if graph.kind[v] == "dummy"), *others[half:]]

@@ -84,7 +84,7 @@ def _tight_tree(rank: list[int], arcs: Sequence[Arc]) -> list[int]:
 
 
 def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int]) -> tuple[int, set[int]]:
-    """Return the tree arc with the least cut value, and one of its sides, which is empty if no value is negative."""
+    """Return the tree arc with the least cut value, and one of its sides. If no value is negative, the side is empty."""
     near: list[list[int]] = [[] for _ in surplus]
     for arc in tree:
         for end in arcs[arc][:2]:
@@ -110,7 +110,7 @@ def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int])
 
 
 def _balanced(rank: list[int], arcs: Sequence[Arc], surplus: Sequence[int]) -> list[int]:
-    """Return the ranks from 0 on. Given several equally good ranks, a vertex takes the one with the fewest vertices."""
+    """Return the ranks from 0 on. If several ranks cost the same, a vertex takes the rank with the fewest vertices."""
     least = min(rank)
     rank = [r - least for r in rank]
     size = [rank.count(r) for r in range(max(rank) + 1)]

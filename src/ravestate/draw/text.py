@@ -32,7 +32,7 @@ def width(text: str, size: float) -> float:
 
 
 def shorten(text: str, size: float, limit: float) -> str:
-    """Return the text, without its middle if it is wider than `limit` pixels. Names often differ at one end."""
+    """Cut the middle out of a text wider than `limit` pixels; both ends stay, since names often differ there."""
     if width(text, size) <= limit:
         return text
     room = limit - width("…", size)
@@ -49,7 +49,7 @@ def shorten(text: str, size: float, limit: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Return the text with U+FFFD for each control character, line break, noncharacter and direction mark."""
+    """Replace each control character, line break, noncharacter and direction mark by U+FFFD."""
     return "".join("\ufffd" if _unprintable(character) else character for character in text)
 
 

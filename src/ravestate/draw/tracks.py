@@ -24,7 +24,7 @@ _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above that of all c
 
 @dataclass(slots=True)
 class Tracks:
-    """How many tracks there are, and the track of each segment: None for a straight (rarely, a slanted) line."""
+    """The number of tracks, and the track of each segment; None for a straight (rarely, a slanted) line."""
 
     count: int
     of: list[int | None]
@@ -108,7 +108,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 
 
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
-    """Return the segments whose stubs overlap unless `a` is to the left of `b`; of each overlap, the smaller side."""
+    """Return the segments whose stubs overlap unless `a` is left of `b`; each overlap counts with its smaller side."""
     found: set[int] = set()
     for p, y in a.left.items():
         for q, z in b.right.items():

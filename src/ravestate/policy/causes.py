@@ -1,7 +1,7 @@
 """The static graph of causes between signals (L7), and its closures.
 
-An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached rule
-have no causes, so only the wide closures contain them.
+An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. The closure of a signal
+holds the signal itself and all signals that lead to it. Effects of a detached rule have no causes.
 
 A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
 intersections are fast.
@@ -78,7 +78,7 @@ class Causes:
 
     @cached_property
     def _closures(self) -> list[int]:
-        """Component → the closure that all its signals have."""
+        """Return component → the closure that the component's signals share."""
         of = self.components.of
         found: list[int] = []
         for number, members in enumerate(self.components.members):  # causes before their effects

@@ -50,7 +50,7 @@ class SignalPlan:
     uncontested: tuple[Need, ...] = ()
     """The listeners that take part in no contest."""
     contests: tuple[tuple[Clause, ...], ...] = ()
-    """Groups of clauses in which only one can have a given spike, the best clause first."""
+    """Groups of clauses that compete for each spike of the signal; the best clause of a group comes first."""
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
@@ -94,7 +94,7 @@ class SlotPlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Need:
-    """One constraint of a clause, as its need for a spike. Ages are in seconds."""
+    """A constraint of a clause: the clause needs a spike that meets it. Ages are in seconds."""
 
     clause: Clause
     index: int
@@ -133,16 +133,16 @@ class Clause:
     utility: float = 0.0
     """The information of that pathway, plus that of the clause's predicates, in nats (L9)."""
     base: float = 0.0
-    """The utility, or `NO_INFORMATION` if that is 0, times the rule's weight."""
+    """The utility times the rule's weight; a utility of 0 counts as `NO_INFORMATION`."""
     all_bits: int = 0
     firm_bits: int = 0
     """The bits of the clause's non-detached needs."""
     asks_detached: bool = False
     """Whether some, but not all, of the clause's needs are detached."""
     simple: bool = False
-    """Whether the clause has one need without `min_age` and no guard: an activation with a spike is ready at once."""
+    """Whether a spike makes the clause ready at once: it has a single need, without `min_age`, and no guard."""
     reflexive: bool = False
-    """Whether the clause hears a built-in flag; its activations then change neither flag (L22)."""
+    """Whether the clause hears a built-in flag. If so, its activations change no built-in flag (L22)."""
     cyclic: bool = False
     """Whether the clause's rule may raise, without detachment, a signal that leads to one of the clause's needs."""
 

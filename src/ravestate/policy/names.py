@@ -59,7 +59,7 @@ class Names:
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, have one name."""
-        if self._modules[name.split(":")[0]] < 2:  # otherwise the fault is that two modules have one name
+        if self._modules[name.split(":")[0]] < 2:  # two modules with one name are a fault reported elsewhere
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:

@@ -120,7 +120,7 @@ class EagerTask:
                     pending = coroutine.throw(thrown)
             except StopIteration as stop:
                 return stop.value
-            except SystemExit as exit:  # raised here, it would end the loop and all other rules
+            except SystemExit as exit:  # if raised here, SystemExit would end the loop and all other rules
                 return exit
             finally:
                 self._timer.end(rule, began)

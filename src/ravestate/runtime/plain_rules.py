@@ -14,7 +14,7 @@ from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.workers import Job, JobQueue
 
 STARVED = 5.0
-"""After this many seconds of a plain function's wait for a thread, a warning names the rules that hold the threads."""
+"""If a plain function has waited this many seconds for a thread, a warning names the rules that hold the threads."""
 
 log = logging.getLogger("ravestate")
 
