@@ -77,7 +77,7 @@ def test_the_help_names_the_file_of_the_memory(
     assert Path(tmp_path, ".local/share/ravestate/default/memory.lbug") == default_path("default")
     assert "\n  ~/.local/share/ravestate/default/memory.lbug (for another file: --set ontology.path=FILE" in out
     assert all(f"ravestate memory {action}" in out for action in ("list", "show NAME", "forget NAME"))
-    assert (f"you type in {history_file()}\n" in out) == (command == "chat")
+    assert (f"saves your lines to {history_file()}\n" in out) == (command == "chat")
     assert str(history_file()).startswith("/state/")
 
 

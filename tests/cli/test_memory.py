@@ -167,7 +167,7 @@ def test_files_of_a_deleted_memory_are_named(file: Path, folder: Path, capsys: C
     code, _, errors = call(capsys, "memory", "--path", str(file), "list")
     assert code == 1 and f"there is no memory yet: {file.resolve()} does not exist" in errors
     assert "has left memory.lbug.sum, memory.lbug.wal, which may contain personal data" in errors
-    assert f"ravestate memory reset --path {file.resolve()} removes them" in errors
+    assert f"to remove them, run ravestate memory reset --path {file.resolve()}" in errors
 
 
 def test_an_export_is_the_users_alone_whatever_was_left_before(file: Path, folder: Path, capsys: Capture) -> None:

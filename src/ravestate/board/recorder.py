@@ -56,7 +56,7 @@ class Gap:
 
 
 SCHEDULE = "/proc/thread-self/schedstat"
-"""The file in which Linux counts a thread's nanoseconds on a processor and in the queue for one."""
+"""The file in which Linux counts a thread's nanoseconds on a processor and in a queue for a processor."""
 
 
 class IdleShare:
@@ -171,7 +171,7 @@ class Recorder:
             self._grown()
 
     def _take_after_gap(self, record: Record) -> None:
-        """Take the first spike after a gap, whose number shows how many spikes were missed."""
+        """Take the first spike after a gap; its number shows how many spikes were missed."""
         if isinstance(record, Born) and self._gap is not None:
             self._gap.spikes = record.spike - self._spike - 1
             self.missed += self._gap.spikes

@@ -62,7 +62,7 @@ class Recordings:
         self._uploaded: OrderedDict[str, Recording] = OrderedDict()
 
     def get(self, name: str | None) -> Recording | None:
-        """Return the recording with this name, or the first one if the name is None; None if there is none."""
+        """Return the recording with this name; if the name is None, the first recording. Return None if it is missing."""
         return self._first if name is None else self._uploaded.get(name)
 
     def put(self, recording: Recording) -> str:

@@ -80,7 +80,7 @@ def _from_file(name: str, path: Path) -> Module:
 
 @contextlib.contextmanager
 def _loading(failure: str) -> Generator[None]:
-    """Turn an exception in the body, which loads a user's module, into an error whose message begins with `failure`.
+    """Turn an exception while a user's module loads into an error whose message begins with `failure`.
 
     ``sys.exit`` counts as such an exception, because it would end the command without a message.
     """

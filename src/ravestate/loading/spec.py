@@ -54,7 +54,7 @@ class AgentSpec:
         return spec
 
     def options(self) -> dict[str, Any]:
-        """Return the arguments for `ravestate.Context` besides the modules."""
+        """Return the arguments for `ravestate.Context`, without the modules."""
         return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
 
     def read(self, path: Path) -> list[tuple[str, Path]]:

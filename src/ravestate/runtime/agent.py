@@ -1,4 +1,4 @@
-"""An agent without a conversation: each conversation gets a context of its own."""
+"""An agent apart from its conversations. Each conversation gets its own context."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class PlainRules:
             self._alarm = self._loop.call_later(STARVED, self._watch)
 
     def abandon(self, ctx: RuleContext) -> None:
-        """Stop waiting for a run's function, which keeps running: a thread cannot be stopped."""
+        """Stop waiting for a run's function. The function keeps running, because a thread cannot be stopped."""
         self._queue.abandon(self.runs.pop(ctx))
 
     def close(self) -> None:

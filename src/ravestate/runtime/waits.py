@@ -41,7 +41,7 @@ class Waits:
                 future.set_result(None)
 
     def end(self, error: BaseException | None = None) -> None:
-        """Wake all tasks, with `error` unless that is None. Further tasks do not wait."""
+        """Wake all tasks; if `error` is given, they raise it. Later tasks do not wait."""
         self._ended = True
         for future in self.futures:
             if future.done():

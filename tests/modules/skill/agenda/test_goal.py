@@ -32,7 +32,7 @@ number = guide.slot("number", 3)
         ({"say": "a", "done": "("}, r"done='\(' is not a regular expression"),
         ({"say": "a", "refused": 7}, r"refused=7 is neither"),
         ({"say": "a", "done": number}, r"write done=guide:number\.changed"),
-        ({"say": "a", "unless": asked}, r"has a signal in it: write unless=slot\.holds"),
+        ({"say": "a", "unless": asked}, r"contains a signal: write unless=slot\.holds"),
     ],
 )
 def test_faulty_goals(arguments: dict[str, Any], message: str) -> None:

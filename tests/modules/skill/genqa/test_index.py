@@ -155,7 +155,7 @@ def test_another_program_s_file_is_refused(tmp_path: Path) -> None:
     base = sqlite3.connect(tmp_path / "photos.sqlite")
     base.execute("CREATE TABLE photos (name TEXT)")
     base.close()
-    with pytest.raises(rs.PlatformError, match="no index of genqa"):
+    with pytest.raises(rs.PlatformError, match="not an index of genqa"):
         Index(tmp_path / "photos.sqlite")
 
 

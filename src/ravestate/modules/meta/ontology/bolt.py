@@ -52,7 +52,7 @@ class BoltStore:
                 import neo4j
         except ImportError as error:
             raise PlatformError(f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'") from error
-        # The driver warns of queries for a property that no node has yet, which is not a fault.
+        # The driver warns of a query for a property that no node has yet, but such a query is not a fault.
         logging.getLogger("neo4j.notifications").setLevel(logging.ERROR)
         self._neo4j: Any = neo4j  # the driver is only partly typed
         self._place = url
