@@ -190,7 +190,7 @@ class History:
                 self._attempt(record.run, record).started = record
             case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
-                if attempt is not None:  # None: the attempt began before the trace
+                if attempt is not None:  # if it is None, the attempt began before the trace
                     attempt.records.append(record)
                     if isinstance(record, t.GaveUp):
                         attempt.lose(record)
@@ -272,9 +272,11 @@ class Rivals:
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Return a phrase: the other rule that waited until the patience of `rule` ran out, by `end` (seconds)."""
+        """Return a phrase with the rule that waited until the patience of `rule` ran out, at or before `end` (seconds)."""
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted: a rule's patience never changes
+        times = bisect_right(
+            pressed, end, key=lambda one: one.until
+        )  # a rule's patience never changes, so these are sorted
         ended = f"this rule's patience ran out at {seconds(end)}"
         if not times:
             return ended

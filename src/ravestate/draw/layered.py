@@ -21,7 +21,7 @@ _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, F
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; overlapping dashes would not match
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
-_LEAST = 3.0  # minimum pixels between ports; with less room they coincide, but entering and leaving lines stay apart
+_LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, but entering and leaving lines stay apart
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 A pathway is a set that holds an alternative of each of its signals (`Completion`). The search begins with the
 clause's own signals. Each step takes the highest signal that lacks an alternative, and tries each of its alternatives.
 Two sets have the same future if they agree in all signals that may still matter; the search follows only the cheaper
-one. So independent choices do not multiply. In a chain, a ring or a tree, a step or two lead from the least pathway
+one. So independent choices do not multiply. In a chain, a ring or a tree, one or two steps lead from the least pathway
 of the causes to that of the effect.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
@@ -149,7 +149,7 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """Return the signals without an alternative in `found`: some of `lacking`, and some that `before` has not."""
+        """Return the signals that lack an alternative in `found`, out of `lacking` and those that `before` does not have."""
         new = found & ~before
         left = lacking | new & self._open
         for place in each(left):

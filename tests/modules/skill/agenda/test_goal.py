@@ -17,8 +17,8 @@ number = guide.slot("number", 3)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, r"say=None and intent=None: write one of them"),
-        ({"say": "a", "intent": "b"}, r"say='a' and intent='b': write one"),
+        ({}, r"say=None and intent=None: give exactly one"),
+        ({"say": "a", "intent": "b"}, r"say='a' and intent='b': give exactly one"),
         ({"say": ""}, r"say='': write a text"),
         ({"say": []}, r"say=\[\]: write a text"),
         ({"say": ["a", 3]}, r"write a text, several"),

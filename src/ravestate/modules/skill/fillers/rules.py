@@ -1,4 +1,4 @@
-"""The rules: when a pause is filled."""
+"""The rules that fill a pause while the user waits for an answer."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _silent(speaking: bool) -> bool:
 
 
 @module.rule(
-    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # later, the answer may have come
+    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # at any later time, the answer may have come
     reads=(filled, waiting),
     writes=(verbaliser.intent, filled, promised),
 )
@@ -56,7 +56,7 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=rawio.input.changed.max_age(REMEMBERED)
-    & rawio.output.changed.max_age(None)  # coherent: words and their answer
+    & rawio.output.changed.max_age(None)  # the user's words and their answer
     | rawio.output.changed.max_age(None)
     | rawio.input.changed.detached()
     | rawio.speaking.true.detached(),

@@ -22,22 +22,22 @@ from .shipped import bring_up
 from .stems import Stems
 
 RETRIEVED = 16
-"""The number of passages with any word of the question, and of those with all its words, to compare word by word."""
+"""The maximum number of passages that the search returns with any word of the question, and of those with all words."""
 READ = (1, 1, 2, 4, 8, 8)
 """The sizes of the batches in which these passages are read. A batch is read only if those before it had no answer."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Scores that end the reading: `GOOD` if several passages have been read, `VERY_GOOD` after a single passage, and
-`HOPELESS` if all of the first few passages are worse."""
+"""Best scores that end the reading: `VERY_GOOD` after the first passage, `GOOD` after later passages, and `HOPELESS` or
+less after the first few passages."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""All passages of a document in view are read if it has at most this many."""
+"""The maximum number of passages to compare from a document that the thread is about, whatever words they have."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON, COMMON_KIND = 20_000, 2_000
-"""A word in more than `COMMON` passages is searched only if there is no rarer word; `COMMON_KIND` is for words of kinds."""
+"""A word in more passages than this is searched only if all are so common. `COMMON_KIND` is for words of `Question.kinds`."""
 NAMES, KINDS = 0.4, 0.7
-"""The share of words for a follow-up that has only names; `KINDS` if the passage has a word for the kind of answer."""
+"""The share of words in a passage if a follow-up has only names: `KINDS` if the passage has a word of `Question.kinds`."""
 WORDS = 24
 """The maximum number of words to search for."""
 

@@ -82,7 +82,7 @@ def answer_in(
 
 
 def _about(answerer: Answerer, question: Question, reading: Reading, latest: str) -> tuple[Question, tuple[str, ...]]:
-    """Return a question about something in view, and the titles of the documents that may have the answer."""
+    """Return a question about something in the thread, and the titles of the documents that may have the answer."""
     about = as_question(reading.about)
     title = answerer.titled(reading.about)
     given = question.given | {word.lower() for word in about.words}
@@ -162,7 +162,7 @@ def other_wording(question: str) -> str:
         return tree.phrase(some)
 
     place = next((word for word in words if word.low == "in"), None)
-    for word in words[2:]:  # the subject before *the ... of*
+    for word in words[2:]:  # the words before *the ... of* are the subject
         if word.low == "the" and any(other.low == "of" for other in words[word.index :]):
             return f"what is {text(words[word.index :])}?"
     if place is not None and 1 < place.index < len(words) - 1:
