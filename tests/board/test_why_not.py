@@ -364,7 +364,7 @@ def test_its_spike_was_too_young(stage: Stage) -> None:
         sim.put(stage.input, "x")
         found = ask(sim, "slow")
     assert found.verdict == "young"
-    assert "demo:input:changed must be 3 s old, so not before 3.000 s" in found.words
+    assert "demo:input:changed must be 3 s old, so the rule could not run before 3.000 s" in found.words
 
 
 def test_the_answering_rule_is_named_with_the_source_of_its_input(stage: Stage) -> None:

@@ -386,7 +386,7 @@ def test_a_malformed_set_has_a_message(text: str, folder: Path, capsys: Capture)
         ),
         ("idel.bored_after=3", "module 'idel' is not part of this agent; did you mean 'idle'?"),
         ("conoi.prompt=x", "module 'conoi' is not part of this agent; did you mean 'conio'?"),
-        ("conio.prompt=x", "module 'conio' is not part of this agent: add it to the modules"),
+        ("conio.prompt=x", "module 'conio' is not part of this agent: add the module"),
         ("rawio.loud=1", "module 'rawio' has no settings"),
     ],
 )

@@ -274,9 +274,7 @@ class Rivals:
     def pressure(self, rule: RuleView, end: float) -> str:
         """Return a phrase with the rule that waited until the patience of `rule` ran out, at or before `end` (seconds)."""
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(
-            pressed, end, key=lambda one: one.until
-        )  # a rule's patience never changes, so these are sorted
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted, since a rule's patience never changes
         ended = f"this rule's patience ran out at {seconds(end)}"
         if not times:
             return ended

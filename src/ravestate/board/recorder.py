@@ -7,8 +7,7 @@ Making records is expensive for a busy agent, so a rate limit applies: a burst, 
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent also share one limit on the records that they keep. If they exceed it, the longest recorders
-are all cut to the same length.
+All recorders of an agent share one limit on their records. Beyond it, the longest recorders are cut to the same length.
 """
 
 from __future__ import annotations

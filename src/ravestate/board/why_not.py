@@ -328,7 +328,7 @@ class _Inquiry:
 
 def _young(clause: ClauseView, ripe: float) -> str:
     slow = max(clause.constraints, key=lambda constraint: constraint.min_age)
-    return f"{slow.signal} must be {slow.min_age:g} s old, so not before {seconds(ripe)}"
+    return f"{slow.signal} must be {slow.min_age:g} s old, so the rule could not run before {seconds(ripe)}"
 
 
 def _gated(clause: ClauseView, waited: str) -> str:

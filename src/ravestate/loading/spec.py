@@ -111,9 +111,7 @@ class AgentSpec:
             return
         known = {found.name: found for found in with_required(self.modules)}
         if module not in known:
-            hint = (
-                ": add it to the modules" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
-            )
+            hint = ": add the module" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
             self.faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
         elif (settings := known[module].settings) is None:
             self.faults.append(f"--set {text}: module {module!r} has no settings")

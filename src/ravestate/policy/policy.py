@@ -72,10 +72,7 @@ class Policy:
         """Return the utility of a rule in nats, without weight and cooldown: the greatest among its clauses' (L9).
 
         The result may be slightly too high if dozens of signals on a pathway each have several causes, and these share
-        causes (``policy/least.py``). In all other cases, it is exact.
-
-        Raises:
-            DeclarationError: The policy has no such rule.
+        causes (``policy/least.py``). In all other cases, it is exact. Raise a `DeclarationError` for an unknown rule.
 
         Example:
             >>> import ravestate as rs

@@ -145,7 +145,7 @@ class EmbeddedStore:
 
     def prepare(self, types: Types) -> None:
         """Create the tables and columns that the types need and the file lacks."""
-        if types is self._prepared:  # the types are prepared: no other process writes this file
+        if types is self._prepared:  # no other process changes the file, so the tables are still there
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
         if missing:  # write only if needed, so that memory on a full disk can be read
@@ -325,7 +325,7 @@ class EmbeddedStore:
     def _get_stuck(self, said: str) -> None:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
-            os.truncate(self._files.log, self._log_good)  # the next opening stops at an incomplete record
+            os.truncate(self._files.log, self._log_good)  # an incomplete record would make the log look damaged
         for held in (self._connection, self._database):  # garbage collection of these would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 
