@@ -94,7 +94,7 @@ def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(comple
     assert (code, out) == (0, f"{complete_agent}\n")
     assert re.fullmatch(
         r"ravestate graph: folded \d+ rules into their modules: --unfold MODULE draws the rules of one module, "
-        r"--no-fold draws those of all modules\n",
+        r"and --no-fold draws all rules\n",
         errors,
     )
     assert all(f">module {name} (" in out for name in ("conio", *COMPLETE))

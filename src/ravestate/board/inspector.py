@@ -191,7 +191,7 @@ class Inspector:
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
         """Send answers to the page, and new records at most about twenty times a second."""
         idle = IdleShare()
-        sent: bool | None = None  # whether the clock was stopped, as the last frame said
+        sent: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:

@@ -74,7 +74,7 @@ class LiveSource:
         return self._recorder.since(number, most)
 
     def renewed(self) -> bool:
-        """Describe the policy again if a rule was added since the last call; return whether one was."""
+        """If a rule was added since the last call, describe the policy again and return True."""
         if self._context.policy is self._policy:
             return False
         self._describe()

@@ -69,7 +69,7 @@ def _doubtful_examples(policy: Policy) -> list[Finding]:
     from ravestate.modules.meta.nlp.intent import doubtful_examples, intents_of
     from ravestate.policy.findings import Finding
 
-    mend = "give it to one of them, or write examples that differ more"
+    mend = "give it to only one intent, or write examples that differ more"
     return [
         Finding("example", own, f"the example {text!r} of intent {own} fits intent {other} as well: {mend}")
         for text, own, other in doubtful_examples(intents_of(policy))

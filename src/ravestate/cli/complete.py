@@ -79,7 +79,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
     for name in out:
         agent.settings.pop(name, None)
     left = (
-        f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; for all of it: " if out else ""
+        f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; to add them: " if out else ""
     )
     print(f"ravestate {command}: {left}pip install 'ravestate[chat]'", file=sys.stderr)
 

@@ -23,9 +23,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     indexing = actions.add_parser(
         "index",
         help="read files and folders",
-        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Run it again to read "
-        "new and changed files, and to forget deleted ones; it also resumes after an interruption. Exit code 1: a "
-        "file could not be read.",
+        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Run the command again to read "
+        "new and changed files, to forget deleted files, or to resume after an interruption. Exit code 1: a file could "
+        "not be read.",
     )
     listing = actions.add_parser("list", help="list the files that have been read")
     forgetting = actions.add_parser("forget", help="forget files and folders")
@@ -67,7 +67,7 @@ def _run(options: argparse.Namespace) -> int:
         return _ask(settings, " ".join(options.question))
     path = path_of(settings)
     if options.action != "index" and not path.exists():
-        print(f"nothing has been read yet: ravestate genqa index PATH (into {path})")
+        print(f"nothing has been read yet: to read files into {path}, run ravestate genqa index PATH")
         return 0 if options.action == "list" else 1
     with Index(path) as index:
         if options.action == "index":

@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
         if not (options.fold or options.unfold):
             print(
                 f"ravestate graph: folded {len(policy.rules)} rules into their modules: --unfold MODULE draws the "
-                "rules of one module, --no-fold draws those of all modules",
+                "rules of one module, and --no-fold draws all rules",
                 file=sys.stderr,
             )
     text = FORMATS[format](diagram)

@@ -20,8 +20,8 @@ _PATIENCE = 4  # sweeps without improvement before the search ends
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
-    If `centred`, the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of
-    creation. A hyperedge through many layers then runs straight, with branches to both sides.
+    A vertex's neighbours are initially in order of creation. If `centred`, dummies are in the middle of them, so that a
+    hyperedge through many layers runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:

@@ -35,7 +35,7 @@ class AgentSpec:
         modules: The modules, in order.
         settings: Module's name → key → value, for the settings that files and options set.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: The seconds that a rival under pressure has (L16).
+        patience: The seconds that a rival under pressure has to become ready (L16).
         faults: A message for each mistake so far.
     """
 

@@ -22,7 +22,7 @@ class Causes:
     Attributes:
         causes: Signal → the non-detached rules that may raise it.
         all_causes: Signal → all rules that may raise it.
-        direct: Signal → the signals of the non-detached constraints of its rules in `causes`.
+        direct: Signal → the signals that may directly cause it, without detachment.
         components: The cycles of `direct`; signals of one component lead to each other.
     """
 
@@ -99,8 +99,8 @@ class Causes:
         return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which any chain of effects leads to the signal. A chain does not pass
-        through an input, because an input may occur at any time anyway."""
+        """Return the numbers of the rules from which a chain of effects, detached or not, leads to the signal. A chain
+        does not pass through an input, because an input may occur at any time anyway."""
         if signal not in self._wide:
             self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
         return self._wide[signal]

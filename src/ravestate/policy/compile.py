@@ -56,7 +56,7 @@ def compile_policy(*modules: Module | ModuleType) -> Policy:
 def build(
     modules: Sequence[Module], rules: Sequence[Rule[Any, Any]], settings: Mapping[str, Any], faults: Sequence[str] = ()
 ) -> Policy:
-    """Number all signals, slots and rules, and make the policy.
+    """Give numbers to all signals, slots and rules, and make the policy.
 
     A rule that a context added is in none of the modules. Without an entry in `settings`, a module has its default
     settings. Faults found here, and the caller's `faults`, are raised together.

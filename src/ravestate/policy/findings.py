@@ -126,7 +126,7 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
 
 
 def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
-    """Return whether a signal of the clause comes only from rules that have then written a slot of the clause."""
+    """Return whether a signal of the clause comes only from rules that have already written a slot of the clause."""
     slots = clause.rule.slotset
     for need in clause.needs:
         if need.detached or need.signal.input:

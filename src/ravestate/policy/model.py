@@ -1,7 +1,7 @@
 """The records of a policy: the numbered form of what a designer declares.
 
-Compiling numbers signals, slots, rules and clauses once, in declaration order, and fills the records in.
-Nothing changes them afterwards, so any number of engines share them. A signal's record lists the needs that hear it. So
+The compiler gives each signal, slot, rule and clause a number, in declaration order, and fills in the records. Nothing
+changes the records afterwards, so any number of engines share them. A signal's record lists the needs that hear it. So
 the cost of a spike depends on the rules that hear its signal, never on the number of all rules.
 """
 
@@ -22,8 +22,8 @@ class ClauseView:
 
     Attributes:
         signals: The signals of the clause's constraints, as declared.
-        pathways: The clause's completed pathways (L8), by their information, the least first. There may be
-            exponentially many; at most 256 are listed.
+        pathways: The clause's completed pathways (L8); those with the least information come first. At most 256 are
+            listed, because there may be exponentially many.
         utility: The least self-information among the clause's pathways, in nats (L9).
     """
 
@@ -105,7 +105,7 @@ class Need:
     predicates: tuple[Predicate, ...]
     bit: int = field(init=False)
     kin: int = field(init=False)
-    """The bits of this need and of those that must hold spikes of the same causal group (L12)."""
+    """The bits of this need and of the needs that must hold spikes of the same causal group (L12)."""
 
     def __post_init__(self) -> None:
         self.bit = self.kin = 1 << self.index

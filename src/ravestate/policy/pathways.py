@@ -70,7 +70,7 @@ class Pathways:
         return found
 
     def _of_signal(self, place: int, way: int) -> Search:
-        """Find the pathways of the signal at `place`. A cycle ends at a signal of `way`, the set of those on the path."""
+        """Find the pathways of the signal at `place`. A cycle ends at a signal in `way`, the set of the path's signals."""
         graph = self.completion
         alone = 1 << place
         if way & alone:

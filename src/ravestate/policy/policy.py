@@ -69,7 +69,7 @@ class Policy:
         return found
 
     def utility(self, rule: str | Rule[Any, Any]) -> float:
-        """Return the utility of a rule in nats, without weight and cooldown: the greatest among its clauses' (L9).
+        """Return the utility of a rule in nats: the greatest utility of its clauses, without weight and cooldown (L9).
 
         The result may be slightly too high if dozens of signals on a pathway each have several causes, and these share
         causes (``policy/least.py``). In all other cases, it is exact. Raise a `DeclarationError` for an unknown rule.
@@ -170,7 +170,7 @@ class Policy:
             fault = f"{rule!r} is not a rule: write @module.rule(when=...) above the function"
             raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:
-            fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+            fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new rule another name=..."
             raise DeclarationErrors([DeclarationError(fault)])
         return build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
 

@@ -74,7 +74,7 @@ class RuleContext:
         except (KeyError, AttributeError):
             self._refuse("read", "reads", slot, (*self.rule.reads, *self.rule.writes))
         if slot.kind == "collection":
-            return Items(self, slot)  # type: ignore[arg-type]  # its kind says so
+            return Items(self, slot)  # type: ignore[arg-type]  # the kind of the slot proves the type
         return value
 
     def __setitem__(self, slot: Slot[T], value: T) -> None:
@@ -96,9 +96,9 @@ class RuleContext:
                     f"rule {self.rule.name} ({self.rule.origin}) wrote {type(value).__name__} to the collection "
                     f"{slot.name}: write a mapping of keys to items, or ctx[{self._spelt(slot)}].add(key, item)"
                 )
-            value = MappingProxyType(dict(value))  # type: ignore[assignment]  # its kind says so
+            value = MappingProxyType(dict(value))  # type: ignore[assignment]  # the kind of the slot proves the type
         elif slot.kind == "flag":
-            value = bool(value)  # type: ignore[assignment]  # its kind says so
+            value = bool(value)  # type: ignore[assignment]  # the kind of the slot proves the type
         self._values[slot.name] = value
         self._host.receive(Write(slot.name, value, self.run))
 
@@ -188,7 +188,7 @@ class RuleContext:
 
     @property
     def random(self) -> random.Random:
-        """Random numbers, made with the context's seed. A rule should use no other source, so that tests repeat."""
+        """Random numbers from the context's seed. A rule should use no other source, so that tests can be repeated."""
         return self._host.random
 
     def _alive(self) -> None:

@@ -101,7 +101,7 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        A person or robot with more than a name stays as well.
+        Keep also a person or robot of whom memory has more than a name.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
@@ -136,7 +136,7 @@ class Graph:
         )
 
     def _ends(self, node: Node, *, back: bool) -> list[tuple[str, dict[str, Value], Node]]:
-        """Return name, properties and other end of each declared relation from a node; with `back`, to the node."""
+        """Return the name, properties and other end of each declared relation from a node; with `back`, to the node."""
         found: list[tuple[str, dict[str, Value], Node]] = []
         for relation, raw in self._edges(node, back=back):
             other = self._node(raw)
@@ -206,7 +206,7 @@ class Graph:
         """Remove a node, its relations, and the nodes that only this node needs. The file keeps no byte of these.
 
         A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
-        related to them. A person or robot with more than a name stays as well.
+        related to them. A person or robot of whom memory has more than a name also stays.
 
         Returns:
             The removed nodes, `node` first; an empty list if memory does not have `node`.
@@ -301,7 +301,7 @@ class Graph:
         found = self.get(_known(node).id)
         if found is None:
             raise RuleError(
-                f"memory does not know {node.id}, perhaps not any more: save it first, with await memory.save(node)"
+                f"memory does not know {node.id}, or has forgotten it: save it first, with await memory.save(node)"
             )
         return found
 

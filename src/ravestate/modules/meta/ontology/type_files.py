@@ -9,7 +9,7 @@
         sails_to: [City, Country]       # to nodes of these types, and their subtypes
         insured_by: {to: Company, has: {since: date}}
 
-A later file extends earlier ones; it cannot remove or contradict anything.
+A later file extends the earlier files; it cannot remove or contradict their declarations.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class _Reader:
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """(whether a relation has it, name in lower case) of a property → its spelling, kind and ``file:line``."""
+        """(whether it belongs to a relation, its name in lower case) of a property → spelling, kind and ``file:line``."""
 
     def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:

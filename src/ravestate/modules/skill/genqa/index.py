@@ -36,7 +36,7 @@ CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
 PRAGMA application_id = {APPLICATION};
 PRAGMA user_version = {FORMAT};
 """
-# The weight of a match in the title, the text and the hints.
+# The ranking, with the weights of matches in the title, the text and the hints.
 _RANK = "bm25(passages, 1.0, 1.0, 0.7)"
 
 
@@ -50,7 +50,7 @@ class IndexedFile:
     modified: int
     """The time of the last change in nanoseconds, from the file system."""
     digest: str
-    """A hash of its content."""
+    """A hash of the file's content."""
     passages: int = 0
 
 
@@ -82,7 +82,7 @@ class Index:
         """Open the file, or create it.
 
         Args:
-            path: The file; its folder is created as well.
+            path: The file. A missing file or folder is created.
             timeout: Seconds to wait for another process that writes.
 
         Raises:
@@ -286,7 +286,7 @@ _OTHER = "name another file: --set genqa.index=/path/to/index.sqlite"
 _BUSY = "another process is writing to it: wait until `ravestate genqa index` has ended there"
 _DAMAGED = f"it is not an index, or damaged: remove it and read the files again, or {_OTHER}"
 _ERRORS = {
-    "FULL": "the disk is full: make room, then run the command again; it continues where it stopped",
+    "FULL": "the disk is full: make room, then try again; the index keeps the files that were read completely",
     "BUSY": _BUSY, "LOCKED": _BUSY, "NOTADB": _DAMAGED, "CORRUPT": _DAMAGED,
     "READONLY": f"it cannot be written: {_OTHER}", "CANTOPEN": f"it cannot be opened: {_OTHER}",
 }  # fmt: skip

@@ -18,7 +18,7 @@ from .lexicon import variants_of, words_of
 from .reckoning import scaled
 
 LONGEST = 600
-"""The maximum length of an utterance in characters; a longer one is not a question about the world."""
+"""The maximum length of an utterance in characters; a longer utterance does not count as a question."""
 THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
 _OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])

@@ -127,9 +127,9 @@ def documents_in(content: bytes | str, title: str, source: str, top: str | None 
         Unreadable: beautifulsoup4 is not installed.
     """
     bs4 = _library("bs4", "beautifulsoup4", "HTML")
-    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # its warnings about characters do not name the file
+    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # bs4's warnings about characters do not name the file
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it warns about XML, and about texts that look like file names
+        warnings.simplefilter("ignore")  # bs4 warns about XML, and about texts that look like file names
         page: Any = bs4.BeautifulSoup(content, "html.parser")
     for hidden in [*page.find_all(_UNSEEN), *page.find_all(hidden=True)]:
         hidden.decompose()
@@ -165,7 +165,7 @@ def documents_in(content: bytes | str, title: str, source: str, top: str | None 
 def _pdf(path: Path, source: str) -> Iterator[Document]:
     """Yield a document for each page; the document's source names the page."""
     library = _library("pypdf", "pypdf", "PDF")
-    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about every oddity that it can handle
+    logging.getLogger("pypdf").setLevel(logging.ERROR)  # pypdf warns about every oddity that it can handle
     try:
         reader = library.PdfReader(path)
         if reader.is_encrypted and not reader.decrypt(""):
