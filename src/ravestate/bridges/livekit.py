@@ -55,10 +55,11 @@ class RavestateAgent(Agent):
         self._contexts = contexts_of(agent)
         self._conversation: Conversation | None = None
         self._watching: asyncio.Task[None] | None = None
-        self._taken = ""  # the id of the user's last message that the agent has heard
+        self._known: set[str] = set()  # the ids of messages of the user that the agent has heard
 
     async def on_enter(self) -> None:
         """Start the agent."""
+        self._known |= {item.id for item in self.chat_ctx.items}  # from before the agent's time
         await self._begun()
 
     async def on_exit(self) -> None:
@@ -136,13 +137,9 @@ class RavestateAgent(Agent):
 
     def _new_words(self, context: llm.ChatContext) -> str:
         """Return what the user has said since the last call."""
-        words: list[str] = []
-        for item in reversed(context.items):
-            if not isinstance(item, llm.ChatMessage) or item.role != "user" or item.id == self._taken:
-                break
-            words.insert(0, item.text_content or "")
-        if words:
-            self._taken = context.items[-1].id
+        said = [item for item in context.items if isinstance(item, llm.ChatMessage) and item.role == "user"]
+        words = [item.text_content or "" for item in said if item.id not in self._known]
+        self._known |= {item.id for item in said}
         return " ".join(words).strip()
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, cast
 
 from ravestate.errors import PlatformError, RavestateError
 
@@ -129,12 +130,19 @@ class RavestateProcessor(FrameProcessor):
     def _new_words(self, context: LLMContext) -> str:
         """Return what the user has said since the last call; the framework may cut a sentence into several messages."""
         words: list[str] = []
-        messages = context.get_messages()
-        for message in reversed(messages):
-            if message is self._taken or not isinstance(message, dict) or message["role"] != "user":
+        newest = self._taken
+        for message in reversed([cast("dict[str, Any]", m) for m in context.get_messages() if isinstance(m, dict)]):
+            role = message["role"]
+            if message is self._taken or (role != "user" and (words or role != "assistant")):
                 break
-            content = message["content"]
-            parts = [content] if isinstance(content, str) else [p["text"] for p in content if p["type"] == "text"]
-            words[:0] = parts
-        self._taken = messages[-1] if messages else None
+            if role == "user":  # the agent's message before it may have been added after it
+                content = message["content"]
+                newest = newest if words else message
+                words.insert(0, content if isinstance(content, str) else _text_in(content))
+        self._taken = newest
         return " ".join(words)
+
+
+def _text_in(parts: Iterable[dict[str, str]]) -> str:
+    """Return the text in a message that may have pictures as well."""
+    return " ".join(part["text"] for part in parts if part["type"] == "text")

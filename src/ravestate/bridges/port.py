@@ -12,7 +12,7 @@ from typing import Any
 
 import ravestate as rs
 from ravestate.declare.module import Module
-from ravestate.errors import DeclarationError
+from ravestate.errors import DeclarationError, RavestateError
 from ravestate.loading.modules import load_module
 from ravestate.loading.spec import AgentSpec
 from ravestate.modules import interloc, rawio
@@ -72,17 +72,18 @@ class Utterance:
         self.text = ""
         """The text so far, with the pieces after an interruption."""
         self._pieces: asyncio.Queue[str | None] = asyncio.Queue()
-        self._ended = False
+        self.ended = False
+        """Whether the iterator ends after the pieces so far."""
 
     def grow(self, piece: str) -> None:
         """Add a piece. After `end`, the iterator does not yield it."""
         self.text += piece
-        if piece and not self._ended:
+        if piece and not self.ended:
             self._pieces.put_nowait(piece)
 
     def end(self) -> None:
         """End the iterator after the pieces so far."""
-        self._ended = True
+        self.ended = True
         self._pieces.put_nowait(None)
 
     def __aiter__(self) -> Utterance:
@@ -110,7 +111,7 @@ class Conversation:
         self._speak = speak
         self._user = f"{platform}-{secrets.token_hex(4)}"
         self._growing: Utterance | None = None
-        self._following: asyncio.Task[None] | None = None
+        self._followers: set[asyncio.Task[None]] = set()
         self._turn = asyncio.Lock()
         self._begun = self._over = False
 
@@ -156,6 +157,8 @@ class Conversation:
     def hear(self, text: str) -> None:
         """Tell the agent what the user has said."""
         if text.strip():
+            if self._growing is not None and self._growing.ended:  # the rule of an interrupted utterance is cancelled
+                self._growing = None
             self.context.put(rawio.input, text)
 
     def notice_speech(self, text: str = "") -> None:
@@ -207,8 +210,9 @@ class Conversation:
         if self._growing is None:
             self._growing = Utterance()
             self._speak(self._growing)
-            if self._following is None:
-                self._following = asyncio.create_task(self._follow())
+            follower = asyncio.create_task(self._follow(self._growing))
+            self._followers.add(follower)
+            follower.add_done_callback(self._followers.discard)
         self._growing.grow(piece)
 
     def _utter(self, text: str) -> None:
@@ -227,12 +231,11 @@ class Conversation:
             self._growing.end()
             self._growing = None
 
-    async def _follow(self) -> None:
-        """End the growing utterance once no rule may add to it, even if a rule has failed in the middle of it."""
-        try:
+    async def _follow(self, utterance: Utterance) -> None:
+        """End a growing utterance once no rule may add to it, even if a rule has failed in the middle of it."""
+        with contextlib.suppress(RavestateError):  # of the engine; `until_agent_leaves` raises it
             await self.context.quiet(rawio.output)
-        finally:
-            self._following = None
+        if self._growing is utterance:
             self._fall_silent()
 
     async def _quiet(self, seconds: float, slot: rs.Slot[str] | None = None) -> None:
