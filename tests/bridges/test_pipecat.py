@@ -2,7 +2,7 @@
 
 import pytest
 
-from bridges.apart import Failures, run_apart, names_in
+from bridges.apart import Failures, names_in, run_apart
 
 
 @pytest.fixture(scope="module")

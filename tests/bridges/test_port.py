@@ -65,8 +65,15 @@ def converse(talk: Talk, *modules: rs.Module) -> None:
         runner.run(main())
 
 
+async def past(seconds: float) -> None:
+    """Let virtual time pass."""
+    over = asyncio.get_running_loop().create_future()
+    asyncio.get_running_loop().call_later(seconds, over.set_result, None)
+    await over
+
+
 async def text(utterance: Utterance) -> str:
-    """Return what is said of an utterance, once it is over."""
+    """Return the pieces of an utterance once it is over."""
     return "|".join([piece async for piece in utterance])
 
 
@@ -173,9 +180,9 @@ def test_an_answer_that_is_closed_is_interrupted() -> None:
 def test_nothing_more_is_said_of_an_interrupted_utterance(module: rs.Module) -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
-        await asyncio.sleep(0.5)
+        await past(0.5)
         conversation.interrupt()
-        await asyncio.sleep(5)
+        await past(5)
         assert [await text(utterance) for utterance in spoken] == ["one "]
         assert await answer(conversation, "again") == ["one |two"]
 
@@ -185,7 +192,7 @@ def test_nothing_more_is_said_of_an_interrupted_utterance(module: rs.Module) -> 
 def test_words_right_after_an_interruption_are_answered() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
-        await asyncio.sleep(0.5)
+        await past(0.5)
         conversation.interrupt()
         assert await answer(conversation, "again") == ["one |two"]
 
@@ -252,7 +259,7 @@ def test_only_the_agents_own_wish_to_leave_is_told() -> None:
             await leaving
         else:
             await conversation.end()
-            await asyncio.sleep(100)
+            await past(100)
             assert not leaving.done()
             leaving.cancel()
 

@@ -176,18 +176,6 @@ async def test_several_utterances_that_wait_are_dropped_by_an_interruption() -> 
 # ------------------------------------------------------------------------------------------- with aggregators
 
 
-def aggregators() -> tuple[FrameProcessor, FrameProcessor, LLMContext]:
-    context = LLMContext()
-    pair = LLMContextAggregatorPair(
-        context, user_params=LLMUserAggregatorParams(user_turn_strategies=ExternalUserTurnStrategies())
-    )
-    return pair.user(), pair.assistant(), context
-
-
-def turn(text: str) -> list[Frame]:
-    return [UserStartedSpeakingFrame(), said(text), UserStoppedSpeakingFrame()]
-
-
 async def converse(agent: AnyAgent, *turns: list[Frame], barge_in: str = "") -> list[tuple[str, str]]:
     """Hold a conversation in a pipeline with aggregators; return each speaker and what was said, as Pipecat keeps it.
 
@@ -210,10 +198,10 @@ async def converse(agent: AnyAgent, *turns: list[Frame], barge_in: str = "") -> 
                 await send(pair.user(), rest[0].pop(0))  # the user begins to speak
 
         async def on_push_frame(self, data: FramePushed) -> None:
-            if data.source is pair.assistant() and isinstance(data.frame, LLMContextAssistantTurnFrame):
-                if data.direction is FrameDirection.UPSTREAM:  # the processor hears of the agent's turn first
-                    for frame in rest.pop(0):
-                        await send(pair.user(), frame)
+            over = data.source is pair.assistant() and isinstance(data.frame, LLMContextAssistantTurnFrame)
+            if over and data.direction is FrameDirection.UPSTREAM:  # the processor hears of the agent's turn first
+                for frame in rest.pop(0):
+                    await send(pair.user(), frame)
 
     pipeline = Pipeline([pair.user(), RavestateProcessor(agent), pair.assistant()])
     async with asyncio.timeout(5):
@@ -284,7 +272,7 @@ async def test_a_rule_that_fails_does_not_hang_the_pipeline(words: str) -> None:
 
 
 async def test_an_agent_that_has_failed_is_an_error_of_the_pipeline() -> None:
-    down, up = await run(agents.hopeless, said("hello"))
+    _, up = await run(agents.hopeless, said("hello"))
     errors = [frame for frame in up if isinstance(frame, ErrorFrame)]
     assert [error.error for error in errors] == ["the library has burnt down"]
     assert isinstance(errors[0].processor, RavestateProcessor)
