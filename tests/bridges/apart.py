@@ -1,6 +1,6 @@
 """Run tests in an environment of their own, and show their results test by test.
 
-Pipecat and LiveKit cannot share the environment of the other tests. `make test` makes theirs, `.venvs/NAME`. Their tests
+Pipecat and LiveKit do not share the environment of the other tests. `make test` makes theirs, `.venvs/NAME`. Their tests
 are in `cases/NAME_cases.py`, which pytest does not collect here.
 """
 

@@ -101,8 +101,12 @@ class RavestateAgent(Agent):
 
     def _say(self, utterance: Utterance) -> None:
         """Say an utterance for which LiveKit has not asked."""
-        if self._conversation is not None:
+        if self._conversation is None:
+            return
+        try:
             self.session.say(utterance)
+        except RuntimeError as error:  # the session is closing, or has no voice
+            log.warning("LiveKit does not say the agent's words: %s", error)
 
     async def _watch(self, conversation: Conversation) -> None:
         """End the session when the agent wants to leave, or has failed."""
