@@ -20,7 +20,7 @@ from ravestate.modules import rawio
 
 @asynccontextmanager
 async def session_with(agent: AnyAgent, **options: Any) -> AsyncIterator[AgentSession[None]]:
-    async with asyncio.timeout(5), AgentSession[None]() as session:
+    async with asyncio.timeout(60), AgentSession[None]() as session:
         await session.start(RavestateAgent(agent, **options), record=False)
         yield session
 

@@ -33,7 +33,7 @@ from pipecat.pipeline.pipeline import Pipeline
 from pipecat.processors.aggregators.llm_context import LLMContext
 from pipecat.processors.aggregators.llm_response_universal import LLMContextAggregatorPair, LLMUserAggregatorParams
 from pipecat.processors.frame_processor import FrameDirection, FrameProcessor
-from pipecat.tests.utils import run_test
+from pipecat.tests import utils
 from pipecat.turns.user_start import ExternalUserTurnStartStrategy
 from pipecat.turns.user_stop import ExternalUserTurnStopStrategy
 from pipecat.turns.user_turn_strategies import UserTurnStrategies
@@ -57,6 +57,13 @@ def texts(frames: Sequence[Frame]) -> list[str]:
 
 def kinds(frames: Sequence[Frame]) -> list[type[Frame]]:
     return [type(frame) for frame in frames]
+
+
+async def run_pipeline(processor: FrameProcessor, **options: Any) -> tuple[list[Frame], list[Frame]]:
+    """Run Pipecat's `run_test` with time for a busy machine; return the frames that went downstream and upstream."""
+    async with asyncio.timeout(60):
+        down, up = await utils.run_test(processor, start_timeout=60, **options)
+    return [f for f in down if not isinstance(f, EndFrame)], [f for f in up if not isinstance(f, EndWorkerFrame)]
 
 
 async def send(processor: FrameProcessor, frame: Frame) -> None:
@@ -91,9 +98,7 @@ async def run(
     if after:
         options |= {"send_end_frame": False}
         options |= {"observers": [Reaction(processor, text, [*more, EndWorkerFrame()]) for text, more in after.items()]}
-    async with asyncio.timeout(5):
-        down, up = await run_test(processor, frames_to_send=frames, **options)
-    return [f for f in down if not isinstance(f, EndFrame)], [f for f in up if not isinstance(f, EndWorkerFrame)]
+    return await run_pipeline(processor, frames_to_send=frames, **options)
 
 
 # ------------------------------------------------------------------------------------------- answers
@@ -161,8 +166,7 @@ async def test_new_words_interrupt_a_rule_without_an_interruption_frame() -> Non
 async def test_an_interruption_while_the_pipeline_ends_lets_it_end() -> None:
     processor = RavestateProcessor(agents.talker)
     reaction = Reaction(processor, "two, ", [InterruptionFrame()])
-    async with asyncio.timeout(5):
-        down, _ = await run_test(processor, frames_to_send=[said("wait")], observers=[reaction])
+    down, _ = await run_pipeline(processor, frames_to_send=[said("wait")], observers=[reaction])
     assert texts(down) == ["One, ", "two, "]
 
 
@@ -204,8 +208,7 @@ async def converse(agent: AnyAgent, *turns: list[Frame], barge_in: str = "") -> 
                     await send(pair.user(), frame)
 
     pipeline = Pipeline([pair.user(), RavestateProcessor(agent), pair.assistant()])
-    async with asyncio.timeout(5):
-        await run_test(pipeline, frames_to_send=turns[0], send_end_frame=False, observers=[Turns()])
+    await run_pipeline(pipeline, frames_to_send=turns[0], send_end_frame=False, observers=[Turns()])
     return [(str(message["role"]), str(message["content"])) for message in context.get_messages()]
 
 
@@ -281,10 +284,9 @@ async def test_an_agent_that_has_failed_is_an_error_of_the_pipeline() -> None:
 
 async def test_a_cancelled_pipeline_stops_the_agent() -> None:
     context = rs.Context(agents.talker)
-    async with asyncio.timeout(5):
-        processor = RavestateProcessor(context)
-        reaction = Reaction(processor, "two, ", [CancelWorkerFrame()])
-        await run_test(processor, frames_to_send=[said("wait")], send_end_frame=False, observers=[reaction])
+    processor = RavestateProcessor(context)
+    reaction = Reaction(processor, "two, ", [CancelWorkerFrame()])
+    await run_pipeline(processor, frames_to_send=[said("wait")], send_end_frame=False, observers=[reaction])
     with pytest.raises(EngineError, match="ended"):
         await context.next(rawio.output.changed)
 
