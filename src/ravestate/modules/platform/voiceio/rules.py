@@ -1,0 +1,3 @@
+"""The rules of a spoken conversation."""
+
+from __future__ import annotations
