@@ -7,12 +7,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ravestate.cli import complete
 from ravestate.cli.agent import load_agent
 from ravestate.errors import PlatformError, UsageError
 from ravestate.loading.spec import AgentSpec
 
 if TYPE_CHECKING:
     from ravestate.modules.platform.voiceio import Settings
+    from ravestate.testing import Said
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -131,7 +133,25 @@ def _say(options: argparse.Namespace) -> int:
 
 
 def _talk(options: argparse.Namespace) -> int:
-    raise NotImplementedError(load_agent)
+    from ravestate.testing import talk
+
+    if not options.recording.is_file():
+        raise UsageError(f"there is no file {options.recording}")
+    _check_target(options.output)
+    complete_agent = not options.modules and not options.file
+    if complete_agent:
+        options.without = []
+    agent = load_agent(options, ["voiceio", *(complete.names(options) if complete_agent else [])])
+    if complete_agent:
+        complete.leave_out_absent(agent, "voice")
+        complete.choose_small_talk(agent, "voice")
+    talk(options.recording, options.output, *agent.modules, settings=agent.settings, seed=agent.seed, show=_show)
+    return 0
+
+
+def _show(one: Said) -> None:
+    mark = " …" if one.cut else ""
+    print(f"{one.start:8.2f} {one.end:8.2f}  {one.speaker + ':':<6} {one.text}{mark}", flush=True)
 
 
 def _check_target(path: Path) -> None:

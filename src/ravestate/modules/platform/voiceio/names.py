@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -14,8 +14,8 @@ from .prosody import Prosody
 from .utterance import Utterance
 
 if TYPE_CHECKING:
-    from .ear import Ear
-    from .mouth import Mouth, Speech
+    from .conversation import Conversation
+    from .mouth import Speech
 
 Seconds = Annotated[float, Field(ge=0)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -109,10 +109,5 @@ speech: rs.Signal[Speech] = module.signal("speech", payload=object)
 prosody: rs.Slot[Prosody] = module.slot("prosody", Prosody(), type=Prosody, input=True)
 """The manner of the agent's speech. A module `emotion` in the agent sets it."""
 
-ear: rs.Slot[Ear | None] = module.slot("ear", None)
-"""The user's sound, while a line is open."""
-
-mouth: rs.Slot[Mouth | None] = module.slot("mouth", None)
-"""The agent's sound, while a line is open."""
-
-AnySignal = rs.Signal[Any]
+conversation: rs.Slot[Conversation | None] = module.slot("conversation", None)
+"""The open line with its ear, mouth and models; None while no line is open."""

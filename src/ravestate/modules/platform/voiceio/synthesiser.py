@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import Any
 
 from ravestate.errors import PlatformError
-from ravestate.modules.modality.rawio.sound import OUT_RATE
+from ravestate.modules.modality.rawio.sound import IN_RATE, OUT_RATE
 
 from . import model_process
+from .alignment import Word, by_phonemes, by_places
 from .models import piper_python, piper_voice
 from .names import Settings
 from .prosody import Prosody
@@ -18,24 +18,21 @@ from .sound import resample, seconds
 PATIENCE = 20.0
 """The longest time (seconds) that a sentence may take."""
 
-_WORD = re.compile(r"\S+")
-
-
-@dataclass(frozen=True, slots=True)
-class Word:
-    """A word of a sentence: its place in the text (characters), and its beginning in the sound (seconds)."""
-
-    begin: int
-    end: int
-    time: float
-
 
 @dataclass(frozen=True, slots=True)
 class Spoken:
-    """A text as sound: PCM at `OUT_RATE`, and its words in order."""
+    """A text as sound.
+
+    Attributes:
+        text: The text.
+        sound: PCM at `OUT_RATE`.
+        reference: The same sound at `IN_RATE`, for the echo canceller.
+        words: The words in order.
+    """
 
     text: str
     sound: bytes
+    reference: bytes
     words: tuple[Word, ...]
 
 
@@ -84,7 +81,8 @@ class Synthesiser:
         header = {"text": text, "rate": style.rate, "pitch": style.pitch, "range": style.range}
         answer, sound = self._process.request(header, seconds=PATIENCE)
         sound = resample(sound, answer["rate"], OUT_RATE)
-        return Spoken(text, sound, _words(text, answer, seconds(sound, OUT_RATE)))
+        reference = resample(sound, OUT_RATE, IN_RATE)
+        return Spoken(text, sound, reference, _words(text, answer, seconds(sound, OUT_RATE)))
 
     def close(self) -> None:
         """Let go of the voice; its last user ends the process."""
@@ -92,23 +90,7 @@ class Synthesiser:
 
 
 def _words(text: str, answer: dict[str, Any], length: float) -> tuple[Word, ...]:
-    """Return the words of a text with their times, from what the backend tells."""
-    places = [(word.start(), word.end()) for word in _WORD.finditer(text) if any(c.isalnum() for c in word[0])]
-    if not places:
-        return ()
-    if "words" in answer:  # places in the text
-        heard: dict[int, float] = {}
-        for begin, _, time in answer["words"]:
-            at = max((number for number, place in enumerate(places) if place[0] <= begin), default=0)
-            heard.setdefault(at, time)
-        times = [heard.get(number) for number in range(len(places))]
-    else:  # times of spoken words; a number may be several of them
-        starts: list[float] = answer["starts"]
-        share = len(starts) / len(places)
-        times = [starts[int(number * share)] for number in range(len(places))] if starts else [None] * len(places)
-    filled: list[Word] = []
-    for number, ((begin, end), time) in enumerate(zip(places, times, strict=True)):
-        guess = length * begin / max(1, len(text))
-        before = filled[-1].time if number else 0.0
-        filled.append(Word(begin, end, max(before, guess if time is None else min(time, length))))
-    return tuple(filled)
+    """Return the words of a text with their times, from the answer of the backend."""
+    if "places" in answer:
+        return by_places(text, [(place, time) for place, time in answer["places"]], length)
+    return by_phonemes(text, [(time, count) for time, count in answer["spoken"]], length)

@@ -44,7 +44,7 @@ def load(config: dict[str, Any]) -> Any:
     if library.espeak_SetVoiceByName(config["voice"].encode()) != 0:
         raise ValueError(f"espeak-ng has no voice {config['voice']!r}: espeak-ng --voices lists them")
     sound = bytearray()
-    words: list[tuple[int, int, float]] = []
+    places: list[tuple[int, float]] = []
 
     @CALLBACK
     def take(samples: Any, count: int, events: Any) -> int:
@@ -54,7 +54,7 @@ def load(config: dict[str, Any]) -> Any:
         while events[number].type != END:
             event = events[number]
             if event.type == WORD:
-                words.append((event.text_position - 1, event.length, event.audio_position / 1000))
+                places.append((event.text_position - 1, event.audio_position / 1000))
             number += 1
         return 0
 
@@ -62,13 +62,13 @@ def load(config: dict[str, Any]) -> Any:
 
     def handle(header: dict[str, Any], _: bytes) -> tuple[dict[str, Any], bytes]:
         sound.clear()
-        words.clear()
+        places.clear()
         library.espeak_SetParameter(RATE, round(NORMAL_RATE * header["rate"]), 0)
         library.espeak_SetParameter(PITCH, min(99, max(0, round(50 + 60 * (header["pitch"] - 1)))), 0)
         library.espeak_SetParameter(RANGE, min(99, max(0, round(50 * header["range"]))), 0)
         text = header["text"].encode() + b"\0"
         library.espeak_Synth(text, ctypes.c_size_t(len(text)), 0, CHARACTERS, 0, UTF8, None, None)
-        return {"rate": rate, "words": list(words)}, bytes(sound)
+        return {"rate": rate, "places": list(places)}, bytes(sound)
 
     handle.callback = take  # pyright: ignore[reportFunctionMemberAccess]  # the library keeps no reference to it
     handle({"text": "ready", "rate": 1.0, "pitch": 1.0, "range": 1.0}, b"")

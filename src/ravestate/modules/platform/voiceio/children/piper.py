@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
+STRESS = "ˈˌː"
+"""Marks of stress and length: no sounds of their own."""
+
 
 def load(config: dict[str, Any]) -> Any:
     """Load the voice file ``voice``; return the function that synthesises."""
@@ -20,20 +23,21 @@ def load(config: dict[str, Any]) -> Any:
             noise_w_scale=0.8,
         )
         sound = bytearray()
-        starts: list[float] = []
+        spoken: list[list[float]] = []
         for chunk in voice.synthesize(header["text"], style, include_alignments=True):
             here = len(sound) / 2 / chunk.sample_rate
-            open_word = False
+            within = False
             for part in chunk.phoneme_alignments or ():
                 if part.phoneme == " ":
-                    open_word = False
-                elif part.phoneme.isalnum() or part.phoneme in "ˈˌ":
-                    if not open_word:
-                        starts.append(here)
-                    open_word = True
+                    within = False
+                elif part.phoneme.isalpha() or part.phoneme in STRESS:
+                    if not within:
+                        spoken.append([here, 0])
+                    within = True
+                    spoken[-1][1] += part.phoneme not in STRESS
                 here += part.num_samples / chunk.sample_rate
             sound += chunk.audio_int16_bytes
-        return {"rate": voice.config.sample_rate, "starts": starts}, bytes(sound)
+        return {"rate": voice.config.sample_rate, "spoken": spoken}, bytes(sound)
 
     handle({"text": "Ready.", "rate": 1.0, "range": 1.0}, b"")
     return handle
