@@ -38,14 +38,17 @@ class Conversation:
         self.recogniser.close()
         self.mouth.voice.close()
 
-    def judge(self, turn: Turn) -> tuple[Recognised, float]:
-        """Return the words of a turn, and the seconds of silence after which it is over. This blocks."""
-        sound = turn.sound
-        found = self.recogniser.recognise(sound)
-        if turn.full:
-            return found, 0.0
-        complete = None if self.melody is None else self.melody.complete(sound)
-        return found, wanted_silence(found.text, complete, self.settings)
+    async def judge(self, turn: Turn) -> tuple[Recognised, float]:
+        """Return the words of a turn, and the seconds of silence after which it is over.
+
+        Raises:
+            PlatformError: The recogniser fails.
+        """
+        sound, melody = turn.sound, self.melody
+        hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
+        complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
+        found = await hearing
+        return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
         """Return what a turn is: ``utterance``, ``back_channel`` or ``false_alarm``, and the words or the reason."""

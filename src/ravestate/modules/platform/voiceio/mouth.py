@@ -107,6 +107,8 @@ class Mouth:
         """The last sentences that were queued, to know one's own voice."""
         self.speaking = False
         """Whether an utterance is under way, also while it is held."""
+        self.silent_since: float | None = None
+        """The time since which the speech is held; None if it is not."""
         self._queue: list[_Queued] = []
         self._end = 0.0
         self._held_at: float | None = None
@@ -155,10 +157,11 @@ class Mouth:
         self._queue.append(_Queued(self._end, spoken, place))
         self._end += len(spoken.sound) / SECOND
 
-    def hold(self) -> None:
-        """Silence the loudspeaker at once, and keep the rest of the speech."""
+    def hold(self, now: float) -> None:
+        """Silence the loudspeaker at once, at the time `now`, and keep the rest of the speech."""
         if self._held_at is None:
             self._held_at = self.line.played
+            self.silent_since = now
             self._released.clear()
             self.line.stop()
             self._cut_track(self._held_at)
@@ -167,7 +170,7 @@ class Mouth:
         """Go on where `hold` stopped, at the beginning of the word that was cut."""
         if self._held_at is None:
             return
-        stopped, self._held_at = self._held_at, None
+        stopped, self._held_at, self.silent_since = self._held_at, None, None
         at = self.line.played
         left = [part for part in self._queue if part.end > stopped]
         for part in left:
@@ -197,7 +200,7 @@ class Mouth:
         if self._held_at is None:
             self.line.stop()
             self._cut_track(self.line.played)
-        self._held_at = None
+        self._held_at = self.silent_since = None
         self.speaking = False
         self._queue.clear()
 

@@ -160,7 +160,7 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     from .recogniser import Recognised
 
     try:
-        found, silence = await asyncio.to_thread(talk.judge, turn)
+        found, silence = await talk.judge(turn)
     except PlatformError as error:
         ctx.log.error("%s", error)
         found, silence = Recognised("", 0.0), 0.0
@@ -279,7 +279,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                     if not mouth.speaking:
                         mouth.speaking, saying.start = True, ctx.now
                         if talk.ear.speaking:  # the user has begun first
-                            mouth.hold()
+                            mouth.hold(ctx.now)
                             ctx[held] = True
                         else:
                             ctx[agent_speaking] = True
@@ -294,11 +294,12 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                 saying.heard = mouth.heard(saying.text)
                 raise
             finally:
+                saying.end = mouth.silent_since or ctx.now
                 mouth.stop()
                 ctx[agent_speaking] = False
                 ctx[held] = False
     finally:
-        saying.over, saying.end = True, ctx.now
+        saying.over = True
         if saying.counts:
             ctx[rawio.heard] = saying.heard
     return None
@@ -318,7 +319,7 @@ async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
     talk = ctx[conversation]
     if talk is None or not talk.mouth.speaking:
         return rs.Resign("the agent does not speak")
-    talk.mouth.hold()
+    talk.mouth.hold(ctx.now)
     ctx[agent_speaking] = False
     ctx[held] = True
     return None
