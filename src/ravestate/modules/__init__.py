@@ -15,7 +15,7 @@ from ravestate.errors import nearest
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
-    from ravestate.modules.platform import conio, webio
+    from ravestate.modules.platform import conio, voiceio, webio
     from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
 
 __all__ = [
@@ -34,12 +34,14 @@ __all__ = [
     "persqa",
     "rawio",
     "verbaliser",
+    "voiceio",
     "webio",
     "wildtalk",
 ]
 
 BUILT_IN = {
     "conio": "platform",
+    "voiceio": "platform",
     "webio": "platform",
     "rawio": "modality",
     "interloc": "modality",

@@ -35,5 +35,6 @@ sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
 hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
 """The words so far of an utterance that the user is still speaking, for platforms that show captions."""
 
-heard: rs.Slot[str] = module.slot("heard", "", type=str, input=True)
-"""The part of the agent's last utterance that the user heard. A platform that speaks writes it when the sound ends."""
+heard: rs.Slot[str] = module.slot("heard", "", type=str, always=True, input=True)
+"""The part of the agent's last utterance that the user heard. A platform that speaks writes it for each utterance, when its
+sound ends or is cut."""
