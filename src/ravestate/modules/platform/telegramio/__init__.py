@@ -1,0 +1,9 @@
+"""Telegram: each chat of a bot is a conversation of its own with the agent."""
+
+from __future__ import annotations
+
+from . import rules as rules
+from .names import Settings, chat, command, module
+from .serving import serve
+
+__all__ = ["Settings", "chat", "command", "module", "serve"]
