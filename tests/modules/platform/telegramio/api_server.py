@@ -383,7 +383,7 @@ class Server:
             del self.faults[key]
 
     async def do_said(self, bot: str, count: int = 0, wait: float = 20.0) -> Any:
-        """What the bot has said in all chats, once there are `count` messages, or after some seconds."""
+        """Return the bot's messages in all chats, once there are `count` messages, or after some seconds."""
 
         def said() -> list[Any]:
             rows = self.all("SELECT data FROM messages WHERE bot = ? AND own ORDER BY n", bot)

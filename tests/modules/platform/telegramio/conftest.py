@@ -68,7 +68,7 @@ class Bot:
         return await self.do("say", chat=chat, text=text, **fields)
 
     async def said(self, count: int) -> list[str]:
-        """What the bot has said, as "chat: text", once there are `count` messages."""
+        """Return the bot's messages as "chat: text", once there are `count` messages."""
         return [f"{m['chat']['id']}: {m.get('text', m.get('caption'))}" for m in await self.do("said", count=count)]
 
 

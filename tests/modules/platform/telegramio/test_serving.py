@@ -82,7 +82,7 @@ def live(test: Callable[[Bot, Path], Coroutine[Any, Any, None]]) -> Callable[[Bo
 
 
 async def settled(bot: Bot) -> list[str]:
-    """What the bot has said, once a message that was sent last is answered."""
+    """Return the bot's messages, once a message that was sent last is answered."""
     said = await bot.said(0)
     await bot.say(99, "the last")
     return [each for each in await bot.said(len(said) + 1) if each != "99: the last"]
