@@ -20,6 +20,7 @@ from .messages import DeliveryError, Outgoing, Person
 from .sender import back_off
 from .splitting import split
 from .store import Answer, Entry
+from .voice import words_in
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
@@ -215,6 +216,7 @@ class Chat:
             async with asyncio.timeout(FAREWELL):
                 await context.quiet()
         self._mute = self._gone
+        self._room.called.add(context.read(interloc.agent))
         return new
 
     async def _obey(self, context: Context, entry: Entry, new: bool) -> None:
@@ -262,7 +264,7 @@ class Chat:
             text = message.text
         else:
             try:
-                text = await self._room.transcribe(data)
+                text = await words_in(data)
             except PlatformError as error:
                 self._room.log.warning("a voice note was not understood: %s", error)
                 self.utter(UNHEARD)

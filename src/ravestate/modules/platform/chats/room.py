@@ -4,28 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable, Iterable
-from typing import TYPE_CHECKING, Any
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, cast
 
-from ravestate.errors import PlatformError
+from ravestate.folders import user_folder
 
 from .chat import Chat
 from .messages import Carrier, Incoming
 from .sender import Sender
+from .store import Store
 
 if TYPE_CHECKING:
-    import ravestate as rs
     from ravestate.runtime.agent import Agent
 
-    from .commands import Command
-    from .store import Store
+    from .settings import ChatSettings
 
 LAST_WORDS = 5.0
 """The seconds that the agent has to answer and to send when it ends. The rest is done at the next start."""
-
-
-async def _no_words(_: bytes) -> str:
-    raise PlatformError("this platform has no speech recognition")
 
 
 class Room:
@@ -35,42 +31,31 @@ class Room:
 
     Args:
         agent: The agent, which makes a context for each chat.
-        name: The platform's name: the first part of the users' keys and of the log's name.
+        name: The name of the platform's module, which has called `connect`, and has `ChatSettings`.
         carrier: The connection to the messenger.
-        store: The file of messages. The room closes it.
-        slot: The slot of the platform's module that holds the `Chat` in each context.
-        command: The signal of the platform's module for commands.
-        rest: The seconds of silence after which a chat is put to rest.
-        limit: The maximum number of chats that do not rest. Beyond it, the chat that was silent longest is put to rest.
-        transcribe: A function that returns the words in a voice note. It raises `PlatformError` if it cannot.
+        account: The agent's own id on the messenger: each account has a file of its own.
+
+    Raises:
+        PlatformError: The file with the messages cannot be used.
     """
 
-    def __init__(
-        self,
-        agent: Agent,
-        *,
-        name: str,
-        carrier: Carrier,
-        store: Store,
-        slot: rs.Slot[Any],
-        command: rs.Signal[Command],
-        rest: float = 600.0,
-        limit: int = 1000,
-        transcribe: Callable[[bytes], Awaitable[str]] = _no_words,
-    ) -> None:
+    def __init__(self, agent: Agent, name: str, carrier: Carrier, account: str) -> None:
         self.agent = agent
         self.name = name
         self.carrier = carrier
-        self.store = store
-        self.slot = slot
-        self.command = command
-        self.rest = rest
-        self.transcribe = transcribe
+        settings = cast("ChatSettings", agent.settings[name])
+        self.rest = settings.rest
+        self._limit = settings.chats
+        self.slot: Any = agent.policy.slots[f"{name}:chat"]
+        self.command: Any = agent.policy.signals[f"{name}:command"]
+        self.called: set[str] = set()
+        """The names by which the agent knows itself. In a group, a message with one of them is for the agent."""
+        plain = re.sub(r"[^\w.-]", "_", account)
+        self.store = Store(settings.path or user_folder("data") / "chats" / f"{name}-{plain}.sqlite")
         self.log = logging.getLogger(f"ravestate.{name}")
         self.closing = False
         """Whether the agent is being switched off."""
-        self.sender = Sender(store, carrier, self._gone, self._moved, self.log)
-        self._limit = limit
+        self.sender = Sender(self.store, carrier, self._gone, self._moved, self.log)
         self._chats: dict[str, Chat] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
 

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import ravestate as rs
 from ravestate.modules import rawio
 
+from .chat import Chat
 from .commands import Command
 
 
@@ -26,18 +27,36 @@ class Listener(Protocol):
         ...
 
 
+def connect(module: rs.Module) -> tuple[rs.Slot[Chat | None], rs.Signal[Command]]:
+    """Declare the slot ``chat``, the signal ``command``, and the rules of a platform with many chats; `Room` uses them.
+
+    Returns:
+        The slot with the chat of the context, and the signal for the commands ``/start`` and ``/help``.
+    """
+    chat: rs.Slot[Chat | None] = module.slot("chat", None)
+    command: rs.Signal[Command] = module.signal("command", payload=Command, input=True)
+    carry(module, chat)
+
+    @module.rule(when=command.max_age(None), writes=rawio.output, weight=0.1)
+    async def explain(ctx: rs.RuleContext) -> None:
+        """Say what the user can do. A rule of another module for the same command takes priority."""
+        ctx[rawio.output] = ctx.payload(command).explanation
+
+    return chat, command
+
+
 def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
     """Declare the rules that carry ``rawio.output`` and ``rawio.piece`` to the `Listener` in a slot of the module."""
 
     @module.rule(when=rawio.output.changed.max_age(None).detached(), reads=slot)
     async def show(ctx: rs.RuleContext) -> None:
-        """Carry each utterance of the agent to the user."""
+        """Show each utterance of the agent to the user."""
         if listener := ctx[slot]:
             listener.utter(ctx.payload(rawio.output.changed))
 
     @module.rule(when=rawio.piece.max_age(None).detached(), reads=slot, background=True)
     async def show_piece(ctx: rs.RuleContext) -> None:
-        """Carry each piece of a growing utterance to the user."""
+        """Show each piece of a growing utterance to the user."""
         if listener := ctx[slot]:
             listener.grow(ctx.payload(rawio.piece))
 
@@ -46,17 +65,3 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
         """End a growing utterance that no rule has written as a whole."""
         if listener := ctx[slot]:
             listener.fall_silent()
-
-
-def obey(module: rs.Module, command: rs.Signal[Command]) -> None:
-    """Declare the rules for the commands of a messenger's users: ``/start`` and ``/help``.
-
-    Both have little weight: a rule of another module for the same command takes priority.
-    """
-
-    @module.rule(
-        when=command.max_age(None).where(lambda c: c.name in ("start", "help")), writes=rawio.output, weight=0.1
-    )
-    async def explain(ctx: rs.RuleContext) -> None:
-        """Say what the user can do."""
-        ctx[rawio.output] = ctx.payload(command).explanation

@@ -255,8 +255,9 @@ class Store:
 
 
 def _incoming(data: str, chat: str) -> Incoming:
-    fields = json.loads(data)
-    return Incoming(**{**fields, "chat": chat, "person": Person(**fields["person"])})
+    fields: dict[str, Any] = json.loads(data)
+    fields.update(chat=chat, person=Person(**fields["person"]))
+    return Incoming(**fields)
 
 
 def _json(message: Outgoing) -> str:
@@ -264,4 +265,6 @@ def _json(message: Outgoing) -> str:
 
 
 def _outgoing(message: str, data: bytes, chat: str) -> Outgoing:
-    return Outgoing(**{**json.loads(message), "chat": chat, "data": bytes(data)})
+    fields: dict[str, Any] = json.loads(message)
+    fields.update(chat=chat, data=bytes(data))
+    return Outgoing(**fields)

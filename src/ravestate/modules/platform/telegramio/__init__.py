@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from . import rules as rules
 from .names import Settings, chat, command, module
 from .serving import serve
 
