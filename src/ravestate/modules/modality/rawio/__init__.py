@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .names import heard, hearing, input, module, output, picture, piece, sound, speaking, typing
+from .names import heard, hearing, hush, input, module, output, picture, piece, sound, speaking, typing
 from .sound import IN_RATE, OUT_RATE, Line
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ __all__ = [
     "Line",
     "heard",
     "hearing",
+    "hush",
     "input",
     "module",
     "output",
