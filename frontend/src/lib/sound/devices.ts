@@ -1,6 +1,6 @@
 import address from "./worklet.ts?worker&url";
 
-/** What a pair of devices reports. */
+/** A listener to the reports of a pair of devices. */
 export interface Listener {
   /** 20 ms of the visitor's sound: 16-bit samples at 16 kHz, and their level (0 to 1). */
   onsound: (sound: ArrayBuffer, level: number) => void;

@@ -57,7 +57,7 @@ class Connection:
         self._suggestions = suggestions
         self._note = note
         self._channel = Channel(socket, REPLIES)
-        self._stream = -1  # the number of the stream of sound that the client has been told
+        self._stream = -1  # the number of the stream of sound that the client knows
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
 
     async def run(self) -> None:

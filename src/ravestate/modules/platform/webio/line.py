@@ -138,7 +138,7 @@ class PageLine:
         await self._drained.wait()
 
     def close(self) -> None:
-        """Close the line, whoever has it."""
+        """Close the line; the window that has it gets no more sound."""
         self._closed = True
         self.stop()
         self._arrived.set()

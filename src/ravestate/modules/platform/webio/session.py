@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
 GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
-RECENT = 5  # the number of the agent's newest messages of which the heard part may be told
+RECENT = 5  # the number of the agent's newest messages that `rawio.heard` can mean
 LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
 WORD = re.compile(r"\S+")
 FAREWELL = 5.0  # the seconds that the agent has for a farewell

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import array
-import asyncio
 import math
 
 import ravestate as rs
@@ -62,7 +61,7 @@ async def listen(ctx: rs.RuleContext) -> None:
                 loud = quiet = told = 0.0
 
 
-@ears.rule(when=rawio.output.changed, reads=rawio.sound, writes=rawio.heard, background=True)
+@ears.rule(when=rawio.output.changed.max_age(None).detached(), reads=rawio.sound, writes=rawio.heard, background=True)
 async def speak(ctx: rs.RuleContext) -> None:
     """Play a tone for each word, and note the words that were heard, also if the sound is cut."""
     line, words = ctx[rawio.sound], ctx.payload(rawio.output.changed).split()
@@ -82,6 +81,3 @@ story = rs.Module("story", requires=(rawio,))
 @story.rule(when=rawio.input.changed, writes=rawio.output)
 async def tell(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = f"I heard {ctx.payload(rawio.input.changed)}, and that pleases me."
-
-
-__all__ = ["asyncio", "ears", "level", "level_of", "story", "tone"]
