@@ -14,7 +14,7 @@ LOUD = 0.02
 PAUSE = 0.4
 """Seconds of quiet that end an utterance."""
 
-WORD = 0.5
+WORD = 0.3
 """Seconds of tone for each word of the agent."""
 
 ears = rs.Module("ears", requires=(rawio,))
@@ -32,6 +32,17 @@ def tone(seconds: float, rate: int = rawio.OUT_RATE) -> bytes:
     return array.array(
         "h", (round(12000 * math.sin(2 * math.pi * 440 * n / rate)) for n in range(round(seconds * rate)))
     ).tobytes()
+
+
+def babble(seconds: float, rate: int = rawio.IN_RATE) -> bytes:
+    """Something like a voice, so that a browser does not take it for noise: a hoarse tone in syllables."""
+    samples = array.array("h")
+    for n in range(round(seconds * rate)):
+        time = n / rate
+        pitch = 130 + 25 * math.sin(2 * math.pi * 1.3 * time)
+        sound = sum(math.sin(2 * math.pi * k * pitch * time) / k for k in range(1, 12))
+        samples.append(round(6000 * sound * max(0.0, math.sin(2 * math.pi * 2.2 * time)) ** 0.5))
+    return samples.tobytes()
 
 
 @ears.rule(
@@ -75,9 +86,26 @@ async def speak(ctx: rs.RuleContext) -> None:
     ctx[rawio.heard] = " ".join(words[: math.floor(heard)])
 
 
+@ears.rule(when=rawio.hearing.max_age(None).detached(), reads=rawio.sound, background=True)
+async def give_way(ctx: rs.RuleContext) -> None:
+    """Stop speaking while the visitor speaks."""
+    if line := ctx[rawio.sound]:
+        line.stop()
+
+
 story = rs.Module("story", requires=(rawio,))
 
 
 @story.rule(when=rawio.input.changed, writes=rawio.output)
 async def tell(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = f"I heard {ctx.payload(rawio.input.changed)}, and that pleases me."
+
+
+saga = rs.Module("saga", requires=(rawio,))
+SAGA = "I heard a sound, and that reminds me of" + 30 * " far" + " hills."
+
+
+@saga.rule(when=rawio.input.changed, writes=rawio.output)
+async def tell_at_length(ctx: rs.RuleContext) -> None:
+    """Say something so long that somebody will interrupt it."""
+    ctx[rawio.output] = SAGA

@@ -18,6 +18,8 @@ from ravestate.modules.platform.webio.session import Session
 SPEECH = tone(1.0, rawio.IN_RATE)
 SILENCE = bytes(rawio.IN_RATE)  # half a second
 ANSWER = "I heard a sound, and that pleases me."
+LENGTH = len(ANSWER.split()) * WORD
+"""The seconds that the answer takes."""
 
 
 class Caller(Visit):
@@ -101,13 +103,13 @@ async def test_words_that_are_spoken_show_as_captions_then_as_a_message_before_t
 async def test_the_answer_is_sent_ahead_of_the_loudspeaker_by_a_second_at_most() -> None:
     async with calling() as (_, caller):
         caller.speak()
-        for second in range(1, 5):
-            while caller.sound < second * rawio.OUT_RATE:
+        for second in (1.0, 2.0, LENGTH):
+            while caller.sound < round(second * rawio.OUT_RATE):
                 await caller.until("sound")
             await past(0.0)
             assert caller.nothing_more()
             caller.played(second)
-        assert caller.sound == len(ANSWER.split()) * WORD * rawio.OUT_RATE
+        assert caller.sound == round(LENGTH * rawio.OUT_RATE)
 
 
 @in_virtual_time
@@ -124,21 +126,21 @@ async def test_the_visitor_who_presses_stop_hears_no_more_and_the_message_says_w
         caller.tell("hush")
         frames = await caller.frames("heard")
         assert caller.stream == stream + 1
-        assert frames[-1] == {"type": "heard", "n": 2, "text": "I heard"}
+        assert frames[-1] == {"type": "heard", "n": 2, "text": "I heard a"}
         await past(60.0)
         assert caller.sound == 0
         async with Visit(caller._app) as other:  # a window that opens later learns it, too
             await other.hello(session=caller.session)
             assert (await other.frames("message"))[-1]["text"] == "a sound"
-            assert (await other.next())["heard"] == "I heard"
+            assert (await other.next())["heard"] == "I heard a"
 
 
 @in_virtual_time
 async def test_an_answer_that_was_heard_to_its_end_has_no_mark() -> None:
     async with calling() as (app, caller):
         caller.speak()
-        for second in range(1, 5):
-            while caller.sound < second * rawio.OUT_RATE:
+        for second in (1.0, 2.0, LENGTH):
+            while caller.sound < round(second * rawio.OUT_RATE):
                 await caller.until("sound")
             caller.played(second)
         await past(1.0)
