@@ -2,7 +2,7 @@ import type { ClientFrame, ServerFrame } from "./protocol";
 import { type Devices, explain, openDevices } from "./sound/devices";
 
 /** Milliseconds of a press that make it a hold. */
-const HOLD = 350;
+const HOLD = 400;
 
 /** Milliseconds between two reports of the play-out position. */
 const REPORT = 95;
@@ -48,10 +48,10 @@ export class Voice {
 
   constructor(private readonly options: Options) {}
 
-  /** The visitor presses the button. */
-  press(): void {
+  /** The visitor presses the button, at a time in milliseconds: a busy page may hear of it later. */
+  press(at = performance.now()): void {
     if (this.#pressed !== null) return;
-    this.#pressed = performance.now();
+    this.#pressed = at;
     this.#devices?.resume();
     if (this.state === "off") {
       this.mode = "hold"; // until the button is released
@@ -60,9 +60,9 @@ export class Voice {
   }
 
   /** The visitor releases the button. */
-  release(): void {
+  release(at = performance.now()): void {
     if (this.#pressed === null) return;
-    const long = performance.now() - this.#pressed >= HOLD;
+    const long = at - this.#pressed >= HOLD;
     const began = this.#began;
     this.#began = false;
     this.#pressed = null;
@@ -158,6 +158,8 @@ export class Voice {
     this.#began = true;
     this.state = "starting";
     this.trouble = "";
+    await new Promise((resolve) => setTimeout(resolve)); // the button responds first
+    if (attempt !== this.#attempt) return;
     try {
       const devices = await (this.options.open ?? openDevices)({
         onsound: (sound, level) => this.#hear(sound, level),

@@ -27,7 +27,7 @@ export async function openDevices(listener: Listener): Promise<Devices> {
   if (!window.isSecureContext || navigator.mediaDevices === undefined)
     throw new DOMException("", "SecurityError");
   if (typeof AudioWorkletNode === "undefined") throw new DOMException("", "NotSupportedError");
-  const context = new AudioContext({ latencyHint: "interactive" }); // at once: this is while the visitor presses the button
+  const context = new AudioContext({ latencyHint: "interactive" });
   let stream: MediaStream | undefined;
   try {
     stream = await navigator.mediaDevices.getUserMedia({

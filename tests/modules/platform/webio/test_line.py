@@ -173,6 +173,7 @@ async def test_without_a_window_words_are_read_so_their_sound_counts_as_played()
 async def test_a_window_that_plays_nothing_loses_it() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
+    listening = asyncio.create_task(anext(line.blocks()))
     await past(60.0)
     assert window.lost == []  # silence is no fault
     line.play(tone(3.0))
@@ -183,6 +184,18 @@ async def test_a_window_that_plays_nothing_loses_it() -> None:
     await past(2.0)
     assert (line.window, window.lost) == (None, ["the sound does not play"])
     await line.drained()
+    await listening
+
+
+@in_virtual_time
+async def test_a_window_that_nobody_listens_to_is_told_so() -> None:
+    left: list[int] = []
+    line = PageLine(lambda: left.append(1))
+    line.take(window := Speaker(line))
+    await past(29.0)
+    assert window.lost == []
+    await past(2.0)
+    assert (window.lost, left) == (["the agent cannot hear at the moment"], [1])
 
 
 @in_virtual_time

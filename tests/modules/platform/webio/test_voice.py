@@ -156,7 +156,37 @@ async def test_a_visitor_who_types_gets_no_sound_and_no_mark() -> None:
         assert await visit.messages(2) == ["user: words", "agent: I heard words, and that pleases me."]
         await past(60.0)
         assert visit.nothing_more()
-        assert session_of(app).context.read(rawio.heard) == "I heard words, and that pleases me."
+        assert session_of(app).context.read(rawio.sound) is None  # so nobody made sound
+        visit.tell("hush")  # without a line, too
+
+
+@in_virtual_time
+async def test_the_line_stays_for_half_a_minute_after_the_microphone_went_off() -> None:
+    async with calling() as (app, caller):
+        context = session_of(app).context
+        line = context.read(rawio.sound)
+        for seconds, kept in ((29.0, True), (29.0, True), (31.0, False)):
+            caller.tell("microphone", on=False)
+            await past(seconds)
+            assert (context.read(rawio.sound) is line) is kept
+            caller.tell("microphone", on=True)
+            await caller.until("flush")
+        caller.speak()
+        assert (await caller.until("message"))["text"] == "a sound"
+        assert context.read(rawio.sound) not in (None, line)
+
+
+@in_virtual_time
+async def test_a_line_that_the_agent_closes_is_replaced_when_the_microphone_goes_on_again() -> None:
+    async with calling() as (app, caller):
+        line = session_of(app).line
+        assert line is not None
+        line.close()
+        assert (await caller.until("taken"))["text"] == "the agent does not listen any more"
+        caller.tell("microphone", on=True)
+        await caller.until("flush")
+        caller.speak()
+        assert (await caller.until("message"))["text"] == "a sound"
 
 
 @in_virtual_time
@@ -181,8 +211,9 @@ async def test_a_lost_connection_stops_the_sound_and_a_new_one_gets_what_comes_t
         caller.speak()
         await caller.until("sound")
         await caller.drop()
-        assert session_of(app).line is not None
-        assert session_of(app).line.window is None  # pyright: ignore[reportOptionalMemberAccess]
+        line = session_of(app).line
+        assert line is not None
+        assert line.window is None
         async with Caller(app) as again:
             await again.call(session=caller.session, last=2)
             again.speak()

@@ -38,5 +38,6 @@ hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep
 hush: rs.Signal[None] = module.signal("hush", input=True, keep="latest")
 """The user asks the agent to stop speaking, for example with a button."""
 
-heard: rs.Slot[str] = module.slot("heard", "", type=str, input=True)
-"""The part of the agent's last utterance that the user heard. A platform that speaks writes it when the sound ends."""
+heard: rs.Slot[str] = module.slot("heard", "", type=str, always=True, input=True)
+"""The part of the agent's last utterance that the user heard. A platform that speaks writes it for each utterance, when its
+sound ends or is cut."""

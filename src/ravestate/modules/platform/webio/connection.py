@@ -57,7 +57,7 @@ class Connection:
         self._suggestions = suggestions
         self._note = note
         self._channel = Channel(socket, REPLIES)
-        self._stream = -1  # the number of the stream of sound that the client knows
+        self._stream: object = None  # the stream of sound that the client knows
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
 
     async def run(self) -> None:
@@ -85,7 +85,7 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
-            await self._send(protocol.Welcome(*begin, self._suggestions, self._note, session.line is not None or None))
+            await self._send(protocol.Welcome(*begin, self._suggestions, self._note, session.hears or None))
             await until_first_ends(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             if session.line is not None:
@@ -105,20 +105,19 @@ class Connection:
         writing, others = (Bucket(burst=BURST, rate=RATE, now=now()) for _ in range(2))
         sound = Bucket(burst=SOUND_BURST, rate=SOUND_RATE, now=now())
         reports = Bucket(burst=REPORTS_BURST, rate=REPORTS_RATE, now=now())
-        line = session.line
         while True:
             text = await self._channel.receive()
             try:
-                if isinstance(text, bytes) and line is not None:
+                if isinstance(text, bytes) and session.hears:
                     block = sound_of(text)
-                    if sound.take(now(), len(block)):
-                        line.hear(self, block)
+                    if sound.take(now(), len(block)) and session.line is not None:
+                        session.line.hear(self, block)
                     await asyncio.sleep(0)
                     continue
                 frame = parse(text, CLIENT)
-                if isinstance(frame, protocol.Played) and line is not None:
-                    if reports.take(now()):
-                        line.report(self, frame.n, frame.samples)
+                if isinstance(frame, protocol.Played) and session.hears:
+                    if reports.take(now()) and session.line is not None:
+                        session.line.report(self, frame.n, frame.samples)
                     await asyncio.sleep(0)
                     continue
                 if isinstance(frame, protocol.Writing):
@@ -145,14 +144,14 @@ class Connection:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
     def _take_sound(self, frame: protocol.Microphone | protocol.Played | protocol.Hush, session: Session) -> None:
-        if session.line is None:
+        if not session.hears:
             raise ProtocolError("deaf", "this agent neither hears nor speaks: it needs a module such as voiceio")
         if isinstance(frame, protocol.Hush):
             session.hush()
         elif isinstance(frame, protocol.Microphone) and frame.on:
             self._taken = None
-            session.line.take(self)
-        elif isinstance(frame, protocol.Microphone):
+            session.take_line(self)
+        elif isinstance(frame, protocol.Microphone) and session.line is not None:
             session.line.leave(self)
 
     def _reply(self, frame: protocol.ServerFrame) -> None:
@@ -205,8 +204,8 @@ class Connection:
             await self._send(protocol.Taken(why))
         line = session.line
         while line is not None and line.window is self:
-            if line.stream != self._stream:
-                self._stream = line.stream
+            if (line, line.stream) != self._stream:
+                self._stream = line, line.stream
                 await self._send(protocol.Flush(line.stream))
             elif (sound := line.fetch(self)) is not None:
                 await self._channel.send_sound(sound)

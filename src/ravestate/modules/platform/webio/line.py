@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from typing import TYPE_CHECKING, Protocol
 
 from ravestate.modules import rawio
@@ -35,6 +35,9 @@ BETWEEN = 0.2
 STALL = 5.0
 """The seconds after which a window that plays nothing of its sound loses the line."""
 
+DEAF = 30.0
+"""The seconds after which a window loses the line if no rule takes its sound. Models may take long to load."""
+
 
 class Window(Protocol):
     """A window of the visitor, which can have the line."""
@@ -61,16 +64,22 @@ class PageLine:
     The agent's sound is a row of streams: dropping the sound, and giving the line to a window, begin a new one. The
     window reports how much of the present stream it has played. Without a window, sound counts as played at once: the
     visitor reads the words.
+
+    Args:
+        on_left: Called when no window has the line any more.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
         self.window: Window | None = None
         """The window that has the line; None if none has it."""
         self.stream = 0
         """The number of the present stream."""
         self._heard = bytearray()
         self._arrived = asyncio.Event()
-        self._closed = False
+        self.closed = False
+        """Whether the line is closed."""
+        self._on_left = on_left
+        self._taken_up = False  # whether a rule has begun to take the sound
         self._waiting: deque[memoryview] = deque()
         self._queued = self._sent = self._reported = 0  # samples of the present stream
         self._earlier = 0  # samples played of the earlier streams
@@ -87,7 +96,8 @@ class PageLine:
 
     async def blocks(self) -> AsyncGenerator[bytes]:
         """Yield the visitor's sound in blocks of 20 ms, until the line is closed; while the microphone is off, none."""
-        while not self._closed:
+        self._taken_up = True
+        while not self.closed:
             if len(self._heard) >= BLOCK:
                 block = bytes(self._heard[:BLOCK])
                 del self._heard[:BLOCK]
@@ -99,7 +109,7 @@ class PageLine:
     def play(self, sound: bytes) -> None:
         """Queue sound for the window that has the line."""
         samples = len(sound) // SAMPLE
-        if self._closed or samples == 0:
+        if self.closed or samples == 0:
             return
         if self.window is None:
             self._earlier += samples
@@ -108,7 +118,7 @@ class PageLine:
         self._queued += samples
         self._drained.clear()
         if self._watch is None:
-            self._expect_report()
+            self._expect(STALL, self._find_stalled)
         self.window.wake()
 
     def stop(self) -> None:
@@ -138,10 +148,10 @@ class PageLine:
         await self._drained.wait()
 
     def close(self) -> None:
-        """Close the line; the window that has it gets no more sound."""
-        self._closed = True
-        self.stop()
+        """Close the line; the window that has it loses it."""
+        self.closed = True
         self._arrived.set()
+        self._lose("the agent does not listen any more")
 
     # -------------------------------------------------------------------------------- the window's side
 
@@ -153,6 +163,8 @@ class PageLine:
             self.window.lose_sound("the microphone is on in another window")
         self.window = window
         self.stop()
+        if not self._taken_up:
+            self._expect(DEAF, self._find_deaf)
 
     def leave(self, window: Window) -> None:
         """Take the line from a window, if it has it; its queued sound is dropped."""
@@ -161,6 +173,7 @@ class PageLine:
         self.window = None
         self.stop()
         self._listen(TRAIL)
+        self._on_left()
 
     def hear(self, window: Window, sound: bytes) -> None:
         """Take sound of the visitor; ignore it if the window does not have the line (any longer)."""
@@ -198,19 +211,31 @@ class PageLine:
         if samples == self._queued:
             self._drained.set()
         else:
-            self._expect_report()
+            self._expect(STALL, self._find_stalled)
         window.wake()
 
-    def _expect_report(self) -> None:
-        self._watch = asyncio.get_running_loop().call_later(STALL, self._give_up)
+    def _expect(self, seconds: float, late: Callable[[], None]) -> None:
+        self._stop_watch()
+        self._watch = asyncio.get_running_loop().call_later(seconds, self._find_late, late)
+
+    def _find_late(self, late: Callable[[], None]) -> None:
+        self._watch = None
+        late()
 
     def _stop_watch(self) -> None:
         if self._watch is not None:
             self._watch.cancel()
             self._watch = None
 
-    def _give_up(self) -> None:
+    def _find_stalled(self) -> None:
+        self._lose("the sound does not play")
+
+    def _find_deaf(self) -> None:
+        if not self._taken_up:
+            self._lose("the agent cannot hear at the moment")
+
+    def _lose(self, why: str) -> None:
         if self.window is not None:
             window = self.window
             self.leave(window)
-            window.lose_sound("the sound does not play")
+            window.lose_sound(why)

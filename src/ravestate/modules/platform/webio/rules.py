@@ -45,6 +45,13 @@ async def caption(ctx: rs.RuleContext) -> None:
         session.show_caption(ctx.payload(rawio.hearing))
 
 
+@module.rule(when=rawio.hush.max_age(None).detached(), reads=page, background=True)
+async def hush(ctx: rs.RuleContext) -> None:
+    """Silence the visitor's loudspeaker. The rule that speaks has heard of it already."""
+    if (session := ctx[page]) and session.line is not None:
+        session.line.stop()
+
+
 @module.rule(when=rawio.heard.changed.max_age(None).detached(), reads=page, background=True)
 async def mark_heard(ctx: rs.RuleContext) -> None:
     """Mark the part of the agent's last utterance that the visitor heard."""

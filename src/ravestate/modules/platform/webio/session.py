@@ -18,19 +18,19 @@ from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable, without_controls
 
+from .line import PageLine, Window
 from .names import page
 from .protocol import LONGEST_NAME, Heard, Message, name_of
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
-    from .line import PageLine
-
 REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
 GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
 RECENT = 5  # the number of the agent's newest messages that `rawio.heard` can mean
 LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
 WORD = re.compile(r"\S+")
+LINGER = 30.0  # the seconds for which the line stays in ``rawio.sound`` after the microphone went off
 FAREWELL = 5.0  # the seconds that the agent has for a farewell
 
 log = logging.getLogger("ravestate.webio")
@@ -132,7 +132,7 @@ class Session:
     A session has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
     """
 
-    def __init__(self, context: Context, name: str | None = None, line: PageLine | None = None) -> None:
+    def __init__(self, context: Context, name: str | None = None, *, hears: bool = False) -> None:
         self.id = secrets.token_urlsafe(24)
         """The conversation's secret id; a client sends it to resume."""
         self.visitor = f"webio-{secrets.token_hex(4)}"
@@ -146,8 +146,10 @@ class Session:
         """The text so far of a growing utterance of the agent; empty if there is none."""
         self.spoken = False
         """Whether the visitor has ever said anything."""
-        self.line = line
-        """The line to the visitor's microphone and loudspeaker; None if the agent cannot hear."""
+        self.hears = hears
+        """Whether the agent can hear and speak."""
+        self.line: PageLine | None = None
+        """The line to the visitor's microphone and loudspeaker; None while the microphone is off in all windows."""
         self.caption = ""
         """The words so far of an utterance that the visitor is still speaking."""
         self.ended: Ending | None = None
@@ -159,6 +161,7 @@ class Session:
         self._heard: OrderedDict[str, None] = OrderedDict()
         self._put: deque[str] = deque()  # words that `show_input` will see, and that the history has already
         self._heard_part: str | None = None  # the part heard of a growing utterance whose speech was cut
+        self._hanging_up: asyncio.TimerHandle | None = None
         self._working = False
         self._following: asyncio.Task[None] | None = None
 
@@ -170,9 +173,9 @@ class Session:
         try:
             async with self.context as context:
                 self._begun = True
+                context.put(page, self)
                 if self.line is not None:
                     context.put(rawio.sound, self.line)
-                context.put(page, self)
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
                 users = self.context.read(interloc.users)
@@ -188,8 +191,7 @@ class Session:
             if self._following is not None:
                 self._following.cancel()
             self.fall_silent()
-            if self.line is not None:
-                self.line.close()
+            self._hang_up()
             self.ended = self._reason
             self.notify()
 
@@ -271,12 +273,37 @@ class Session:
                     self.notify()
                 return
 
+    def take_line(self, window: Window) -> None:
+        """Give the line to a window; a line that was not there goes into ``rawio.sound``."""
+        self._stay_on_line()
+        if self.line is None or self.line.closed:
+            self.line = PageLine(self._linger)
+            if self._begun:
+                self.context.put(rawio.sound, self.line)
+        self.line.take(window)
+
+    def _linger(self) -> None:
+        """Keep the line for a while without a window: the agent hears the end of the utterance, and may be quick again."""
+        self._stay_on_line()
+        self._hanging_up = asyncio.get_running_loop().call_later(LINGER, self._hang_up)
+
+    def _stay_on_line(self) -> None:
+        if self._hanging_up is not None:
+            self._hanging_up.cancel()
+            self._hanging_up = None
+
+    def _hang_up(self) -> None:
+        line, self.line = self.line, None
+        if line is not None:
+            if self._begun:
+                self.context.put(rawio.sound, None)
+            line.close()
+        self._stay_on_line()
+
     def hush(self) -> None:
-        """Make the agent stop speaking."""
-        if self.line is not None:
-            self.line.stop()
-            if not self.leaving:
-                self.context.emit(rawio.hush)
+        """Ask the agent to stop speaking."""
+        if self._begun:
+            self.context.emit(rawio.hush)
 
     def notice_writing(self) -> None:
         """Tell the agent that the visitor is writing."""

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from .line import PageLine, hears
+from .line import hears
 from .protocol import ProtocolError
 from .session import Ending, Onlooker, Session
 
@@ -53,7 +53,7 @@ class Sessions:
             raise ProtocolError("closing", Ending.OFF)
         if len(self._tasks) >= self._limit:
             raise ProtocolError("full", f"{self._limit} visitors are here already: try again later")
-        session = Session(self._agent.context(), name, PageLine() if self.hears else None)
+        session = Session(self._agent.context(), name, hears=self.hears)
         self._sessions[session.id] = session
         self._tasks[session] = asyncio.create_task(self._live(session))
         self._abandon(session)  # the conversation ends if no window opens in time
