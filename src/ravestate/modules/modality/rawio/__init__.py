@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .names import heard, hearing, hush, input, module, output, picture, piece, sound, speaking, typing
 from .sound import IN_RATE, OUT_RATE, Line
+
+# isort: split
+# The slot `sound` takes the name of the file.
+from .names import heard, hearing, hush, input, module, output, picture, piece, sound, speaking, typing
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
