@@ -6,7 +6,7 @@ from typing import Any
 
 import ravestate as rs
 
-from .sound import Line
+from .line import Line
 
 module = rs.Module("rawio")
 
@@ -37,6 +37,9 @@ sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
 
 hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
 """The words so far of an utterance that the user is still speaking, for platforms that show captions."""
+
+hush: rs.Signal[None] = module.signal("hush", input=True, keep="latest")
+"""The user asks the agent to stop speaking, for example with a button."""
 
 heard: rs.Slot[str] = module.slot("heard", "", type=str, always=True, input=True)
 """The part of the agent's last utterance that the user heard. A platform that speaks writes it for each utterance, when its
