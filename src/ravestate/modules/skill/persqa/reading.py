@@ -25,7 +25,7 @@ _NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "na
 """Words between a relative and their name: *my mother's name is Anna*."""
 _TURN = re.compile(r", (?:and )?(not) |,? but (?!i\b)", re.IGNORECASE)
 _NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
-_HERE = re.compile(r"^(?:\w+[.!,;] )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)", re.IGNORECASE)
+_HERE = re.compile(r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)", re.IGNORECASE)
 _OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.IGNORECASE)
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
 """Words before a correction of the speaker's own: *I'm Voss, no wait, I'm Claudia*."""
