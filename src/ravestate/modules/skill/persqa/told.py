@@ -13,7 +13,8 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from .answers import spelled_out
-from .reading import Reader
+from .kinds import likeness
+from .reading import Reader, is_former
 from .topics import NAME, NOUNS, TOPICS, WORDS
 from .values import value_of
 from .wording import Facts
@@ -46,6 +47,7 @@ _ADVICE = re.compile(
 )
 """Questions for advice or an opinion, not for memories."""
 _LABEL = re.compile(r"^be (?:called|named)$")
+_DEICTIC = re.compile(r"(?:this|that|these|those|it|here|there)\b", re.IGNORECASE)
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
 
@@ -162,13 +164,22 @@ def _stems(text: str) -> set[str]:
 
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
+    if _DEICTIC.match(said.object.text) or is_former(said.subject.text):
+        return False
     if (
-        (said.verb in WORDS["passing"] and not called)
+        (said.verb in WORDS["passing"] and not called and not _gained(reader, said))
         or " to " in said.triple.predicate
         or said.object.person != "other"
     ):
         return False
     return isinstance(said.triple.object, str) and not reader.ended(said) and (said.holds or _happened(reader, said))
+
+
+def _gained(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether somebody has, or got, a thing of their own: *a red bicycle*, but not *a headache*."""
+    verb = reader.verb(said)
+    gets = said.verb == "get" and verb is not None and verb.low == "got"
+    return (gets or said.verb in ("have", "own")) and likeness(reader.written(said.object), "possession") > 0.1
 
 
 def _happened(reader: Reader, said: nlp.Statement) -> bool:
@@ -183,12 +194,16 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     subject, object = said.subject, said.object
     if subject.person == "I":
         mine = "my" in object.text.lower().split() and not _happened(reader, said)
-        deictic = re.match(r"(?:this|that|these|those|it|here|there)\b", reader.written(object), re.IGNORECASE)
+        deictic = _DEICTIC.match(reader.written(object))
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
         there = (
             object.preposition and not object.text[:1].isupper()
         )  # I drive for Transkorn, but not I wait for the bus
-        fits = object.text and not there and said.verb not in ("be", "have") and not mine and not deictic
+        fits = object.text and not there and not mine and not deictic
+        if said.verb == "be":
+            fits = fits and likeness(object.text, "trait") > 0.1
+        elif said.verb in ("have", "get", "own"):
+            fits = fits and _gained(reader, said)
         return "I" if spoken and fits and not list(reader.links(said)) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
@@ -197,7 +212,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     if WORDS["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
         return " ".join(words[2:]) if len(words) == 3 else subject.text
     dated = said.verb == "be" and said.when  # my birthday is in May
-    if words and dated and not reader.noun(subject):
+    thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # my car is a Fiat
+    if words and (dated or thing) and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
     return subject.text if person and not reader.noun(object) else ""

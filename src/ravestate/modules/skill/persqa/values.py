@@ -19,7 +19,7 @@ LONGEST = {"name": 4, "people": 4, "place": 5}
 _LEADS = {
     **dict.fromkeys(("subject", "activity", "thing"), r"an? (?=\S)"),
     "work": r"(?:an?|the) (?=\S)",
-    "place": r"(?:the )?(?:city|town|village) of (?=\S)",
+    "place": r"(?:the )?(?:city|town|village) of (?=\S)|.*\b(?:called|named) (?=\S)",
 }
 """Words before a value that are no part of it."""
 _DEICTIC = re.compile(
@@ -46,6 +46,8 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     words = text.lower().split()
     if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
         return None
+    if kind in ("work", "subject") and any(word.low == words[0] and word.pos == "ADP" for word in seen.tree.words):
+        return None  # between jobs
     if kind == "number":
         number = number_in(text)
         return number if 0 < int(number or 0) < 120 else None
@@ -102,15 +104,25 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
                 return False
         case "place" if labels & _PLACES:
             return True
+        case "place" if _is_proper(text, seen):
+            least = -0.6
         case "place" if determined:
             least = 0.0
         case "organisation" if "ORG" in labels:
             return True
+        case "organisation" if _is_proper(text, seen) and "PERSON" not in labels:
+            least = -0.6
         case "work" | "subject" if determined:
             return False
         case _:
             pass
     return likeness(text, topic.name if topic.name in FITTING else kind) > least
+
+
+def _is_proper(text: str, seen: nlp.Analysis) -> bool:
+    """Return whether words are a name by the parse."""
+    found = {word.text: word.pos for word in seen.tree.words}
+    return text[:1].isupper() and all(found.get(word, "PROPN") == "PROPN" for word in text.split())
 
 
 def _trimmed(text: str) -> str:
