@@ -21,14 +21,23 @@ LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 _CALLED = frozenset(["be", "be called", "be named"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
-_NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
+_NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that", ":"])
 """Words between a relative and their name: *my mother's name is Anna*."""
-_TURN = re.compile(r", (?:and )?(not) |,? but (?!i\b)", re.IGNORECASE)
+_TURN = re.compile(
+    r"(?:, (?:and )?|(?<! am)(?<! is)(?<! are)(?<!'m)(?<!'s)(?<!'re) (?=not (?:an?|the|in|at|from) [\w ]+\W*$))(not) |"
+    r",? but (?!i\b)",
+    re.IGNORECASE,
+)
 _NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
-_HERE = re.compile(r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)", re.IGNORECASE)
+_HERE = re.compile(
+    r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
+    re.IGNORECASE,
+)
 _OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.IGNORECASE)
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
 """Words before a correction of the speaker's own: *I'm Voss, no wait, I'm Claudia*."""
+_NONE = frozenset(["none", "neither", "nobody"])
+_TODAY = frozenset(["tonight", "today", "tomorrow", "now", "this"])
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 
@@ -55,10 +64,10 @@ class Reader:
 
     def __init__(self, seen: nlp.Analysis, asked: str = "", person: str = "") -> None:
         self.seen = seen
-        self.asked = asked
-        self.person = person
         self.tree = seen.tree
         self.words = {word.low for word in seen.tree.words}
+        self.asked = asked
+        self.person = person or self.without_name()
 
     def facts(self, known: Facts | None = None) -> list[Fact]:
         """Return the facts that the user states, one for each topic; `known` are those of before."""
@@ -72,9 +81,11 @@ class Reader:
             instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
             for link in [Link(denied, said.object)] if instead else self.links(said):
                 denied = link.topic if said.negated else ""
-                values = self._values(link)
+                values = self.values(link)
                 called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # his name was Joost
-                over = said.past and link.topic not in LASTING and not called
+                over = (said.past and link.topic not in LASTING and not called) or (
+                    link.topic == NAME and not self.words.isdisjoint({"was", "were"})
+                )
                 if self._denies(said, link.phrase) or (
                     over and values and among(values[0], (known or {}).get(link.topic, ()))
                 ):
@@ -85,7 +96,7 @@ class Reader:
                     if values and _INSTEAD.search(self.tree.text):
                         told.pop(link.topic, None)
                     _add(told, link.topic, values)
-        for topic, values in self._named():
+        for topic, values in self.named():
             if topic not in gone and (topic != NAME or topic not in told):
                 _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
@@ -122,7 +133,7 @@ class Reader:
                     return Fact(topic)
             for link in self.links(said):
                 people = TOPICS[link.topic].kind == "people"
-                values = () if unknown else self._values(link)
+                values = () if unknown else self.values(link)
                 wanted = unknown in (kinds.PERSON, kinds.OBJECT, kinds.PLACE) or (unknown and said.verb == "call")
                 if values or wanted or (unknown is None and (people or link.phrase is None)):
                     return Fact(link.topic, values)
@@ -152,6 +163,8 @@ class Reader:
         if said.hearsay or said.conditional or said.question or (said.plan and not self._is_habit(said)):
             return False
         thing = said.object.text
+        if self.words & _NONE:
+            return False
         if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
             return False  # when I live in Paris, I will eat cheese
         return not said.request or said.subject.text.lower() == "i"
@@ -175,7 +188,9 @@ class Reader:
             yield Link(found[0], object, found[1])
         elif topic := self.noun(subject):
             if predicate in _CALLED and not object.preposition:
-                sure = bool(object.names) or (subject.head == "name" and subject.owner) or TOPICS[topic].kind != "people"
+                sure = (
+                    bool(object.names) or (subject.head == "name" and subject.owner) or TOPICS[topic].kind != "people"
+                )
                 yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, bool(sure))
             elif TOPICS[topic].kind == "activity" and (verb := self.verb(said)):
                 yield Link(topic, subject, value=self._span(verb.text, object))
@@ -205,13 +220,15 @@ class Reader:
         if verb is not None and verb.dep == "relcl":
             return  # the film that I like
         has = self._has(said)
-        if has and (topic := NOUNS.get(object.head, "")) and (said.negated or object.names or said.question):
+        if has and (topic := NOUNS.get(object.head, "")) and (said.negated or said.question):
             yield Link(topic, object if object.names else None)
-        if hobby := self._pursuit(said):
-            yield hobby
-            return
-        if predicate == "be":
-            yield from self._being(said)
+        told = list(self._by_table(said, has=has))
+        hobby = self._pursuit(said) if all(link.topic == "liking" or not link.sure for link in told) else None
+        yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
+
+    def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
+        """Yield the topics that the predicate tells, with a preposition, and perhaps with its object: *have a job at*."""
+        predicate, object = _predicate(said), said.object
         child = any(phrase.preposition == "as" and phrase.head in WORDS["young"] for phrase in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
             nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
@@ -248,7 +265,12 @@ class Reader:
             wanted = direct or free
         else:
             habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained
-            habit = habit and (direct or not (object.text or said.phrases))
+            habit = (
+                habit
+                and not free
+                and not _TODAY & set(said.when.split())
+                and (direct or not (object.text or said.phrases))
+            )
             wanted = habit and likeness(gerund(written, self.seen), "activity") > (0.2 if direct else 0.4)
         return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
@@ -267,7 +289,9 @@ class Reader:
             yield Link(found[0], object.owner)
         elif object.head == "student":
             yield Link("occupation", object, value="student")
-            yield Link("subject", object.owner or object, sure=False, value=text.rpartition(" ")[0])
+            yield Link(
+                "subject", object.owner or object, sure=False, value="" if object.owner else text.rpartition(" ")[0]
+            )
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
         elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
             yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
@@ -277,7 +301,9 @@ class Reader:
             several = any(word.lemma == object.head and word.tag == "NNS" for word in self.tree.words)
             if several and said.subject.text.lower() == "i":
                 return  # I'm all ears
-            yield Link("occupation", object, sure=self.asked == "occupation")
+            bare = len(text.split()) == 1 and not re.match("(?:an?|the) ", self.written(object))
+            if not bare or self.asked == "occupation" or likeness(text, "work") > 0.3:  # I'm noor
+                yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
             yield from (Link("employer", phrase, sure=False) for phrase in places)
@@ -294,7 +320,7 @@ class Reader:
         ended = ENDS.get(f"{predicate} {said.object.head or said.object.text.lower()}".strip(), "")
         return ended if said.subject.person == "I" and not said.past else ""
 
-    def _named(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def named(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the relatives that the user names, and how they are called: *my sister Rosa*, *my mother's name is Anna*,
         *a son named Ben*, *call me Tom*.
 
@@ -303,9 +329,11 @@ class Reader:
         whole: list[tuple[str, tuple[str, ...]]] = []
         for said in self.seen.statements:
             phrases = (said.subject, said.object, *said.phrases)
-            open = said.question or said.conditional or said.hearsay or said.past or said.plan
+            allowed = said.verb == "call" and said.subject.person == "you"  # you may call me Fitz
+            open = (said.question or said.conditional or said.hearsay or said.plan) and not allowed
+            open = open or (said.past and not said.subject.names)
             if open or (said.negated and said.verb == "call"):
-                unsaid |= {said.verb, *(phrase.head for phrase in phrases)}
+                unsaid |= {said.verb, *said.object.text.split(), *(phrase.head for phrase in phrases)}
             for phrase in phrases if not open else ():
                 mine = phrase.of("I") or (self._has(said) and not said.negated)
                 if phrase.names and mine and not is_former(phrase.text) and (topic := self.relative(phrase.head)):
@@ -317,13 +345,13 @@ class Reader:
         beside: dict[str, str] = {}
         for before, word in itertools.pairwise(words):
             own = (before.low, word.low) == ("my", "name")  # my name's Tom
-            me = before.lemma == "call" and word.low == "me"
+            me = before.lemma == "call" and before.tag != "VBD" and word.low == "me"
             topic = NAME if own or me else self.relative(word.lemma)
             if not topic or (topic != NAME and self._is_anothers(word)):
                 continue
             passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
             first = words[word.index + 1 + len(passed) :][:1]
-            if not first or unsaid & {word.lemma, before.lemma}:
+            if not first or unsaid & {word.lemma, before.lemma} or self.words & _NONE:
                 continue
             named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
             if {one.pos for one in first} == {"PROPN"}:  # my sister Rosa; a dog, Rex, and a cat, Misty
@@ -350,7 +378,7 @@ class Reader:
 
     # ----------------------------------------------------------------------------------------------- words
 
-    def _values(self, link: Link) -> tuple[str, ...]:
+    def values(self, link: Link) -> tuple[str, ...]:
         topic, phrase = TOPICS[link.topic], link.phrase
         if phrase is None:
             return ()
@@ -399,7 +427,8 @@ class Reader:
         """Return a name of several words; empty if the word cannot begin one."""
         if word.pos not in (*_NOMINAL, "VERB"):
             return ""
-        run = [child for child in self.tree.children(word, "compound") if child.index < word.index] + [word]
+        first = (child for child in self.tree.children(word, "compound") if child.index < word.index)
+        run = [*(child for child in first if not self.relative(child.lemma)), word]
         while (after := self.tree.after(word)) and after.pos == "PROPN" and after.start == word.end + 1:
             run.append(after)
             word = after

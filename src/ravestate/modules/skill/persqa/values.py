@@ -22,6 +22,7 @@ _LEADS = {
     "place": r"(?:the )?(?:city|town|village) of (?=\S)|.*\b(?:called|named) (?=\S)",
 }
 """Words before a value that are no part of it."""
+_ANYTHING = re.compile(r"(?:any|some|every|no)(?:thing|one|body|where)\b", re.IGNORECASE)
 _DEICTIC = re.compile(
     r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|more|most|a|many|much|"
     r"(?:any|some|every|no)(?:thing|one|body))\b",
@@ -48,6 +49,8 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         return None
     if kind in ("work", "subject") and any(word.low == words[0] and word.pos == "ADP" for word in seen.tree.words):
         return None  # between jobs
+    if kind != "name" and (_DEICTIC if kind in ("activity", "thing") else _ANYTHING).match(text):
+        return None
     if kind == "number":
         number = number_in(text)
         return number if 0 < int(number or 0) < 120 else None
@@ -84,7 +87,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
     """Return whether words are of the kind of a topic; `determined` means that a determiner begins them."""
     kind = topic.kind
     if kind in ("activity", "thing"):
-        return _DEICTIC.match(text) is None
+        return True
     labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
     if kind == "place":  # Sendai in Japan
         labels |= {entity.label for entity in seen.entities if f"{text} in {entity.text}" in seen.tree.text}
