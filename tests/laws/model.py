@@ -151,7 +151,7 @@ class Model:
                 old = [n for n in act.clause.needs if n.index in act.held and self.old(n, act.held[n.index])]
                 self.lose(act, old)
         self.settle()
-        for act in list(self.acts):
+        for act in list(self.running.values()):
             if act.state == RUNS and act.due <= self.now:
                 self.cancel(act, "timeout")
         self.watch_all()

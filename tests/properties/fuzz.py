@@ -142,7 +142,10 @@ class Maker:
         low = self.seconds(2.0) if self.chance(0.5) else 0.0
         high = None if self.chance(0.3) and not signal.startswith("core:") else max(low, self.dice.choice([5.0, 5.0, 1.0]))
         where = self.dice.choice(["odd", "odd", "fussy", "never"]) if self.chance(0.2) else ""
-        return Want(signal, low, high, self.chance(0.25), where)
+        detached = self.chance(0.25)
+        if detached and high == low:
+            high += 1.0  # else it can be looked at for no time at all
+        return Want(signal, low, high, detached, where)
 
     def condition(self, heard: list[str]) -> tuple[Any, ...]:
         clauses: list[tuple[Any, ...]] = []

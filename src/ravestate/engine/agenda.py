@@ -140,9 +140,9 @@ class Agenda(Slots):
                 self._start(best)
 
     def _is_taken(self, activation: Activation) -> bool:
-        """Return whether one of the activation's slots is taken in one of its groups."""
-        slots = activation.clause.rule.slots
-        return any(slot in group.taken for group in activation.firm_groups() if group.taken for slot in slots)
+        """Return whether one of the activation's slots is taken in each of its groups."""
+        slots = activation.clause.rule.slotset
+        return all(not group.taken.keys().isdisjoint(slots) for group in activation.firm_groups())
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
         """Return the activation's sort key in the queue: older causes first, and the best first within a cause."""

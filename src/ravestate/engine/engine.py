@@ -106,7 +106,7 @@ class Engine(Agenda):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
-            elif self._queue or self._asking or self._dirty or self._stirred:
+            elif self._queue or self._asking or self._dirty or self._stirred or self._refused:
                 self._consent_round()
             elif self._settle_flags():
                 pass
