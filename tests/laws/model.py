@@ -462,7 +462,7 @@ class Model:
         if len(mine) > signal.limit:
             self.withdraw(mine[0])
         for need in signal.watchers:
-            for act in list(self.acts):
+            for act in list(self.running.values()):
                 if act.state == RUNS and need.clause in act.rule.until and self.passes(need, payload, act.rule):
                     held = act.watch[need.clause.index]
                     before = held.get(need.index)
@@ -589,7 +589,7 @@ class Model:
     # ------------------------------------------------------------------------------- until
 
     def watch_all(self) -> None:
-        for act in list(self.acts):
+        for act in list(self.running.values()):
             for clause in act.rule.until if act.state == RUNS else ():
                 self.judge(act, clause)
 

@@ -97,10 +97,10 @@ class Maker:
         ]
         self.signals = [f"s{number}" for number in range(len(signals))]
         own = {"value": ("changed",), "flag": ("changed", "true", "false"), "collection": ("changed", "added", "removed")}
-        self.heard = [*self.signals, *self.signals]
+        self.heard = self.signals * dice.choice([1, 2, 4])
         self.heard += [f"v{n}:{what}" for n, slot in enumerate(self.slots) for what in own[slot.kind]]
         rules = tuple(self.rule() for _ in range(dice.randint(2, 6)))
-        inputs = tuple((self.gap(), self.input()) for _ in range(dice.randint(2, 9)))
+        inputs = tuple((self.gap(), self.input()) for _ in range(dice.randint(3, 9)))
         return World(
             signals, tuple(self.slots), rules, inputs, dice.choice([1.0, 1.0, 0.25, 2.0]), together=self.chance(0.3)
         )
@@ -141,7 +141,7 @@ class Maker:
             return Want(signal)
         low = self.seconds(2.0) if self.chance(0.5) else 0.0
         high = None if self.chance(0.3) and not signal.startswith("core:") else max(low, self.dice.choice([5.0, 5.0, 1.0]))
-        where = self.dice.choice(["odd", "odd", "fussy", "never"]) if self.chance(0.2) else ""
+        where = self.dice.choice(["odd", "odd", "odd", "never"]) if self.chance(0.2) else ""
         detached = self.chance(0.25)
         if detached and high == low:
             high += 1.0  # else it can be looked at for no time at all
@@ -379,7 +379,7 @@ def compiles(world: World) -> bool:
         return False
     try:
         compiled(world)
-    except DeclarationErrors:
+    except (DeclarationErrors, KeyError):  # KeyError: the signal of a slot that has become one of another kind
         return False
     return True
 

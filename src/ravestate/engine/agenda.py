@@ -234,8 +234,6 @@ class Agenda(Slots):
         """Start an activation: it takes its slots in its groups, and its function runs (L17)."""
         clause = activation.clause
         rule = clause.rule
-        if clause.asks_detached:
-            self._look_again(activation)
         activation.step(GRANT)
         if activation.interests:
             self._lose_interest(activation)

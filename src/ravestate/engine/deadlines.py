@@ -13,16 +13,17 @@ class Kind(enum.IntEnum):
     """A kind of deadline. Deadlines of the same time fall due in this order: gains before losses."""
 
     RIPEN = 0  # all spikes of an activation are old enough
-    RECHECK = 1  # the order of recovering utilities changes
-    PATIENCE = 2  # the patience of a pressured rival ends
-    EXPIRE = 3  # a spike is too old for an incomplete activation
-    FORGET = 4  # a spike is too old for every detached need
-    TIMEOUT = 5  # a run times out
-    WATCH = 6  # the spikes of an `until` condition are old enough
+    LOOK = 1  # a spike is old enough for a detached need
+    RECHECK = 2  # the order of recovering utilities changes
+    PATIENCE = 3  # the patience of a pressured rival ends
+    EXPIRE = 4  # a spike is too old for an incomplete activation
+    FORGET = 5  # a spike is too old for every detached need
+    TIMEOUT = 6  # a run times out
+    WATCH = 7  # the spikes of an `until` condition are old enough
 
 
 # Reading an attribute of an enumeration costs more than using its value.
-RIPEN, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
+RIPEN, LOOK, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
 

@@ -16,7 +16,7 @@ from ravestate.declare.wording import said
 from ravestate.engine import events, trace
 from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
 from ravestate.engine.agenda import Agenda
-from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, TIMEOUT, WATCH, Entry
+from ravestate.engine.deadlines import EXPIRE, LOOK, PATIENCE, RECHECK, RIPEN, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
 from ravestate.engine.group import Group
@@ -329,6 +329,11 @@ class Engine(Agenda):
         elif kind is RIPEN:
             owner.ripens = NEVER
             self._update(owner)
+        elif kind is LOOK:
+            need, spike = owner
+            need = self.policy.clause_plans[need.clause.index].needs[need.index]  # a rule may have been added
+            if self._fits(need, spike):
+                self._show(need, spike)
         elif kind is PATIENCE:
             self._dirty[owner[0].root()] = None  # the activations that wait there judge the rival again
         elif kind is RECHECK:

@@ -45,20 +45,6 @@ class Holdings(State):
                 if best is not None:
                     self._acquire(activation, need, best)
 
-    def _look_again(self, activation: Activation) -> None:
-        """Give each detached need of an activation that is about to run the newest live spike that fits (L19)."""
-        for need in activation.clause.needs:
-            if not need.detached:
-                continue
-            held = activation.spikes[need.index]
-            for spike in reversed(self.live.get(need.signal.index, {})):
-                if spike is held:
-                    break
-                ripe = spike.born + need.min_age <= self.now <= spike.born + need.max_age
-                if ripe and all(self._test(p, spike.payload, activation.clause.rule) for p in need.predicates):
-                    self._swap(activation, need, spike)
-                    break
-
     def _swap(self, activation: Activation, need: Need, spike: Spike) -> None:
         """Let a detached need hold another spike."""
         self._release(activation, need, "")
@@ -164,8 +150,6 @@ class Holdings(State):
         """
         if not late:
             activation.step(COMPLETE)
-            if activation.clause.asks_detached:
-                self._look_again(activation)
             if self._loops.runs > MANY and self._loops.defer(activation):
                 return
         clause = activation.clause

@@ -7,7 +7,7 @@ from typing import Any
 from ravestate.engine import trace
 from ravestate.engine.activation import CANCEL, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.conflict_sets import ConflictSets
-from ravestate.engine.deadlines import PATIENCE, WATCH
+from ravestate.engine.deadlines import LOOK, PATIENCE, WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import SEEN
@@ -154,7 +154,9 @@ class Matching(ConflictSets):
                     self._stir(activation)
                     self._update(activation)
         if need.detached and clause.asks_detached:
-            if not need.min_age:
+            if need.min_age:
+                self._deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
+            else:
                 self._show(need, spike)
             return  # a detached need only looks: it starts no activation
         self._activations += 1
@@ -185,7 +187,8 @@ class Matching(ConflictSets):
         """Give a new spike to the activations that look at its signal already, for they hold the newest (L19)."""
         for activation in list(self.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
-                if activation.spikes[need.index] is not spike:
+                held = activation.spikes[need.index]
+                if held is not None and held.id < spike.id:
                     self._swap(activation, need, spike)
 
     def _watch(self, spike: Spike) -> None:

@@ -15,6 +15,7 @@ from ravestate.declare.core import RuleFailure
 from ravestate.engine.activation import RUNNING, Activation
 from ravestate.engine.deadlines import (
     EXPIRE,
+    LOOK,
     PATIENCE,
     RECHECK,
     RIPEN,
@@ -122,6 +123,8 @@ class State:
             if isinstance(rival, int):
                 return bool(group.root().interested)
             return rival.state < RUNNING and rival.pressed.get(group.root()) == time
+        if kind is LOOK:
+            return owner[1] in self.live.get(owner[1].signal.index, ())
         if kind is RECHECK:
             return owner.recheck == time
         if kind is TIMEOUT:
