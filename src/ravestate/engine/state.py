@@ -108,7 +108,11 @@ class State:
     def stir_rule(self, rule: RulePlan) -> None:
         """Note that an activation of a rule has come, changed or gone, for those whose turn depends on it elsewhere."""
         for kind, number in self.hoping:
-            if number == rule.index if kind == RULE else kind == OUTSIDE and rule.index in self.policy.causes.wide_ancestors(number):
+            if (
+                number == rule.index
+                if kind == RULE
+                else kind == OUTSIDE and rule.index in self.policy.causes.wide_ancestors(number)
+            ):
                 self._stirred[kind, number] = None
 
     def _stands(self, entry: Entry) -> bool:
@@ -148,7 +152,9 @@ class State:
 
     def newest(self, need: Need) -> Spike | None:
         """Return the newest live spike that fits a need, or None."""
-        return next((spike for spike in reversed(self.live.get(need.signal.index, {})) if self._fits(need, spike)), None)
+        return next(
+            (spike for spike in reversed(self.live.get(need.signal.index, {})) if self._fits(need, spike)), None
+        )
 
     def _fits(self, need: Need, spike: Spike) -> bool:
         """Return whether a live spike may meet a need: age and payload fit, and the rule has not lost it for good."""
