@@ -330,8 +330,9 @@ class Engine(Agenda):
             owner.ripens = NEVER
             self._update(owner)
         elif kind is LOOK:
-            need, spike = owner
-            need = self.policy.clause_plans[need.clause.index].needs[need.index]  # a rule may have been added
+            looking, spike = owner
+            clause = self.policy.clause_plans[looking.clause.index]  # a rule may have been added since
+            need = clause.needs[looking.index]
             if self._fits(need, spike):
                 self._show(need, spike)
         elif kind is PATIENCE:
