@@ -27,13 +27,6 @@ class ConflictSets(Holdings):
         for position in range(made, len(clauses)):
             self._activate(clauses[position], base + position + 1, spike)
 
-    def unfold_members(self, group: Group) -> None:
-        """Create the activations of the alternatives in the queues of a group's members."""
-        if self.alternatives:
-            for member in list(group.members):
-                if member in self.alternatives:
-                    self.unfold(member)
-
     def unfold_all(self) -> None:
         """Create the activations of the alternatives in all queues."""
         for activation in list(self.alternatives):

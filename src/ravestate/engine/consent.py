@@ -79,8 +79,6 @@ def ask(
     refusal.interests = dict.fromkeys(groups)
     standing = engine.standing
     horizon: Horizon | None = None
-    visited: dict[Group, None] = {}
-    hopes: dict[tuple[int, int], None] = {}
     for group in groups:
         for slot in rule.slots:
             for holder in group.taken.get(slot) or ():
@@ -89,7 +87,6 @@ def ask(
                 refusal.blockers[holder] = None
         if not group.taken.keys().isdisjoint(slots):
             continue
-        engine.unfold_members(group)
         for rival, members in _rivals(engine, activation, group):
             if clause.rule.cooldown or rival.rule.cooldown:
                 refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
@@ -118,17 +115,14 @@ def ask(
                     refusal.pressed = True
                 else:
                     if commit and member is not None:
+                        horizon.forget(member)
                         engine.eliminate(member)
-                        visited.update(horizon.visited)
-                        hopes.update(horizon.hopes)
-                        horizon = _horizon(engine, activation, without)
                     continue
                 apart += member is not None and member not in group.members
                 refusal.names[rival.rule.name] = None
     if horizon is not None:
-        refusal.interests.update(visited)
         refusal.interests.update(horizon.visited)
-        refusal.hopes = {**hopes, **horizon.hopes}
+        refusal.hopes = horizon.hopes
         refusal.recheck = min(refusal.recheck, horizon.recheck)
     return refusal
 
