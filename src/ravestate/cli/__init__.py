@@ -28,6 +28,7 @@ COMMANDS = {
     "memory": "list, show, export and forget what an agent knows",
     "model": "list, fetch and remove language models for small talk",
     "genqa": "read documents, and answer questions from them",
+    "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
     "new": "write a small project to start from",
 }
 

@@ -182,6 +182,11 @@ class RuleContext:
         return self._host.settings.get(self.rule.name.split(":", 1)[0])
 
     @property
+    def policy(self) -> Policy:
+        """The context's policy: its modules, signals, slots and rules."""
+        return self._host.policy
+
+    @property
     def log(self) -> logging.Logger:
         """A logger named ``ravestate.<module>.<rule>``."""
         return logging.getLogger("ravestate." + self.rule.name.replace(":", "."))
