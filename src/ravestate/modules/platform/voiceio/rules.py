@@ -30,7 +30,7 @@ from .names import (
 from .utterance import Utterance
 
 if TYPE_CHECKING:
-    from .conversation import Conversation
+    from .opening import Conversation
 
 DEAF = 0.25
 """half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
@@ -61,7 +61,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     if ctx[conversation] is not None:
         return rs.Resign("the line is open already")
     try:
-        parts = await asyncio.to_thread(importlib.import_module, f"{__package__}.conversation")
+        parts = await asyncio.to_thread(importlib.import_module, f"{__package__}.opening")
         talk: Conversation = await parts.open_conversation(line, settings, lambda text: ctx.log.warning("%s", text))
     except (PlatformError, ImportError) as error:
         fault = error if isinstance(error, PlatformError) else PlatformError(f"{error}: pip install 'ravestate[voice]'")
@@ -284,7 +284,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                         else:
                             ctx[agent_speaking] = True
                     while (lead := mouth.lead) > LEAD:
-                        await ctx.sleep(lead - LEAD)
+                        await ctx.sleep(max(0.05, lead - LEAD))
                 await mouth.played_out()
                 saying.heard = saying.text
             except PlatformError as error:
