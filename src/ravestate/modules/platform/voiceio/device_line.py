@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator
 from typing import Any
 
 from ravestate.errors import PlatformError
-from ravestate.modules.modality.rawio.sound import IN_RATE, OUT_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 BLOCK = 0.02
 """The seconds of a block."""

@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from ravestate.modules.modality.rawio.sound import IN_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE
 
 from .activity import CHUNK, Activity
 from .echo import FRAME

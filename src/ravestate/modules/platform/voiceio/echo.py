@@ -7,7 +7,7 @@ import ctypes.util
 from functools import lru_cache
 from typing import Any
 
-from ravestate.modules.modality.rawio.sound import IN_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE
 
 FRAME = 320
 """The samples that are worked on at once: 20 ms."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravestate.modules.modality.rawio.sound import IN_RATE, OUT_RATE, Line
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE, Line
 
 from .playout import SECOND
 from .sentences import sentences, speakable

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ravestate.errors import PlatformError
-from ravestate.modules.modality.rawio.sound import Line
+from ravestate.modules.modality.rawio.line import Line
 
 from .ear import Ear, Turn
 from .echo import EchoCanceller

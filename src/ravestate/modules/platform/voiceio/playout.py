@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ravestate.modules.modality.rawio.sound import OUT_RATE
+from ravestate.modules.modality.rawio.line import OUT_RATE
 
 SECOND = 2 * OUT_RATE
 """The bytes of a second of sound."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ravestate.errors import PlatformError
-from ravestate.modules.modality.rawio.sound import IN_RATE, OUT_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 from . import model_process
 from .alignment import Word, by_phonemes, by_places

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import yaml
 
-from ravestate.modules.modality.rawio.sound import IN_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE
 
 from .names import Settings
 

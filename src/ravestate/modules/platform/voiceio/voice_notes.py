@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravestate.modules.modality.rawio.sound import IN_RATE, OUT_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 from .names import Settings, module
 from .utterance import Utterance

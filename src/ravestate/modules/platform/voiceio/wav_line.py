@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator
 from pathlib import Path
 
-from ravestate.modules.modality.rawio.sound import IN_RATE, OUT_RATE
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 from .playout import PlayOut
 from .sound import decode, silence, write_wav
