@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, cast
 
 from pydantic import ConfigDict, Field
 
 import ravestate as rs
 from ravestate.modules import rawio, verbaliser
 
-from .prosody import Prosody
-from .utterance import Utterance
+from .manner import Prosody
+from .utterances import Utterance
 
 if TYPE_CHECKING:
     from .mouth import Speech
@@ -103,7 +103,7 @@ barge_in = module.signal("barge_in")
 held = module.flag("held")
 """True while the agent's speech is held, until it is clear whether the user interrupts."""
 
-speech: rs.Signal[Speech] = module.signal("speech", payload=object)
+speech: rs.Signal[Speech] = module.signal("speech", payload=cast("type[Speech]", object))
 """An utterance of the agent begins to be spoken; it may still grow."""
 
 prosody: rs.Slot[Prosody] = module.slot("prosody", Prosody(), type=Prosody, input=True)

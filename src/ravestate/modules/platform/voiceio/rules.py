@@ -27,7 +27,7 @@ from .names import (
     user_speaking,
     utterance,
 )
-from .utterance import Utterance
+from .utterances import Utterance
 
 if TYPE_CHECKING:
     from .opening import Conversation
@@ -60,9 +60,13 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("this user has no line: their platform brings one in rawio.sound")
     if ctx[conversation] is not None:
         return rs.Resign("the line is open already")
+
+    def warn(text: str) -> None:
+        ctx.log.warning("%s", text)
+
     try:
         parts = await asyncio.to_thread(importlib.import_module, f"{__package__}.opening")
-        talk: Conversation = await parts.open_conversation(line, settings, lambda text: ctx.log.warning("%s", text))
+        talk: Conversation = await parts.open_conversation(line, settings, warn)
     except (PlatformError, ImportError) as error:
         fault = error if isinstance(error, PlatformError) else PlatformError(f"{error}: pip install 'ravestate[voice]'")
         if line is None:
