@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .sound import IN_RATE, OUT_RATE, Line
-
-# isort: split
-# The slot `sound` takes the name of the file.
-from .names import heard, hearing, hush, input, module, output, picture, piece, sound, speaking, typing
+from .line import IN_RATE, OUT_RATE, Line
+from .names import heard, hearing, hush, input, module, output, picture, piece, reaction, sound, speaking, typing
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
@@ -25,6 +22,7 @@ __all__ = [
     "output",
     "picture",
     "piece",
+    "reaction",
     "say",
     "sound",
     "speaking",

@@ -6,7 +6,7 @@ from typing import Any
 
 import ravestate as rs
 
-from .sound import Line
+from .line import Line
 
 module = rs.Module("rawio")
 
@@ -25,6 +25,9 @@ speaking = module.flag("speaking")
 
 typing = module.signal("typing", input=True, keep="latest")
 """The user is typing. A platform that notices this emits the signal at each key press, or every few seconds."""
+
+reaction: rs.Signal[str] = module.signal("reaction", payload=str, input=True)
+"""The user has reacted to the agent's words with an emoji, as messengers allow."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The picture that the user showed last: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
