@@ -13,6 +13,10 @@ import tempfile
 
 from hypothesis import HealthCheck, settings
 
+# Each process of the tests has one core. More threads for a product of matrices would wait for each other.
+for _library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+
 _folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
 os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well
 os.environ["RAVESTATE_WILDTALK_SEARCH"] = "false"  # no test asks the ports and folders of this machine
