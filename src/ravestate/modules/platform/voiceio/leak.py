@@ -15,8 +15,8 @@ SILENT = 100.0
 FIRST = 10 ** (-13 / 10)
 """The part that is expected in the beginning: the canceller has not learnt the room yet."""
 LEAST, MOST = 1e-6, 0.25
-CLEAR = 4.0
-"""The factor above the expected power at which it is another voice: 6 dB."""
+CLEAR = 10.0
+"""The factor above the expected power at which it is another voice: 10 dB."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
 """Steps of the expectation in a chunk: for less than expected, for more, and for what is taken for another voice."""
 
