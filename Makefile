@@ -46,6 +46,7 @@ help: ## this list
 
 .PHONY: demo
 demo: $(DONE)/demo $(DONE)/sentences ## set up and open a page with the agent, and what goes on inside it
+	@$(MAKE) $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
 	@$(BIN)/ravestate board $(ARGS)
 
 .PHONY: chat
