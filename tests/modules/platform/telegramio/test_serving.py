@@ -395,6 +395,25 @@ async def test_another_program_that_gets_the_messages_is_named(bot: Bot, tmp_pat
             await task
 
 
+def test_of_two_agents_of_one_bot_the_newcomer_gives_up(
+    bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    @live
+    async def test(bot: Bot, folder: Path) -> None:
+        monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.SETTLED", 0.0)
+        async with running(bot, folder):
+            await bot.say(7, "one")
+            await bot.said(1)
+            monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.SETTLED", 60.0)
+            async with running(bot, folder, path=folder / "other.sqlite") as newcomer:
+                with pytest.raises(PlatformError, match="another program gets the messages"):
+                    await newcomer
+            await bot.say(7, "two")
+            assert await bot.said(2) == ["7: one", "7: two"]
+
+    test(bot, tmp_path)
+
+
 @live
 async def test_two_agents_do_not_share_a_file(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
