@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
 MEMORY = "ontology:memory"
-PATIENCE = 5.0
+PATIENCE = 30.0
 """The seconds to wait for memory; after that the conversation begins without it."""
 
 
@@ -43,7 +43,8 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
                 node = await memory.together(lambda graph: _known(graph, account, person.name))
                 name = Recognised(node["name"], node) if node.get("name") else name
     except (RavestateError, TimeoutError) as error:
-        log.warning("memory was not asked about a person: %s", error or "it took too long")
+        log.warning("memory was not asked about a person: %s", str(error) or "it took too long")
+        name = None  # their name alone might be that of another person, of whom memory knows more
     join(context, key(platform, person), name)
 
 
