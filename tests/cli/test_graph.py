@@ -71,7 +71,7 @@ def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: C
         (("--format", "png"), "invalid choice: 'png'"),
         (("--without", "nlp"), "--without works only on the complete agent: name no MODULE or file with it"),
         (("--unfold", "helo"), "--unfold helo: the agent has no such module; did you mean 'hello'?"),
-        (("--unfold", "hello", "--no-fold"), "--unfold folds the other modules, --no-fold folds none: use only one"),
+        (("--unfold", "hello", "--no-fold"), "and --no-fold folds no module: use only one of them"),
     ],
 )
 def test_wrong_use_is_2_and_writes_nothing(
@@ -94,7 +94,7 @@ def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(comple
     assert (code, out) == (0, f"{complete_agent}\n")
     assert re.fullmatch(
         r"ravestate graph: folded \d+ rules into their modules: --unfold MODULE draws the rules of one module, "
-        r"--no-fold draws those of all modules\n",
+        r"and --no-fold draws all rules\n",
         errors,
     )
     assert all(f">module {name} (" in out for name in ("conio", *COMPLETE))
@@ -113,9 +113,9 @@ def test_modules_can_be_left_out_of_the_complete_agent(capsys: Capture) -> None:
 def test_some_modules_can_be_unfolded_or_all(capsys: Capture) -> None:
     code, out, errors = call(capsys, "graph", "--unfold", "hibye", "--format", "mermaid")
     assert (code, errors) == (0, "")
-    assert '["hibye<br/>answer#95;hello' in out.replace("_", "#95;") and "wildtalk<br/>10 rules" in out
+    assert '["hibye<br/>answer#95;hello' in out.replace("_", "#95;") and "wildtalk<br/>11 rules" in out
     whole = call(capsys, "graph", "--no-fold", "--format", "mermaid")
-    assert whole[2] == "" and "wildtalk<br/>chat" in whole[1] and "10 rules" not in whole[1]
+    assert whole[2] == "" and "wildtalk<br/>chat" in whole[1] and "11 rules" not in whole[1]
 
 
 def test_a_small_agent_is_folded_on_demand(hello: str, capsys: Capture) -> None:

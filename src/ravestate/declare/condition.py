@@ -75,7 +75,7 @@ class Constraint(Condition):
         return replace(self, is_detached=True)
 
     def where(self, predicate: Predicate) -> Constraint:
-        """Accept a spike only if ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
+        """Accept a spike only if ``predicate(payload)`` is true. The predicate adds ln 2 to the utility (L9).
 
         Args:
             predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule.
@@ -103,7 +103,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's current value. The rule runs only while it is true; it needs no spike (L4)."""
+    """A predicate on a slot's current value. The rule runs only while the predicate is true (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate
@@ -114,7 +114,7 @@ class Holds(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Compound(Condition):
-    """A conjunction or a disjunction of conditions."""
+    """Several conditions, combined by "and" or by "or"."""
 
     parts: tuple[Condition, ...]
 
