@@ -188,7 +188,9 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
     verb = reader.verb(said)
     gets = said.verb == "get" and verb is not None and verb.low == "got"
     thing = reader.written(said.object)
-    return (gets or said.verb in ("have", "own")) and max(likeness(thing, "possession"), likeness(thing, "trait")) > 0.1
+    kept = max(likeness(thing, "possession"), likeness(thing, "trait")) > 0.1
+    animal = gets and TOPICS[NOUNS.get(said.object.head, NAME)].type == "Animal"
+    return animal or ((gets or said.verb in ("have", "own")) and kept)
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
@@ -208,7 +210,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     """Return the subject of a statement about the user or somebody they know; empty for others."""
     subject, object = said.subject, said.object
     if subject.person == "I":
-        mine = "my" in object.text.lower().split() and not _happened(reader, said)
+        mine = {"my", "our"} & set(object.text.lower().split()) and not _happened(reader, said)
+        mine = mine or said.verb in ("name", "call")
         verb = reader.verb(said)
         deictic = _DEICTIC.match(reader.written(object)) or (verb is not None and verb.dep == "relcl")
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
