@@ -194,9 +194,8 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether it is an event with a name or a time: *I went to Prague*, *I saw a fox yesterday*."""
-    content = said.object.text and (said.object.names or said.when)
-    return bool(content) and said.verb in WORDS["events"] and _happened(reader, said)
+    """Return whether it is an event with a name: *I went to Prague*, but not *I went to the shop*."""
+    return bool(said.object.names) and said.verb in WORDS["events"] and _happened(reader, said)
 
 
 def _happened(reader: Reader, said: nlp.Statement) -> bool:
@@ -218,7 +217,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         there = (
             object.preposition and not object.text[:1].isupper()
         )  # I drive for Transkorn, but not I wait for the bus
-        fits = object.text and (not there or _happened(reader, said)) and not mine and not deictic
+        fits = object.text and not there and not mine and not deictic
         if said.verb == "be":
             fits = fits and likeness(object.text, "trait") > 0.1
         elif said.verb in ("have", "get", "own"):
