@@ -75,6 +75,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     told, seen = ctx[life], ctx.payload(nlp.analysis.changed)
     if told is None or seen is None:
         return rs.Resign("the agent has no life yet, or nothing was said")
+    if seen.question is None and seen.move is not None and seen.move.listens:
+        return rs.Resign(f"the user wants another answer: {seen.move.name}")
     route = router_of(told).route
     found: Match | Miss = Miss("")
     if ctx[idle.asked] and await asyncio.to_thread(_returns, seen):

@@ -283,7 +283,11 @@ def not_asked(heard: Parse, analysis: Analysis) -> str:
     words = [word for word in heard.asked if word.pos != "PUNCT"]
     if len(words) == 1 and not words[0].index and words[0].tag not in WH and len(analysis.sentences) > 1:
         return "it only repeats a word"  # Holiday? In this weather?
-    if heard.kind is not None or scaled(analysis.text):
+    if scaled(analysis.text):
+        return ""
+    if analysis.move is not None and analysis.move.listens:
+        return f"the user wants another answer: {analysis.move.name}"
+    if heard.kind is not None:
         return ""
     if any(match.score >= 0.5 for match in analysis.acts.values()):
         return "it is small talk"

@@ -92,7 +92,7 @@ class Listener:
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
-        hearing = hear(self._phrases, heard, state, chance)
+        hearing = hear(self._phrases, heard, state)
         played = self._play(heard, state, chance, hearing.moment)
         if played is not None:
             text, after = played
@@ -166,7 +166,7 @@ class Listener:
             known = [line for line in lines if line.roles <= roles.values.keys()]
             fit = [line for line in known if not _said_lately(line.text, roles.fill(line.text), state)]
             if fit:
-                return chance.choice([line for line in fit if line.refers and not source.weak] or fit)
+                return chance.choice([line for line in fit if line.roles] or fit)
         return None
 
     def _sources(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -200,6 +200,16 @@ class Listener:
                 past = {"past"} & hearing.tags
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
             yield _Source(moment.lines(*groups, "say", "again"), moment)
+
+    def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the replies of the likely move; of two likely ones, replies that suit both."""
+        tags, replies = hearing.tags, self._phrases.replies
+        sure = len(hearing.moves) == 1
+        name = hearing.moves[0] if sure else "ask" if "question" in tags else "tell"
+        plain = ["plain"] if {"plainly", "mine"} <= tags and not state.tone and "negated" not in tags else []
+        being = [hearing.roles.being.kind] if hearing.roles.being is not None else []
+        yield _Source(replies[name].lines(*plain, *being, state.tone, "say"), replies[name] if sure else None)
+        yield _Source(replies["ask" if "question" in tags else "tell"].lines(state.tone, "say"))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion; it is chosen once. It has none of people."""
