@@ -41,7 +41,18 @@ ASKED = ("fact", "self", "opinion", "recall")
 """Moves that answer a question."""
 TOLD = ("interest", "accept", "rejoice", "mourn", "greet", "introduce")
 """Moves that answer no question."""
-LISTENING = ("interest", "accept", "rejoice", "console", "mourn", "apologise", "greet", "introduce", "farewell", "thank")
+LISTENING = (
+    "interest",
+    "accept",
+    "rejoice",
+    "console",
+    "mourn",
+    "apologise",
+    "greet",
+    "introduce",
+    "farewell",
+    "thank",
+)
 """Moves in reply to something that was told."""
 SURE = 0.7
 """The confidence from which a move decides alone."""
@@ -134,8 +145,7 @@ class _Learnt:
         self._of = np.array([self._classes.index(name) for _, name, _ in examples])
         self._ridge = np.array([ridge for *_, ridge in examples], dtype=np.float32)
         parts = [sentences_of(text) or (text,) for text, *_ in examples]
-        self._whole = encoder.encode_lasting([plain(text) for text, *_ in examples])
-        self._last = encoder.encode_lasting([plain(part[-1]) for part in parts])
+        self._whole, self._last = (encoder.encode_lasting(texts) for texts in learnt_texts(examples))
         self._forms = np.array([form(part) for part in parts], dtype=np.float32)
         key = ["moves", encoder.identity, list(examples), SHARPNESS, SPREAD, FORM, COMMON]
         learnt = cached(key, self._learn)
@@ -177,6 +187,12 @@ class _Learnt:
         kernel += np.exp((last @ self._last.T - 1) * SHARPNESS)
         kernel += FORM * np.exp(-SPREAD * squares) + COMMON
         return kernel
+
+
+def learnt_texts(examples: Sequence[tuple[str, str, float]]) -> tuple[list[str], list[str]]:
+    """Return the texts of the examples that are encoded, in the plain form: the whole ones, and their last sentences."""
+    last = [(sentences_of(text) or (text,))[-1] for text, *_ in examples]
+    return [plain(text) for text, *_ in examples], [plain(text) for text in last]
 
 
 def compared(sentences: Sequence[str]) -> tuple[str, str]:

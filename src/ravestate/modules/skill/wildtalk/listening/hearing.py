@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ravestate.language.contractions import word_set
-from ravestate.language.feelings import SORROWS, clauses
+from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
