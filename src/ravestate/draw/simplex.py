@@ -110,7 +110,7 @@ def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int])
 
 
 def _balanced(rank: list[int], arcs: Sequence[Arc], surplus: Sequence[int]) -> list[int]:
-    """Return the ranks from 0 on; a vertex with several equally good ranks moves to the smallest of these layers."""
+    """Return the ranks from 0 on. Given several equally good ranks, a vertex takes the one with the fewest vertices."""
     least = min(rank)
     rank = [r - least for r in rank]
     size = [rank.count(r) for r in range(max(rank) + 1)]

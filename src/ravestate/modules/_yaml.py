@@ -23,7 +23,7 @@ def read_text(file: Path | Traversable, what: str) -> str:
 
     Args:
         file: A path, or a file in a package.
-        what: The kind of file, for messages: ``file of types``.
+        what: The words for the file in messages, for example ``file of types``.
 
     Raises:
         DeclarationError: The file is not in UTF-8.

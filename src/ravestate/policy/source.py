@@ -1,9 +1,11 @@
 """Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``.
 
-An act counts only if the function's globals or its closure lead to a slot or a signal. Everything else, such as names that
-the function binds itself, is checked when the rule runs (L3). So is guarded code: a branch on a variable of an enclosing
-function, which may make several rules with different declarations; a branch on a constant or on ``hasattr``; and the body
-of a ``try`` that expects a missing name.
+An act is a read, a write, an emit or the use of a payload. It counts only if the function's globals or closure hold its slot
+or signal under that name. Everything else is checked when the rule runs (L3), such as names that the function binds itself.
+
+Guarded code, too, is checked only then. Code is guarded in a branch on a constant, on ``hasattr``, or on a variable of an
+enclosing function: such a function may make several rules with different declarations. The body of a ``try`` that expects a
+missing name is guarded as well.
 """
 
 from __future__ import annotations
@@ -42,7 +44,7 @@ class Acts:
     forgotten: dict[str, int] = field(default_factory=dict[str, int])
     """Method of the context that the function calls without ``await`` → the line of the call."""
     unknown: dict[str, int] = field(default_factory=dict[str, int])
-    """Phrase about a name that does not exist, with the nearest name that does → the line of the name."""
+    """Phrase about a missing name, with the nearest existing name → the line of the missing name."""
 
 
 def acts_of(rule: RulePlan, source: Source) -> Acts:
