@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ravestate.language.entity import Entity
+from ravestate.language.moves import LISTENING
 from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.analysis import Analysis
@@ -285,7 +286,12 @@ def not_asked(heard: Parse, analysis: Analysis) -> str:
         return "it only repeats a word"  # Holiday? In this weather?
     if scaled(analysis.text):
         return ""
-    if analysis.move is not None and analysis.move.listens:
+    told = (
+        analysis.question is None
+        and "?" not in analysis.text
+        and any(word.tag in FINITE for word in analysis.tree.words)
+    )
+    if analysis.move is not None and (analysis.move.listens or (told and analysis.move.name in LISTENING)):
         return f"the user wants another answer: {analysis.move.name}"
     if heard.kind is not None:
         return ""

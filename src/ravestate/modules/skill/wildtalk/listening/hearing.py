@@ -187,7 +187,10 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         "polar": polar,
         "offer": _OFFER.match(asking) is not None,
         "will": bool(modal & {"will", "'ll"}),
-        "worried": polar and not addressed and (subject == "I" or (pointed and (feeling or "will" in modal))),
+        "worried": polar
+        and not addressed
+        and not low & {"should", "if"}
+        and (subject == "I" or (pointed and (feeling or "will" in modal))),
         "world": not polar or (opened and (subject in ("", "other") or asked is None or asked.verb == "know")),
         "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
         "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
