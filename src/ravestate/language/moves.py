@@ -1,7 +1,7 @@
 """The move that a good listener makes next: rejoice, console, advise... The classes are those of ``moves.yaml``.
 
-It is a kernel ridge regression, as in `Matcher`, but over whole utterances: the kernel adds the meaning of the utterance, that
-of its last sentence, and its form (whom it mentions, whether and how it asks, its length).
+It is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel adds the meaning of the utterance, that
+of its last sentence, and its form: the persons, the kind of question, the length.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ LISTENING = (
     "farewell",
     "thank",
 )
-"""Moves in reply to something that was told."""
+"""Moves after a statement of the user."""
 SURE = 0.7
 """The confidence from which a move decides alone."""
 
