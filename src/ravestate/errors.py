@@ -10,7 +10,7 @@ RavestateError
 │   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
 │   └── RunEnded                      a rule acted after its run was over
 ├── EngineError(RuntimeError)         an event that does not fit the engine's state
-└── PlatformError(RuntimeError)       the world failed: a device, a server, a file, a package
+└── PlatformError(RuntimeError)       a device, a server or a file failed, or a package is missing
 ```
 
 Messages give the refused value, the place in the code, the nearest valid name, and the line to write instead.

@@ -13,7 +13,7 @@ def user_folder(kind: Literal["data", "state", "cache"]) -> Path:
 
     Args:
         kind: ``data`` for files that must not be lost, ``state`` for files that need only outlast a session, ``cache``
-            for files that can be made again. Windows has one folder for all kinds, macOS one for the first two.
+            for files that can be made again. Windows has one folder for all kinds; macOS has one for the first two.
     """
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")

@@ -124,8 +124,8 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
     """Return the value of a `field` that a text from the environment or from ``--set`` stands for.
 
-    A text field takes the text itself, any other field its parsed form. If `parse` raises a ValueError, the text stays
-    as it is.
+    A text field takes the text itself; any other field takes the result of `parse`. If `parse` raises a ValueError, the
+    text stays as it is.
     """
     annotation = cast("Any", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}

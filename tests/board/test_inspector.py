@@ -238,7 +238,7 @@ async def test_slots_are_written_and_signals_raised_by_hand() -> None:
         ({"type": "put", "slot": "gossip:sercet", "value": 1}, "no slot 'gossip:sercet'; did you mean"),
         ({"type": "put", "slot": "rawio:input", "value": 7}, "which takes str, not int"),
         ({"type": "put", "slot": "rawio:speaking", "value": "banana"}, "write true or false, not 'banana'"),
-        ({"type": "emit", "signal": "gossip:cheered"}, "carries a payload of type dict: give one"),
+        ({"type": "emit", "signal": "gossip:cheered"}, "carries a payload of type dict: give a payload"),
         ({"type": "emit", "signal": "gossip:cheered", "payload": 1}, "a payload of type dict, not int"),
         ({"type": "emit", "signal": "gossip:nothing"}, "this agent has no signal 'gossip:nothing'"),
         ({"type": "explain", "rule": "gossip:nobody"}, "the policy has no rule 'gossip:nobody'"),

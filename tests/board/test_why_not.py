@@ -364,7 +364,7 @@ def test_its_spike_was_too_young(stage: Stage) -> None:
         sim.put(stage.input, "x")
         found = ask(sim, "slow")
     assert found.verdict == "young"
-    assert "demo:input:changed must be 3 s old, so not before 3.000 s" in found.words
+    assert "demo:input:changed must be 3 s old, so the rule could not run before 3.000 s" in found.words
 
 
 def test_the_answering_rule_is_named_with_the_source_of_its_input(stage: Stage) -> None:
@@ -484,7 +484,7 @@ def test_a_signal_of_another_cause_is_distinguished(stage: Stage) -> None:
         sim.put(stage.input, "hello")
         found = ask(sim, "qa", number=1)
     assert found.verdict == "untouched"
-    assert found.missing[0].words == "demo:question did not occur for this cause (it did for another, at 0.000 s)"
+    assert found.missing[0].words == "demo:question did not occur for this cause (only for another cause, at 0.000 s)"
     assert found.missing[0].raisers[0].words == (
         "demo:classify did not run: it did not take demo:input:changed: its payload did not match the predicate"
     )

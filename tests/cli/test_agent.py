@@ -171,7 +171,7 @@ def test_a_file_without_a_module(folder: Path, capsys: Capture) -> None:
     write(folder / "empty.py", "")
     write(folder / "two.py", "import ravestate as rs\na, b = rs.Module('a'), rs.Module('b')")
     assert "holds no rs.Module: write module = rs.Module('name')" in refused(capsys, "./empty.py")
-    assert "holds 2 rs.Modules: name the one you mean `module`" in refused(capsys, "./two.py")
+    assert "holds 2 rs.Modules: call one of them `module`" in refused(capsys, "./two.py")
 
 
 # ---------------------------------------------------------------------------------------- agent files
@@ -199,8 +199,8 @@ def test_files_and_modules_may_be_combined(folder: Path, capsys: Capture) -> Non
     write(folder / "hello.py", HELLO)
     write(folder / "settings.yml", "settings: {hello: {greeting: Ahoy}}")
     assert run(capsys, "./hello.py", "-f", "settings.yml").startswith("Ahoy")
-    assert "name a module, or an agent file that names some" in refused(capsys, "-f", "settings.yml")
-    assert "name a module, or an agent file that names some" in refused(capsys)
+    assert "name a module, or an agent file that names modules" in refused(capsys, "-f", "settings.yml")
+    assert "name a module, or an agent file that names modules" in refused(capsys)
 
 
 def test_secrets_come_from_the_environment(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -386,7 +386,7 @@ def test_a_malformed_set_has_a_message(text: str, folder: Path, capsys: Capture)
         ),
         ("idel.bored_after=3", "module 'idel' is not part of this agent; did you mean 'idle'?"),
         ("conoi.prompt=x", "module 'conoi' is not part of this agent; did you mean 'conio'?"),
-        ("conio.prompt=x", "module 'conio' is not part of this agent: name it too"),
+        ("conio.prompt=x", "module 'conio' is not part of this agent: add the module"),
         ("rawio.loud=1", "module 'rawio' has no settings"),
     ],
 )

@@ -75,9 +75,9 @@ def test_the_help_names_the_file_of_the_memory(
     monkeypatch.delenv("XDG_DATA_HOME", raising=False)
     out = call(capsys, command, "--help")[1]
     assert Path(tmp_path, ".local/share/ravestate/default/memory.lbug") == default_path("default")
-    assert "\n  ~/.local/share/ravestate/default/memory.lbug (--set ontology.path=FILE" in out
+    assert "\n  ~/.local/share/ravestate/default/memory.lbug (for another file: --set ontology.path=FILE" in out
     assert all(f"ravestate memory {action}" in out for action in ("list", "show NAME", "forget NAME"))
-    assert (f"you type in {history_file()}\n" in out) == (command == "chat")
+    assert (f"saves your lines to {history_file()}\n" in out) == (command == "chat")
     assert str(history_file()).startswith("/state/")
 
 

@@ -89,7 +89,7 @@ def test_interrupted_it_says_how_to_go_on(
     monkeypatch.setattr(collecting, "read", interrupted)
     code, _, errors = call(capsys, "genqa", "index", "docs")
     assert code == 130
-    assert "what was read so far is kept, and the same command continues" in errors
+    assert "interrupted: to continue, run the same command again" in errors
     monkeypatch.undo()
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(docs.parent / "data"))
@@ -142,7 +142,7 @@ def test_an_index_of_a_newer_version_is_an_error_in_words(docs: Path, capsys: py
 def test_nothing_read_yet_is_no_error(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "genqa", "list")
     assert code == 0
-    assert out.startswith("nothing has been read yet: ravestate genqa index PATH")
+    assert out.startswith("nothing has been read yet: to read files into")
 
 
 @pytest.mark.parametrize("arguments", [[], ["index"], ["forget"], ["ask"], ["ask", " "], ["eat"], ["--index"]])

@@ -71,7 +71,7 @@ def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: C
         (("--format", "png"), "invalid choice: 'png'"),
         (("--without", "nlp"), "--without works only on the complete agent: name no MODULE or file with it"),
         (("--unfold", "helo"), "--unfold helo: the agent has no such module; did you mean 'hello'?"),
-        (("--unfold", "hello", "--no-fold"), "--unfold folds the other modules, --no-fold folds none: use only one"),
+        (("--unfold", "hello", "--no-fold"), "and --no-fold folds no module: use only one of them"),
     ],
 )
 def test_wrong_use_is_2_and_writes_nothing(
@@ -94,7 +94,7 @@ def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(comple
     assert (code, out) == (0, f"{complete_agent}\n")
     assert re.fullmatch(
         r"ravestate graph: folded \d+ rules into their modules: --unfold MODULE draws the rules of one module, "
-        r"--no-fold draws those of all modules\n",
+        r"and --no-fold draws all rules\n",
         errors,
     )
     assert all(f">module {name} (" in out for name in ("conio", *COMPLETE))

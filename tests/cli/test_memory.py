@@ -46,7 +46,7 @@ def file(folder: Path) -> Path:
 
 def test_everything_is_listed(file: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "memory", "--path", str(file), "list")
-    assert code == 0 and errors == f"5 known in {file.resolve()}\n"
+    assert code == 0 and errors == f"5 nodes in {file.resolve()}\n"
     lines = [line.rsplit(maxsplit=1) for line in out.splitlines()]
     assert [line[0].split() for line in lines] == [
         ["City", "London"], ["Person", "Ada"], ["Person", "Bob"], ["Person", "Bob"], ["Person", "Eve", "red"],
@@ -75,9 +75,9 @@ def test_a_person_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
 def test_a_name_that_nobody_or_several_have(file: Path, capsys: Capture) -> None:
     code, _, errors = call(capsys, "memory", "--path", str(file), "show", "Londn")
     assert code == 2
-    assert errors == "ravestate memory: nobody and nothing is called 'Londn'; did you mean 'London'?\n"
+    assert errors == "ravestate memory: no node is called 'Londn'; did you mean 'London'?\n"
     code, _, errors = call(capsys, "memory", "--path", str(file), "forget", "Bob", "--yes")
-    assert code == 2 and "2 are called 'Bob': name one by its id\n  Person:" in errors
+    assert code == 2 and "2 nodes are called 'Bob': give the id of one\n  Person:" in errors
 
 
 def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Capture) -> None:
@@ -85,7 +85,7 @@ def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Cap
     document = json.loads(out)
     assert len(document["nodes"]) == 5 and len(document["relations"]) == 2
     code, out, _ = call(capsys, "memory", "--path", str(file), "export", "all.json")
-    assert (code, out) == (0, "wrote all.json: 5 known\n")
+    assert (code, out) == (0, "wrote all.json: 5 nodes\n")
     assert json.loads((folder / "all.json").read_text()) == document
     assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
     assert call(capsys, "memory", "--path", "other.lbug", "load", "all.json")[:2] == (0, "loaded 5\n")
@@ -140,7 +140,7 @@ def test_no_file_is_removed_without_a_yes(
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
     code, out, _ = call(capsys, "memory", "--path", str(file), "reset")
     assert code == 1 and "nothing was removed" in out
-    assert out.startswith(f"{file.resolve()}\n{file.resolve()}.sum\nRemove these files, with all that is known?")
+    assert out.startswith(f"{file.resolve()}\n{file.resolve()}.sum\nRemove these files, with the whole memory?")
     assert sorted(folder.iterdir()) == [file, Path(f"{file}.sum")]
 
 
@@ -166,8 +166,8 @@ def test_files_of_a_deleted_memory_are_named(file: Path, folder: Path, capsys: C
     (folder / "memory.lbug.wal").write_bytes(b"Ada")
     code, _, errors = call(capsys, "memory", "--path", str(file), "list")
     assert code == 1 and f"there is no memory yet: {file.resolve()} does not exist" in errors
-    assert "has left memory.lbug.sum, memory.lbug.wal, which may still have names in them" in errors
-    assert f"ravestate memory reset --path {file.resolve()} removes them" in errors
+    assert "has left memory.lbug.sum, memory.lbug.wal, which may contain personal data" in errors
+    assert f"to remove them, run ravestate memory reset --path {file.resolve()}" in errors
 
 
 def test_an_export_is_the_users_alone_whatever_was_left_before(file: Path, folder: Path, capsys: Capture) -> None:
@@ -208,7 +208,7 @@ def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Cap
     assert "Lady" in call(capsys, "memory", "-f", "agent.yaml", "list")[1]
     code, out, errors = call(capsys, "memory", "--set", f"ontology.path={file}", "list")
     assert code == 0 and "Lady" not in out
-    assert "also has Boat, which no file of types declares" in errors
+    assert "also has Boat, but no file declares these types" in errors
 
 
 def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, capsys: Capture) -> None:

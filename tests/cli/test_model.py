@@ -36,7 +36,7 @@ def hub(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
 def test_a_model_is_fetched_listed_used_and_removed(hub: Hub, place: Path, capsys: Capture) -> None:
     assert call(capsys, "model", "get") == (
         0,
-        f"tiny is installed, and the default for small talk: {place / 'tiny.gguf'}\n",
+        f"tiny is installed, and is now the default for small talk: {place / 'tiny.gguf'}\n",
         "tiny: 1 MB, Apache-2.0, from someone/tiny-GGUF\n",
     )
     assert (place / "tiny.gguf").read_bytes() == CONTENT

@@ -95,7 +95,7 @@ def test_a_python_module_stands_for_its_module(demo: rs.Module) -> None:
 def test_a_python_module_without_a_module_or_with_two_is_refused(demo: rs.Module) -> None:
     refused("pkg holds no rs.Module: write module = rs.Module('name')", lambda: as_module(python_module()))
     two = python_module(a=demo, b=rs.Module("b"))
-    refused("pkg holds 2 rs.Modules: name the one you mean `module`", lambda: as_module(two))
+    refused("pkg holds 2 rs.Modules: call one of them `module`", lambda: as_module(two))
     refused("expected an rs.Module (or a Python module that holds one), not 'demo'", lambda: as_module("demo"))
 
 
@@ -151,7 +151,7 @@ def test_generators_are_refused(demo: rs.Module) -> None:
 
     for function in (yields, yields_later):
         message = refused(
-            "is a generator: a rule returns once; write with ctx[slot] = value instead of yield",
+            "is a generator, but a rule returns only once: use ctx[slot] = value instead of yield",
             lambda function=function: demo.rule(when=demo.signal("go"))(function),
         )
         assert re.match(rf"rule demo:{function.__name__} \({HERE}:\d+\)", message)
@@ -171,9 +171,9 @@ def test_a_function_without_an_argument_is_refused(demo: rs.Module) -> None:
 
 def test_a_rule_needs_a_function(demo: rs.Module) -> None:
     go = demo.signal("go")
-    refused("@demo.rule(...) stands above a function, not 3", lambda: demo.rule(when=go)(3))
+    refused("@demo.rule(...) must decorate a function, not 3", lambda: demo.rule(when=go)(3))
     rule = demo.rule(when=go)(do)
-    refused("is a rule already: write its second condition behind |", lambda: demo.rule(when=go)(rule))
+    refused("is a rule already: combine both conditions with |", lambda: demo.rule(when=go)(rule))
     assert demo.rules == [rule]
 
 
@@ -216,13 +216,13 @@ def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) ->
     go, mood = demo.signal("go"), demo.slot("mood")
     for what in ("reads", "writes"):
         refused(
-            f"{what}=demo:go is not a slot: reads and writes name slots, emits names signals",
+            f"{what}=demo:go is not a slot: `reads` and `writes` take slots, `emits` takes signals",
             lambda what=what: demo.rule(when=go, **{what: go})(do),
         )
         refused(f"{what}='mood' is not a slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
         refused(f"{what}=None is not a slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
     refused(
-        "emits=demo:mood is not a signal: a write raises its signals; write writes=mood",
+        "emits=demo:mood is not a signal: a rule that writes a slot raises its signals; use writes=mood",
         lambda: demo.rule(when=go, emits=mood)(do),
     )
     message = refused("emits=5 is not a signal", lambda: demo.rule(when=go, emits=5)(do))

@@ -14,7 +14,7 @@ import threading
 from collections.abc import AsyncGenerator, Callable, Coroutine, Iterator
 from typing import Any
 
-from playwright.async_api import Browser, Page, async_playwright
+from playwright.async_api import Browser, Page, Playwright, async_playwright
 
 from ravestate.modules import webio
 from ravestate.modules.platform.webio.server import Server
@@ -82,18 +82,22 @@ class Stage:
         self._thread = threading.Thread(target=self._loop.run_forever, name="stage")
         self._thread.start()
         self._over = contextlib.AsyncExitStack()
-        self.browser: Browser = self.run(self._launch())
+        self._playwright: Playwright = self.run(self._over.enter_async_context(async_playwright()))
+        self.browser: Browser = self.run(self._over.enter_async_context(self.launch()))
 
-    async def _launch(self) -> Browser:
+    @contextlib.asynccontextmanager
+    async def launch(self, *flags: str) -> AsyncGenerator[Browser]:
+        """Start a Chromium with more flags than usual."""
         found = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
         if found is None:
             raise AssertionError(
                 "the browser tests need Chromium: apt-get install chromium, or say where it is: CHROMIUM=/path/to/it"
             )
-        playwright = await self._over.enter_async_context(async_playwright())
-        browser = await playwright.chromium.launch(executable_path=found, args=FLAGS)
-        self._over.push_async_callback(browser.close)
-        return browser
+        browser = await self._playwright.chromium.launch(executable_path=found, args=[*FLAGS, *flags])
+        try:
+            yield browser
+        finally:
+            await browser.close()
 
     def run(self, work: Coroutine[Any, Any, Any]) -> Any:
         """Do something on the loop, and wait for it."""
@@ -119,15 +123,18 @@ class Stage:
             yield Host(server)
 
     @contextlib.asynccontextmanager
-    async def open(self, address: str, *, complaints: bool = False, **options: Any) -> AsyncGenerator[Page]:
+    async def open(
+        self, address: str, *, complaints: bool = False, browser: Browser | None = None, **options: Any
+    ) -> AsyncGenerator[Page]:
         """Open a page in a window of its own, which shares nothing with others.
 
         Args:
             address: The address of the page.
+            browser: The browser, if it is not the usual one.
             complaints: Whether the browser may complain (of a lost connection); otherwise that is a failure.
             options: Options of the window, e.g. `PHONE`.
         """
-        window = await self.browser.new_context(reduced_motion="reduce", **options)
+        window = await (browser or self.browser).new_context(reduced_motion="reduce", **options)
         heard: list[str] = []
         try:
             page = await window.new_page()

@@ -235,7 +235,7 @@ def test_a_predicate_needs_a_signal_beside_it() -> None:
     rule(m, "r", mood.holds(bool) | m.signal("go"))
     (text,) = faults(m)
     assert (
-        "'m:mood.holds(bool)' waits for no signal, and a predicate on a slot only gates: write mood.changed & ..."
+        "'m:mood.holds(bool)' has no signal, and a predicate on a slot triggers no rule: write mood.changed & ..."
         in text
     )
 
@@ -355,9 +355,9 @@ def test_rules_that_wait_only_for_each_other_are_unreachable() -> None:
     found = faults(m)
     assert len(found) == 2
     assert re.match(
-        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; only m:second may raise it", found[0]
+        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; only m:second may raise that", found[0]
     )
-    assert found[0].endswith("if it comes from outside, declare it with input=True")
+    assert found[0].endswith("if code outside the rules raises the signal, declare it with input=True")
 
 
 def test_a_way_in_makes_a_cycle_reachable() -> None:

@@ -50,8 +50,8 @@ def test_a_rule_that_only_a_write_from_outside_can_start(scene: Scene) -> None:
     found = scene.findings()
     assert list(found) == [("unreachable", "m:loop"), ("loop", "m:loop")]
     text = found["unreachable", "m:loop"]
-    assert text.startswith("unreachable: rule m:loop runs only if m:mood:changed comes from outside")
-    assert text.endswith("if it does come from outside, declare it with input=True")
+    assert text.startswith("unreachable: rule m:loop runs only if code outside the rules raises m:mood:changed")
+    assert text.endswith("if such code exists, declare the signal or its slot with input=True")
     scene.module.slots.remove(mood)
 
 
@@ -61,7 +61,7 @@ def test_a_rule_that_waits_for_a_rule_with_its_slot(scene: Scene) -> None:
     scene.rule("again", said, writes=scene.out)
     text = scene.findings()["unreachable", "m:again"]
     assert "waits for an effect of rules that write m:out before it" in text
-    assert "write .detached() behind that signal, or detached=True at the rule that causes it" in text
+    assert "add .detached() to that signal, or detached=True to the rule that causes it" in text
 
 
 @pytest.mark.parametrize("way", ["constraint", "rule"])
@@ -137,7 +137,7 @@ def test_a_cooldown_without_a_rival(scene: Scene) -> None:
     found = scene.findings()
     assert list(found) == [("cooldown", "m:nag"), ("cooldown", "m:blink")]
     assert (
-        "rule m:nag has a cooldown of 300 s, but no rival: a cooldown lets other rules go first"
+        "rule m:nag has a cooldown of 300 s, but no rival: a cooldown only lets other rules go first"
         in found["cooldown", "m:nag"]
     )
     scene.rule("sing", bored, writes=scene.out, weight=1.2, cooldown=300.0)
@@ -242,8 +242,8 @@ def test_detached_rules_that_set_each_other_off(scene: Scene) -> None:
     found = scene.findings()
     assert list(found) == [("loop", "m:ping")]
     assert found["loop", "m:ping"] == (
-        "loop: rules m:ping, m:pong set each other off by m:other, m:one without time passing, and may never end (L23): "
-        "write .min_age(seconds) behind one of these signals"
+        "loop: rules m:ping, m:pong trigger each other through m:other, m:one without time passing, and may never end (L23): "
+        "add .min_age(seconds) to one of these signals"
     )
 
 
@@ -251,7 +251,7 @@ def test_a_detached_constraint_makes_a_loop_too(scene: Scene) -> None:
     tick = scene.module.signal("tick")
     scene.rule("again", tick.detached() | scene.heard, emits=tick)
     text = scene.findings()["loop", "m:again"]
-    assert text.startswith("loop: rule m:again sets itself off by m:tick without time passing, and may never end")
+    assert text.startswith("loop: rule m:again triggers itself through m:tick without time passing, and may never end")
 
 
 @pytest.mark.parametrize("end", ["group", "min_age", "input", "where", "holds"])

@@ -139,7 +139,7 @@ def test_a_new_rule_may_refer_to_a_setting() -> None:
     [
         (extra(when=rs.Module("far").signal("x")), "unknown signal far:x"),
         (extra(weight=0), "weight=0.0 must be above 0"),
-        (add, "is in the policy already; give the new one another name=..."),
+        (add, "is in the policy already; give the new rule another name=..."),
         (lambda ctx: None, "is not a rule: write @module.rule"),
     ],
 )

@@ -51,7 +51,7 @@ def test_every_act_is_found() -> None:
         f"writes demo:face (line {first + 2}), demo:mood (line {first + 3}), demo:people (line {first + 4}) without "
         "declaring it: write writes=(demo.face, demo.mood, demo.people)",
         f"emits demo:done (line {first + 6}) without declaring it: write emits=demo.done",
-        f"asks for the payload of demo:late (line {first + 6}), which its condition lacks: write when=... | demo.late",
+        f"asks for the payload of demo:late (line {first + 6}), which is not in its condition: write when=... | demo.late",
     ]
 
 

@@ -9,6 +9,7 @@ The rules, for who writes documentation:
   page run. A later block can read, import or run it. Its namespace is its own: later blocks import its names. `title="hello.py, continued"` adds to the file.
 - A block whose title begins with `test_` is run by pytest too, as its reader will do; and where a block has functions
   `test_*`, it must have such a title, as else nothing would call them.
+- A block right under `<!-- in: pipecat -->` is run in the environment `.venvs/pipecat`, in a process of its own.
 - A block right under `<!-- not run: the reason -->` is skipped, and the reason is shown. Rarely needed.
 - Blocks of other languages (`bash`, `console`, `yaml`, `text`, ...) are not run.
 """
@@ -35,6 +36,8 @@ STAND_INS = Path(__file__).with_name("stand_ins")
 precedence."""
 FENCE = re.compile(r"(?P<indent>[ \t]*)(?P<fence>`{3,}|~{3,})[ \t]*(?P<info>[^`]*)")
 NOT_RUN = re.compile(r"\s*<!--\s*not run:\s*(?P<reason>.*?)\s*-->\s*")
+APART = re.compile(r"\s*<!--\s*in:\s*(?P<environment>\w+)\s*-->\s*")
+ENVIRONMENTS = Path(__file__).parents[2] / ".venvs"
 TITLE = re.compile(r"""title=(?P<quote>["'])(?P<title>.*?)(?P=quote)""")
 LANGUAGES = {"python": "python", "py": "python", "python3": "python", "pycon": "pycon"}
 
@@ -49,6 +52,7 @@ class Block:
     code: str
     title: str | None
     not_run: str | None
+    environment: str | None = None
 
     @property
     def runs(self) -> bool:
@@ -69,6 +73,7 @@ def blocks_in(file: Path) -> list[Block]:
     found: list[Block] = []
     lines = iter(enumerate(file.read_text(encoding="utf-8").splitlines(), start=1))
     reason: str | None = None
+    environment: str | None = None
     for number, line in lines:
         if opening := FENCE.fullmatch(line):
             fence, info = opening["fence"], opening["info"]
@@ -90,13 +95,16 @@ def blocks_in(file: Path) -> list[Block]:
                     code=textwrap.dedent("\n".join(code)) + "\n",
                     title=title["title"] if title else None,
                     not_run=reason,
+                    environment=environment,
                 )
             )
-            reason = None
+            reason = environment = None
+        elif apart := APART.fullmatch(line):
+            environment = apart["environment"]
         elif comment := NOT_RUN.fullmatch(line):
             reason = comment["reason"] or "no reason given"
         elif line.strip():
-            reason = None
+            reason = environment = None
     return found
 
 
@@ -126,6 +134,9 @@ class Page:
     def _run_next(self, block: Block) -> None:
         file = save(block, self.folder)
         if not block.runs or block.not_run is not None:
+            return
+        if block.environment is not None:
+            run_apart(block, self.folder)
             return
         module = self.files.setdefault(file, self._namespace(file)) if file else self.module
         with self._known(module):
@@ -207,9 +218,21 @@ def run_tests(block: Block, folder: Path) -> None:
     """Run a block's file with pytest, in a separate process. Raises AssertionError with what it prints if one fails."""
     name = Path(block.title or "").name
     assert name.startswith("test_") and name.endswith(".py"), f'{block}: give it title="test_....py", or drop its tests'
+    run_process(block, folder, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title))
+
+
+def run_apart(block: Block, folder: Path) -> None:
+    """Run a block in the environment that it names. Raises AssertionError with what it prints if it fails."""
+    python = ENVIRONMENTS / str(block.environment) / "bin" / "python"
+    assert python.exists(), f"there is no environment {block.environment}: `make test` makes it"
+    if block.has_tests:
+        run_process(block, folder, python, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title))
+    else:
+        run_process(block, folder, python, "-c", block.code)
+
+
+def run_process(block: Block, folder: Path, *command: str | Path) -> None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
-    run = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title)],
-        cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
+    environment["PYTHONPATH"] = os.pathsep.join([str(ENVIRONMENTS.parent / "src"), environment.get("PYTHONPATH", "")])
+    run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False)
     assert run.returncode == 0, f"{block}:\n{run.stdout}{run.stderr}"

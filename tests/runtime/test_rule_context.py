@@ -303,10 +303,10 @@ def test_the_payload_of_the_other_clause_is_none(scene: Scene) -> None:
     [
         (
             lambda s: s.other,
-            "asked for the payload of m:other, which its condition does not name: it has m:go, m:mood:changed",
+            "asked for the payload of m:other, which is not in its condition: the condition has m:go, m:mood:changed",
         ),
         (lambda s: s.mood, "asked for the payload of m:mood, .*; did you mean 'm:mood:changed'"),
-        (lambda s: "go", "asked for the payload of 'go', which its condition does not name"),
+        (lambda s: "go", "asked for the payload of 'go', which is not in its condition"),
     ],
 )
 def test_payloads_of_other_signals_are_refused(scene: Scene, ask: Callable[[Scene], Any], text: str) -> None:
@@ -338,7 +338,7 @@ def test_an_emitted_signal_carries_its_payload(scene: Scene) -> None:
         ),
         (
             lambda s: s.mood,
-            "emitted m:mood, which is a slot: write ctx[mood] = value, which signals, or ctx.emit(signal)",
+            "emitted m:mood, which is a slot: write ctx[mood] = value, or emit a signal: ctx.emit(signal)",
         ),
         (lambda s: "out", "emitted 'out' without declaring it"),
     ],

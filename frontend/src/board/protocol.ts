@@ -138,7 +138,7 @@ export interface Dropped {
   reason: string;
 }
 
-/** An arrow from `source` to `target` (both are ids of nodes), with `label` beside it if that is not empty. */
+/** An arrow between two nodes, given by their ids, with a label that may be empty. */
 export interface Edge {
   source: string;
   target: string;
@@ -418,7 +418,7 @@ export interface Hello {
   token?: string;
 }
 
-/** Stop the context's clock, do the next thing that is due on a stopped clock, or start it again. */
+/** Stop the context's clock, perform the next step on a stopped clock, or start the clock again. */
 export interface Clock {
   type: "pause" | "step" | "resume";
 }

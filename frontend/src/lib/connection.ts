@@ -21,10 +21,12 @@ export type Status =
 /** The part of a WebSocket that a connection uses. */
 export interface Socket {
   readonly readyState: number;
+  readonly bufferedAmount: number;
+  binaryType: BinaryType;
   onopen: ((event: Event) => void) | null;
   onmessage: ((event: MessageEvent) => void) | null;
   onclose: ((event: CloseEvent) => void) | null;
-  send(text: string): void;
+  send(data: string | ArrayBuffer): void;
   close(): void;
 }
 
@@ -32,12 +34,19 @@ export interface Options {
   /** Returns the first frame of each connection. */
   hello: () => ClientFrame;
   onframe: (frame: ServerFrame) => void;
+  onsound?: (sound: ArrayBuffer) => void;
   onstatus: (status: Status) => void;
   open?: () => Socket;
   backoff?: Backoff;
 }
 
 const OPEN = 1;
+
+/** Bytes that may wait to be sent; beyond them sound is dropped, since late sound is of no use. */
+const MOST_WAITING = 64_000;
+
+/** Frames that the server does not answer. */
+const UNANSWERED = new Set(["writing", "played", "hush"]);
 
 /** Milliseconds without a frame from the server, by what the page waits for. */
 const TIMEOUTS = {
@@ -70,6 +79,7 @@ export class Connection {
     this.#drop();
     const socket = (this.options.open ?? openHere)();
     this.#socket = socket;
+    socket.binaryType = "arraybuffer";
     this.#expect("welcome");
     socket.onopen = () => socket.send(JSON.stringify(this.options.hello()));
     socket.onmessage = (event) => this.#receive(event.data);
@@ -81,8 +91,15 @@ export class Connection {
     if ((this.#status !== "open" && this.#status !== "silent") || this.#socket?.readyState !== OPEN)
       return false;
     this.#socket.send(JSON.stringify(frame));
-    if (this.#awaited === "frame" && frame.type !== "writing") this.#expect("answer");
+    if (this.#awaited === "frame" && !UNANSWERED.has(frame.type)) this.#expect("answer");
     return true;
+  }
+
+  /** Send sound if there is a connection that keeps up. */
+  sendSound(sound: ArrayBuffer): void {
+    const socket = this.#socket;
+    if (this.#status === "open" && socket?.readyState === OPEN && socket.bufferedAmount < MOST_WAITING)
+      socket.send(sound);
   }
 
   /** Check the connection: the network may be back, or the user looks at the page again. */
@@ -100,6 +117,10 @@ export class Connection {
   #receive(data: unknown): void {
     this.#expect("frame");
     if (this.#status === "silent") this.#become("open");
+    if (data instanceof ArrayBuffer) {
+      this.options.onsound?.(data);
+      return;
+    }
     const frame = parse(data);
     if (frame === null) return; // a later version may send it
     if (frame.type === "welcome") {

@@ -1,6 +1,7 @@
 import { Connection, type Options, type Status } from "./connection";
 import { type Message, type Say, type ServerFrame, VERSION } from "./protocol";
 import { announce, isSeen, type Kept, keep, markSeen, recall, tokenOfLink } from "./store";
+import { Voice, type Options as VoiceOptions } from "./voice.svelte";
 
 export interface Line {
   key: string;
@@ -12,6 +13,8 @@ export interface Line {
   anew?: boolean;
   /** The server refused it, and would refuse it again. */
   refused?: boolean;
+  /** The part that the visitor heard, if the agent's speech was cut. */
+  heard?: string;
 }
 
 /** Milliseconds between two `writing` frames. */
@@ -39,6 +42,7 @@ export class Conversation {
   ending = $state("");
   /** The latest error of the server. */
   trouble = $state("");
+  readonly voice: Voice;
 
   #kept: Kept = recall();
   #outbox: Say[];
@@ -50,7 +54,7 @@ export class Conversation {
   #told = Number.NEGATIVE_INFINITY; // the time of the last `writing`
   #connection: Connection;
 
-  constructor(options: Pick<Options, "open" | "backoff"> = {}) {
+  constructor(options: Pick<Options, "open" | "backoff"> & { devices?: VoiceOptions["open"] } = {}) {
     const token = tokenOfLink();
     if (token !== undefined) this.#keep({ token });
     this.#outbox = (this.#kept.outbox ?? []).map(({ id, text }) => ({ type: "say", id, text }));
@@ -65,10 +69,19 @@ export class Conversation {
         ...(this.#kept.token === undefined ? {} : { token: this.#kept.token }),
       }),
       onframe: (frame) => this.#take(frame),
+      onsound: (sound) => this.voice.play(sound),
       onstatus: (status) => {
         this.status = status;
-        if (status !== "open" && status !== "silent") this.typing = this.paused = false;
+        if (status === "open" || status === "silent") return;
+        this.typing = this.paused = false;
+        if (status === "ended") this.voice.pause("");
+        this.voice.disconnected();
       },
+    });
+    this.voice = new Voice({
+      send: (frame) => this.#connection.send(frame),
+      sendSound: (sound) => this.#connection.sendSound(sound),
+      ...(options.devices === undefined ? {} : { open: options.devices }),
     });
   }
 
@@ -78,6 +91,7 @@ export class Conversation {
   }
 
   stop(): void {
+    this.voice.pause("");
     this.#connection.stop();
   }
 
@@ -142,19 +156,26 @@ export class Conversation {
       if (frame.inside !== undefined && !frame.resumed) announce(frame.session);
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
+      this.voice.connected(frame.voice === true);
       for (const say of this.#outbox) this.#connection.send(say); // the server ignores those that it has
     } else if (frame.type === "renamed") this.agent = frame.agent;
     else if (frame.type === "message") this.#hear(frame);
     else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;
     else if (frame.type === "typing") this.typing = frame.on;
     else if (frame.type === "paused") this.paused = frame.on;
+    else if (frame.type === "heard") this.#mark(frame.n, frame.text);
     else if (frame.type === "error") {
       this.trouble = frame.text;
       if (frame.id !== undefined) this.#giveUp(frame.id);
     } else if (frame.type === "ended") {
       this.ending = frame.text;
       this.#forget();
-    }
+    } else this.voice.take(frame);
+  }
+
+  #mark(n: number, heard: string): void {
+    const key = `${this.#epoch}/${n}`;
+    this.lines = this.lines.map((line) => (line.key === key ? { ...line, heard } : line));
   }
 
   #hear(message: Message): void {
@@ -166,6 +187,7 @@ export class Conversation {
       from: message.from,
       text: message.text,
       time: message.time,
+      ...(message.heard === undefined ? {} : { heard: message.heard }),
     };
     if (this.#anew) {
       line.anew = true;

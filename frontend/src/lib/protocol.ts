@@ -56,6 +56,30 @@ export interface Ping {
   type: "ping";
 }
 
+/**
+ * The visitor's microphone goes on or off in this window.
+ *
+ * While it is on, binary frames carry its sound, and this window plays the agent's sound. At most one window of a conversation has it: the last one that turned it on.
+ */
+export interface Microphone {
+  type: "microphone";
+  on: boolean;
+}
+
+/** The loudspeaker's position. While sound plays, the client sends this frame every 100 ms, and at the sound's end. */
+export interface Played {
+  type: "played";
+  /** The number of the stream, from the last `Flush`. */
+  n: number;
+  /** The number of samples of this stream that the loudspeaker has played. */
+  samples: number;
+}
+
+/** The visitor asks the agent to stop speaking. */
+export interface Hush {
+  type: "hush";
+}
+
 /** The answer to `Hello`. */
 export interface Welcome {
   type: "welcome";
@@ -79,6 +103,8 @@ export interface Welcome {
   suggestions?: string[];
   /** A line of text that the page shows until the visitor has said something; None for no line. */
   note?: string;
+  /** Whether the agent can hear and speak: the server accepts `Microphone` and sound. */
+  voice?: boolean;
 }
 
 /** The agent's new name. */
@@ -99,6 +125,8 @@ export interface Message {
   time: number;
   /** The `id` of the client's `Say`, if the utterance came from a `Say`. */
   id?: string;
+  /** The part of the utterance that the visitor heard, if the agent's speech was cut. */
+  heard?: string;
 }
 
 /** A piece of an utterance that is still growing: `text` replaces everything from character `at` on. */
@@ -120,6 +148,34 @@ export interface Typing {
 export interface Paused {
   type: "paused";
   on: boolean;
+}
+
+/** The words so far of an utterance that the visitor is still speaking; empty once it has become a `Message`. */
+export interface Caption {
+  type: "caption";
+  text: string;
+}
+
+/** The part of a message of the agent that the visitor heard: all of it, unless the agent's speech was cut. */
+export interface Heard {
+  type: "heard";
+  /** The message's number. */
+  n: number;
+  /** The part that was heard. */
+  text: string;
+}
+
+/** The client drops all sound that it has not played. The sound after this frame is a new stream. */
+export interface Flush {
+  type: "flush";
+  /** The number of the new stream. */
+  n: number;
+}
+
+/** This window no longer has the microphone; `text` says why. */
+export interface Taken {
+  type: "taken";
+  text: string;
 }
 
 /** The conversation is over; `text` says why. The server then closes the connection. */
@@ -144,9 +200,22 @@ export interface Pong {
   type: "pong";
 }
 
-export type ClientFrame = Hello | Say | Writing | Bye | Ping;
+export type ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush;
 
-export type ServerFrame = Welcome | Renamed | Message | Piece | Typing | Paused | Ended | Error | Pong;
+export type ServerFrame =
+  | Welcome
+  | Renamed
+  | Message
+  | Piece
+  | Typing
+  | Paused
+  | Caption
+  | Heard
+  | Flush
+  | Taken
+  | Ended
+  | Error
+  | Pong;
 
 /** The fields that each ServerFrame must have, by what `typeof` calls them. */
 export const FIELDS: Record<ServerFrame["type"], Record<string, string>> = {
@@ -175,6 +244,19 @@ export const FIELDS: Record<ServerFrame["type"], Record<string, string>> = {
   },
   paused: {
     on: "boolean",
+  },
+  caption: {
+    text: "string",
+  },
+  heard: {
+    n: "number",
+    text: "string",
+  },
+  flush: {
+    n: "number",
+  },
+  taken: {
+    text: "string",
   },
   ended: {
     text: "string",

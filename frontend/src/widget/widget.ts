@@ -67,6 +67,7 @@ function embed(page: URL, options: DOMStringMap): void {
     if (open && frame === null) {
       frame = document.createElement("iframe"); // only now: visitors who do not open it stay unconnected
       frame.title = options.title ?? "Talk with us";
+      frame.allow = "microphone; autoplay";
       frame.referrerPolicy = "origin"; // lets the server's log name a site without permission
       frame.addEventListener("load", () => setTimeout(complain, PATIENCE));
       frame.src =
@@ -74,6 +75,7 @@ function embed(page: URL, options: DOMStringMap): void {
       root.append(frame);
     }
     if (frame !== null) frame.hidden = !open;
+    if (!open) frame?.contentWindow?.postMessage("ravestate:hidden", page.origin);
     button.setAttribute("aria-expanded", String(open));
     if (open) frame?.focus();
     else button.focus();

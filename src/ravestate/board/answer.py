@@ -13,7 +13,7 @@ class Raiser:
     """A rule that may raise a missing signal, and the outcome of its run in this causal group.
 
     Attributes:
-        outcome, words: The outcome of the rule's run, ``running``, or ``not run``; the same as text.
+        outcome, words: The outcome of the rule's run, ``running``, or ``not run``; `words` says the same as text.
         time: The time of the outcome (seconds); None if there is none.
     """
 
@@ -53,7 +53,7 @@ class WhyNot:
         clause: The number of the clause that took a spike; None if no clause did.
         missing: The signals that the rule lacked; empty if it lacked none, or if another reason decided.
         moments: The rule's history for this cause. Beyond 200 moments, the middle is left out and one moment says so.
-        whole: Whether the trace reaches back to before the spike; otherwise the answer may be incomplete.
+        whole: Whether the trace reaches back to before the spike; if it does not, the answer may be incomplete.
     """
 
     rule: str

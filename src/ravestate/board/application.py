@@ -55,7 +55,7 @@ def routes(
 
     The board is for the agent's developers: anybody with access to the page can inspect every conversation and act on
     it. Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
-    starts when a board opens. Unless a page asks for a conversation, the board shows the `recording`, if there is one.
+    starts when a board opens. If there is a `recording`, the board shows it to pages that name no conversation.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)

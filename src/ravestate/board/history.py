@@ -23,8 +23,8 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    It `lacks` these signals before it ends. Times are in seconds: `complete` is when it had all its spikes, None if never.
-    Without a run, `started` is None; before the end of the run, `settled` is None.
+    `lacks` has the signals that the attempt lacks, or lacked when it ended. Times are in seconds. `complete` is the time
+    when it had all its spikes, if ever. Without a run, `started` is None; before the end of the run, `settled` is None.
     """
 
     id: int
@@ -55,7 +55,7 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the spikes of the attempt's run; without a run, of the spikes that it took."""
+        """The numbers of the attempt's spikes: those of its run or, without a run, all that it took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
@@ -80,7 +80,7 @@ class History:
     """A trace, indexed for questions about the causal group of one spike.
 
     Raises:
-        LookupError: The trace does not contain the spike, or not any more.
+        LookupError: The trace does not contain the spike, or no longer contains it.
     """
 
     def __init__(self, records: Iterable[t.Record], spike: int) -> None:
@@ -140,8 +140,8 @@ class History:
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run that answered the cause of the group; None if no run of the given rules did.
 
-        For each rule to consider, `hears` has the signals that its clauses consume. A detached constraint consumes none
-        (L19).
+        `hears` has the rules to consider, and the signals that each clause of them consumes. A detached constraint
+        consumes none (L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
@@ -162,7 +162,7 @@ class History:
         return ""
 
     def value(self, slot: str, time: float) -> t.Set | None:
-        """Return the record of the last write of a slot up to a time (seconds); None if the trace has no such."""
+        """Return the record of a slot's last write up to a time (seconds); None if the trace has no such record."""
         written = self.values.get(slot, [])
         number = bisect_right(written, time, key=BY_TIME)
         return written[number - 1] if number else None
@@ -190,7 +190,7 @@ class History:
                 self._attempt(record.run, record).started = record
             case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
-                if attempt is not None:  # None: the attempt began before the trace
+                if attempt is not None:  # if it is None, the attempt began before the trace
                     attempt.records.append(record)
                     if isinstance(record, t.GaveUp):
                         attempt.lose(record)
@@ -227,7 +227,7 @@ class History:
 
 
 class Rivals:
-    """Phrases about the other rules in an explanation: those for which a rule waited, and the one that answered."""
+    """Writes phrases about other rules for an explanation: rules that a rule waited for, and the rule that answered."""
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
@@ -235,7 +235,7 @@ class Rivals:
         self._first: dict[str, Attempt | None] = {}  # losing rule → the run that answered first
 
     def waited(self, rule: RuleView, attempt: Attempt) -> str:
-        """Return which rules the attempt last waited for, as a phrase; empty if it did not wait."""
+        """Return a phrase with the rules that the attempt last waited for; empty if it did not wait."""
         if not attempt.waits:
             return ""
         return f"it was ready and waited for {self.names(rule, attempt, attempt.waits[-1])}"
@@ -266,15 +266,15 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the answering rule, and a path: that rule, preceded by the one that raised its input."""
+        """Return the answering rule, and a path: the rule that raised its input, if any, and then the answering rule."""
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Say which other rule waited until the patience of `rule` ran out, at the latest at `end` (seconds)."""
+        """Return a phrase with the rule that waited until the patience of `rule` ran out, at or before `end` (seconds)."""
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted: a rule's patience never changes
+        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted, since a rule's patience never changes
         ended = f"this rule's patience ran out at {seconds(end)}"
         if not times:
             return ended

@@ -42,7 +42,7 @@ MOST = 800  # the maximum number of records in a frame; a longer frame would del
 BACKLOG = 20_000  # the maximum number of past records that a new inspector gets
 
 LAG = 25_000
-"""The maximum number of records that an inspector may lag behind. Beyond it, the server skips to the present."""
+"""The maximum number of records that an inspector may lag behind. If it lags more, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
 """The rate limit for a page's commands: the size of a burst, and the number of commands per second after it."""
@@ -98,7 +98,7 @@ class Inspector:
             title = self._title_of(session)
         try:
             if session is not None:
-                await asyncio.sleep(0)  # so that a new conversation begins
+                await asyncio.sleep(0)  # let a new conversation begin
             seen = max(source.first - 1, source.last - BACKLOG)
             visitor = None if session is None else session.visitor
             whole = source.whole and seen == 0
@@ -189,9 +189,9 @@ class Inspector:
         self._channel.reply(protocol.serialise(frame))
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send the page new records, at most some twenty times a second, and answers."""
+        """Send answers to the page, and new records at most about twenty times a second."""
         idle = IdleShare()
-        sent: bool | None = None  # whether the clock was stopped, as the last frame said
+        sent: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None
         now, looked = asyncio.get_running_loop().time, -LISTED
         while True:

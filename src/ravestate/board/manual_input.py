@@ -17,7 +17,7 @@ SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
     """Refuse a JSON value that a user may not write to a slot. `Slot.check` makes further checks during the write.
 
-    The type of the current value, `holds`, stands in if the slot declares none.
+    If the slot declares no type, the value must have the type of the current value, `holds`.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")
@@ -43,9 +43,7 @@ def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, ho
         kind = signal.payload
         if kind is None or kind is NoneType:
             if command.payload is not None:
-                raise RavestateError(
-                    f"{signal.name} carries no payload: leave it out, or declare its type (payload=...)"
-                )
+                raise RavestateError(f"{signal.name} carries no payload: send none, or declare its type (payload=...)")
             return
     else:
         kind = bool if isinstance(slot, Flag) else slot.declared
@@ -63,7 +61,7 @@ def _check_kind(signal: Signal[Any], kind: Any, command: Emit) -> None:
     if not _is_expressible(takes):
         raise RavestateError(f"{what}, which JSON cannot express: only a rule or a program can raise it")
     if "payload" not in command.model_fields_set:
-        raise RavestateError(f"{what}: give one")
+        raise RavestateError(f"{what}: give a payload")
     if takes is not None and not isinstance(command.payload, takes):
         raise RavestateError(f"{what}, not {type(command.payload).__name__}")
 

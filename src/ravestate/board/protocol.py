@@ -69,7 +69,7 @@ class Hello(_Frame):
 
 
 class Clock(_Frame):
-    """Stop the context's clock, do the next thing that is due on a stopped clock, or start it again."""
+    """Stop the context's clock, perform the next step on a stopped clock, or start the clock again."""
 
     type: Literal["pause", "step", "resume"]
 

@@ -7,7 +7,7 @@ Making records is expensive for a busy agent, so a rate limit applies: a burst, 
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent also share one limit on the records that they keep. Beyond it, the recorders with the most records are cut to the same length.
+All recorders of an agent share one limit on their records. Beyond it, the longest recorders are cut to the same length.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from ravestate.runtime.context import Context
 KEPT = 100_000  # the maximum number of records of one context
 
 IN_ALL = 500_000
-"""The maximum number of records of all contexts together. Each takes about 136 bytes plus its payload."""
+"""The maximum number of records of all contexts together. Each record takes about 136 bytes plus its payload."""
 
 BATCH = 100  # the number of records between two calls of `grown`
 BURST = 20_000  # the maximum number of records in one burst
@@ -55,7 +55,7 @@ class Gap:
 
 
 SCHEDULE = "/proc/thread-self/schedstat"
-"""The file in which Linux counts a thread's nanoseconds on a processor and in the queue for one."""
+"""The file in which Linux counts a thread's nanoseconds on a processor and in a queue for a processor."""
 
 
 class IdleShare:
@@ -89,10 +89,10 @@ def _kept_waiting() -> float:
 
 
 class Recorder:
-    """Keeps the records of a context from now on.
+    """Keeps the records that a context makes after the recorder was made.
 
-    The limits are explained at `KEPT`, `BURST`, `RATE` and `SPARE`. The records are `whole` if the context has not
-    started yet. The callback `grown` runs after every `BATCH` records.
+    For the limits, see `KEPT`, `BURST`, `RATE` and `SPARE`. The records are `whole` if the context has not started yet.
+    The callback `grown` runs after every `BATCH` records.
     """
 
     def __init__(
@@ -112,7 +112,7 @@ class Recorder:
         self._rate = rate
         self._spare = spare
         self._idle_share = IdleShare()
-        self._left = 0  # how many records it may still take: 0 at first; the first record sets it to `burst`
+        self._left = 0  # the records that the recorder may still take; the first record raises this to `burst`
         self._granted: float | None = None
         self._spike = 0  # the number of the newest spike so far
         self._gap: Gap | None = None
@@ -124,7 +124,7 @@ class Recorder:
         self.missed = 0
         """How many spikes the recorder missed."""
         self.whole = whole
-        """Whether it has listened since the context started."""
+        """Whether the recorder has listened since the context started."""
         self._listen()
 
     @property
@@ -156,7 +156,7 @@ class Recorder:
             if type(record.payload) is RuleFailure:
                 record = dataclasses.replace(record, payload=render(record.payload))
         elif type(record) is Settled and isinstance(record.error, BaseException):
-            # The traceback of an exception holds all variables of the rule.
+            # The traceback of an exception would keep all variables of the rule alive.
             record = dataclasses.replace(record, error=traceback_of(record.error))
         self._keep(record)
         self._left -= 1
@@ -170,7 +170,7 @@ class Recorder:
             self._grown()
 
     def _take_after_gap(self, record: Record) -> None:
-        """Take the first spike after a gap, whose number shows how many spikes were missed."""
+        """Take the first spike after a gap; its number shows how many spikes were missed."""
         if isinstance(record, Born) and self._gap is not None:
             self._gap.spikes = record.spike - self._spike - 1
             self.missed += self._gap.spikes
@@ -216,7 +216,7 @@ class Recorders:
         self._of: WeakKeyDictionary[Context, ref[Recorder]] = WeakKeyDictionary()  # the context holds its recorder
 
     def of(self, context: Context, *, whole: bool = False) -> Recorder:
-        """Return the recorder of a context, new at the first call; `whole` is as for `Recorder`."""
+        """Return the recorder of a context; the first call makes it. For `whole`, see `Recorder`."""
         known = self._of.get(context)
         found = None if known is None else known()
         if found is None:

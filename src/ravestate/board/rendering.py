@@ -16,7 +16,7 @@ from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
 DEEPEST = 6  # the maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``
-TRACEBACK = 8000  # the maximum number of characters of a traceback; of a longer one, the end is kept
+TRACEBACK = 8000  # the maximum number of characters of a traceback; a longer traceback keeps only its end
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _parts(value: Any, made_by: Any, around: tuple[int, ...]) -> tuple[str, _Items, str] | None:
-    """Return the parts of a value's ``repr``, which `made_by` determines; None without parts, or if none are known."""
+    """Return the parts of the ``repr`` that the method `made_by` makes; None if it has no parts, or unknown ones."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:
@@ -90,7 +90,7 @@ def _named(items: Iterable[tuple[str, object]]) -> _Items:
 
 
 def _fields(own: type[Any], made_by: Any) -> list[str]:
-    """Return the names of the fields in a dataclass's `__repr__`, which it may have from a base class."""
+    """Return the names of the fields in a dataclass's `__repr__`. That method may come from a base class."""
     maker: Any = next(base for base in own.__mro__ if vars(base).get("__repr__") is made_by)
     return [field.name for field in dataclasses.fields(maker) if field.repr]
 

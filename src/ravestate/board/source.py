@@ -74,7 +74,7 @@ class LiveSource:
         return self._recorder.since(number, most)
 
     def renewed(self) -> bool:
-        """Describe the policy again if a rule was added since the last call; return whether one was."""
+        """If a rule was added since the last call, describe the policy again and return True."""
         if self._context.policy is self._policy:
             return False
         self._describe()
@@ -221,7 +221,7 @@ class RecordedSource:
         return State(slots, [], *self.clock())
 
     def explain(self, rule: str) -> Explained:
-        """Refuse to explain the state of a rule: only a running agent has one."""
+        """Refuse the request: a recording has no live state of a rule."""
         raise RavestateError("this is a recording: there is no agent to ask")
 
     async def act(self, command: ClientFrame) -> None:

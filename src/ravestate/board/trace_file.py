@@ -62,7 +62,7 @@ class Recordings:
         self._uploaded: OrderedDict[str, Recording] = OrderedDict()
 
     def get(self, name: str | None) -> Recording | None:
-        """Return the recording with this name, or the first one if the name is None; None if there is none."""
+        """Return the recording with this name; if the name is None, the first recording. Return None if it is missing."""
         return self._first if name is None else self._uploaded.get(name)
 
     def put(self, recording: Recording) -> str:
@@ -131,7 +131,7 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """As `read_trace`, in a separate process with a time limit: this process's other threads keep running."""
+    """Do as `read_trace`, but in a process with a time limit, so that the other threads of this process keep running."""
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:

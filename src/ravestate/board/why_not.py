@@ -34,7 +34,7 @@ def why_not(
     opens: Opens | None = None,
     whole: bool = True,
 ) -> WhyNot:
-    """Return an explanation of why a rule did not fire for the cause of a spike, or how it did.
+    """Return an explanation of why a rule did not fire for the cause of a spike, or how it fired.
 
     For a live policy, `opens` evaluates its slot predicates. The answer may be incomplete unless the trace is `whole`.
 
@@ -272,7 +272,7 @@ class _Inquiry:
         elsewhere = [born.time for born in self.history.born.values() if born.signal == name]
         if elsewhere:
             near = min(elsewhere, key=lambda time: abs(time - self.history.spike.time))
-            return f"did not occur for this cause (it did for another, at {seconds(near)})"
+            return f"did not occur for this cause (only for another cause, at {seconds(near)})"
         if outside:
             return "did not arrive as an input, and no rule raised it" if raisers else "is an input and did not arrive"
         return "did not occur" if raisers else "did not occur: no rule raises it"
@@ -328,7 +328,7 @@ class _Inquiry:
 
 def _young(clause: ClauseView, ripe: float) -> str:
     slow = max(clause.constraints, key=lambda constraint: constraint.min_age)
-    return f"{slow.signal} must be {slow.min_age:g} s old, so not before {seconds(ripe)}"
+    return f"{slow.signal} must be {slow.min_age:g} s old, so the rule could not run before {seconds(ripe)}"
 
 
 def _gated(clause: ClauseView, waited: str) -> str:

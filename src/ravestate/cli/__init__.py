@@ -28,6 +28,7 @@ COMMANDS = {
     "memory": "list, show, export and forget what an agent knows",
     "model": "list, fetch and remove language models for small talk",
     "genqa": "read documents, and answer questions from them",
+    "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
     "new": "write a small project to start from",
 }
 
@@ -96,13 +97,13 @@ def script() -> int:
 
 
 class CommandParser(argparse.ArgumentParser):
-    """A parser for one command, or for one of a command's actions. Its errors show its own usage."""
+    """A parser for one command, or for one action of a command. Its errors show the usage of this command or action."""
 
     def __init__(self, *, allow_abbrev: bool = False, **options: Any) -> None:
         super().__init__(allow_abbrev=allow_abbrev, **options)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
-        """Parse the arguments. Refuse unknown ones here: the parser of ``ravestate`` would show its own usage."""
+        """Parse the arguments. Refuse unknown arguments here: the main parser would show the usage of ``ravestate``."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
         if many and unknown and all(not word.startswith("-") for word in unknown):  # they continue an argument

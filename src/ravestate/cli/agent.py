@@ -34,13 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MODULE.KEY=VALUE",
         help="a setting, which overrides the file and the environment (may be repeated)",
     )
-    parser.add_argument("--seed", type=int, help="the seed of all random choices: with the same seed, a run repeats")
+    parser.add_argument("--seed", type=int, help="the seed of all random choices; the same seed gives the same choices")
 
 
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
     """Return the agent that parsed arguments name, together with the modules `first`.
 
-    With `announce`, print which Python code the agent files run. Commands that only inspect the agent do so.
+    With `announce`, print which Python code the agent files run; commands that only inspect an agent set it.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.
@@ -56,7 +56,7 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
         names += found
     names += [(name, Path()) for name in options.modules if name not in files]
     if not names and not agent.faults:
-        raise UsageError("name a module, or an agent file that names some")
+        raise UsageError("name a module, or an agent file that names modules")
     agent.load(names)
     for text in options.sets:
         agent.set(text)

@@ -12,8 +12,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     complete.add_arguments(parser)
     complete.explain_memory(parser)
     parser.epilog = (
-        f"{parser.epilog}The terminal keeps the lines that you type in {complete.shown('state', 'history')}\n"
-        "(--set conio.history=false keeps none).\n"
+        f"{parser.epilog}The terminal saves your lines to {complete.shown('state', 'history')}\n"
+        "(to save none: --set conio.history=false).\n"
     )
 
 

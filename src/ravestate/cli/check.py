@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
         for fault in error.exceptions if isinstance(error, DeclarationErrors) else [error]:
             _print(f"fault: {fault}", error=True)
         return 1
-    # A built-in module may offer signals and cooldowns that this agent does not use: that is no mistake.
+    # It is no mistake if a built-in module offers signals and cooldowns that this agent does not use.
     findings = [
         f
         for f in policy.findings(inspect.getsource)
@@ -63,13 +63,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _doubtful_examples(policy: Policy) -> list[Finding]:
-    """Return a finding for each example that two intents of an agent share, or that resembles another intent's."""
+    """Return a finding for each example of an intent that equals, or resembles, an example of another intent."""
     if "nlp" not in (module.name for module in policy.modules):
         return []
     from ravestate.modules.meta.nlp.intent import doubtful_examples, intents_of
     from ravestate.policy.findings import Finding
 
-    mend = "give it to one of them, or write examples that differ more"
+    mend = "give it to only one intent, or write examples that differ more"
     return [
         Finding("example", own, f"the example {text!r} of intent {own} fits intent {other} as well: {mend}")
         for text, own, other in doubtful_examples(intents_of(policy))

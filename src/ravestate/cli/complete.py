@@ -46,7 +46,7 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = (
         "The complete agent keeps its memory of you on this machine:\n"
-        f"  {shown('data', 'default', 'memory.lbug')} (--set ontology.path=FILE names another)\n"
+        f"  {shown('data', 'default', 'memory.lbug')} (for another file: --set ontology.path=FILE)\n"
         "To look at it: ravestate memory list, ravestate memory show NAME. To delete it: ravestate memory forget NAME,\n"
         'say "forget me", or delete the file.\n'
     )
@@ -79,15 +79,15 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
     for name in out:
         agent.settings.pop(name, None)
     left = (
-        f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; for all of it: " if out else ""
+        f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; to add them: " if out else ""
     )
     print(f"ravestate {command}: {left}pip install 'ravestate[chat]'", file=sys.stderr)
 
 
 def choose_small_talk(agent: AgentSpec, command: str) -> str:
-    """Choose the language model of `wildtalk` now, say which in one line, and set it in the agent's settings.
+    """Choose the language model of `wildtalk`, print its name in one line, and set it in the agent's settings.
 
-    If there is none, return how to get one.
+    If there is no language model, return a sentence that says how to get one.
     """
     if all(module.name != "wildtalk" for module in agent.modules):
         return ""

@@ -23,17 +23,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     indexing = actions.add_parser(
         "index",
         help="read files and folders",
-        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Run it again to read "
-        "new and changed files, and to forget deleted ones; it also resumes after an interruption. Exit code 1: a "
-        "file could not be read.",
+        description="Read files and folders: text, Markdown, HTML, PDF, JSON lines, ZIM. Run the command again to read "
+        "new and changed files, to forget deleted files, or to resume after an interruption. Exit code 1: a file could "
+        "not be read.",
     )
-    listing = actions.add_parser("list", help="list what has been read")
+    listing = actions.add_parser("list", help="list the files that have been read")
     forgetting = actions.add_parser("forget", help="forget files and folders")
     for action in (indexing, forgetting):
         action.add_argument(
             "paths", nargs="+", type=Path, metavar="PATH", help="a file, or a folder with all that is in it"
         )
-    asking = actions.add_parser("ask", help="ask a question, and see what is found")
+    asking = actions.add_parser("ask", help="ask a question, and see the passages found")
     asking.add_argument("question", nargs="+", metavar="QUESTION")
     for action in (indexing, listing, forgetting, asking):
         _add_index(action, default=argparse.SUPPRESS)  # an option before the action counts as well
@@ -51,7 +51,7 @@ def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:
 def run(options: argparse.Namespace) -> int:
     try:
         return _run(options)
-    except PlatformError as error:  # the message is for an agent's user; this command names the index by another option
+    except PlatformError as error:  # the message names the option of `ravestate run`; this command has another option
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 
@@ -67,7 +67,7 @@ def _run(options: argparse.Namespace) -> int:
         return _ask(settings, " ".join(options.question))
     path = path_of(settings)
     if options.action != "index" and not path.exists():
-        print(f"nothing has been read yet: ravestate genqa index PATH (into {path})")
+        print(f"nothing has been read yet: to read files into {path}, run ravestate genqa index PATH")
         return 0 if options.action == "list" else 1
     with Index(path) as index:
         if options.action == "index":
@@ -98,7 +98,7 @@ def _index(index: Index, paths: list[Path]) -> int:
                     bar.clear()
                     _warn(f"{outcome.path}: {outcome.why}")
         except KeyboardInterrupt:
-            _warn("interrupted; what was read so far is kept, and the same command continues")
+            _warn("interrupted: to continue, run the same command again")
             return 130
     told = ", ".join(f"{count} {kind}" for kind, count in counts.items()) or "nothing to read"
     print(f"{told}; {passages} new passages in {index.path}")

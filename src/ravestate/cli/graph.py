@@ -13,7 +13,7 @@ SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mer
 """The ending of an output file's name → the format of the diagram."""
 
 LARGE = 40
-"""Above this number of rules, modules fold automatically: otherwise the text is too small to read on a screen."""
+"""Above this number of rules, modules fold automatically, because the text would be too small to read on a screen."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
     if named and options.without:
         raise UsageError("--without works only on the complete agent: name no MODULE or file with it")
     if options.unfold and options.fold is False:
-        raise UsageError("--unfold folds the other modules, --no-fold folds none: use only one")
+        raise UsageError("--unfold folds all other modules, and --no-fold folds no module: use only one of them")
     format = options.format or (SUFFIXES.get(Path(options.output).suffix) if options.output else "svg")
     if format is None:
         raise UsageError(
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
         if not (options.fold or options.unfold):
             print(
                 f"ravestate graph: folded {len(policy.rules)} rules into their modules: --unfold MODULE draws the "
-                "rules of one module, --no-fold draws those of all modules",
+                "rules of one module, and --no-fold draws all rules",
                 file=sys.stderr,
             )
     text = FORMATS[format](diagram)

@@ -66,20 +66,20 @@ def run(options: argparse.Namespace) -> int:
         return _reset(path, options)
     if path is not None and not path.exists() and options.does != "load":
         raise RavestateError(
-            f"there is no memory yet: {path} does not exist; name another with --path FILE, or an agent's settings "
+            f"there is no memory yet: {path} does not exist; name another file with --path FILE, or an agent file "
             f"with -f agent.yaml{_leftover(path)}"
         )
     memory = open_memory(settings)
     try:
         try:
             memory.opened().result()
-        except PlatformError as error:  # its message is for an agent; this command has another option
+        except PlatformError as error:  # the message names the option of `ravestate run`; this command has another
             raise PlatformError(str(error).replace("--set ontology.path=", "--path ")) from error
         unseen = memory.undeclared().result()
         if unseen:
             print(
-                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, which no file of types declares, so it is "
-                "hidden here: name the file with --set ontology.types=[FILE]",
+                f"ravestate memory: {memory.place} also has {', '.join(unseen)}, but no file declares these types, so they "
+                "are hidden here: name the file of types with --set ontology.types=[FILE]",
                 file=sys.stderr,
             )
         does = {"list": _list, "show": _show, "export": _export, "load": _load, "forget": _forget}
@@ -94,8 +94,8 @@ def _leftover(path: Path) -> str:
 
     names = ", ".join(file.name for file in MemoryFiles(path).present())
     return names and (
-        f". An earlier memory has left {names}, which may still have names in them: ravestate memory reset --path {path} "
-        "removes them"
+        f". An earlier memory has left {names}, which may contain personal data: to remove them, run ravestate memory "
+        f"reset --path {path}"
     )
 
 
@@ -123,7 +123,7 @@ def _list(memory: Memory, options: argparse.Namespace) -> int:
     else:
         for node in nodes:
             print(f"{node.type:<16} {_name(node):<24} {node.id}")
-    print(f"{len(nodes)} known in {memory.place}", file=sys.stderr)
+    print(f"{len(nodes)} nodes in {memory.place}", file=sys.stderr)
     return 0
 
 
@@ -157,7 +157,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     except OSError as error:
         new.unlink(missing_ok=True)
         raise UsageError(f"cannot write {target}: {error.strerror}") from None
-    print(f"wrote {target}: {len(document['nodes'])} known")
+    print(f"wrote {target}: {len(document['nodes'])} nodes")
     return 0
 
 
@@ -194,12 +194,12 @@ def _reset(path: Path | None, options: argparse.Namespace) -> int:
     files = MemoryFiles(path)
     present = files.present()
     if not present:
-        raise RavestateError(f"there is no memory at {path}; name another with --path FILE")
+        raise RavestateError(f"there is no memory at {path}; name another file with --path FILE")
     if files.in_use():
         raise RavestateError(f"memory {path} is in use by another process: end that agent first")
     if not options.yes:
         print(*present, sep="\n")
-        if not _confirmed(f"Remove {'this file' if len(present) == 1 else 'these files'}, with all that is known?"):
+        if not _confirmed(f"Remove {'this file' if len(present) == 1 else 'these files'}, with the whole memory?"):
             print("nothing was removed")
             return 1
     try:
@@ -233,10 +233,10 @@ def _chosen(memory: Memory, which: str) -> Node:
     found = [node for node in nodes if str(node.get("name", "")).strip().casefold() == wanted]
     if not found:
         names = [str(node["name"]) for node in nodes if node.get("name")]
-        raise UsageError(f"nobody and nothing is called {which!r}{nearest(which, names)}")
+        raise UsageError(f"no node is called {which!r}{nearest(which, names)}")
     if len(found) > 1:
         ids = "".join(f"\n  {node.id}" for node in found)
-        raise UsageError(f"{len(found)} are called {which!r}: name one by its id{ids}")
+        raise UsageError(f"{len(found)} nodes are called {which!r}: give the id of one{ids}")
     return found[0]
 
 

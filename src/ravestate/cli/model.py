@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "get",
         help="fetch a model, and make it the default",
         description="Fetch a model from the hub of Hugging Face, verify it, and make it the default for small talk. The same "
-        "command continues an interrupted download. HF_ENDPOINT names a mirror, HF_TOKEN a token.",
+        "command continues an interrupted download. HF_ENDPOINT sets a mirror of the hub, and HF_TOKEN sets a token.",
     )
     getting.add_argument(
         "name", nargs="?", metavar="NAME", help="a name from the list; by default the recommended model"
@@ -96,7 +96,7 @@ def _get(model: CatalogueModel) -> int:
             print(f"ravestate model: {interrupted(model)}", file=sys.stderr)
             return 130
     model_store.set_default(model.name)
-    print(f"{model.name} is installed, and the default for small talk: {model.path}")
+    print(f"{model.name} is installed, and is now the default for small talk: {model.path}")
     return 0
 
 

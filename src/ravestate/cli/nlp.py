@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ravestate.modules.meta.nlp.analysis import Analysis
 
 SHOWN = 5
-"""The intents that the table shows."""
+"""The maximum number of intents in the table."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,14 +27,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--pipeline",
         default="",
         metavar="NAME",
-        help="a spaCy pipeline or its folder, as the setting nlp.pipeline",
+        help="a spaCy pipeline or its folder, as in the setting nlp.pipeline",
     )
     parser.add_argument(
         "--agent-name",
         dest="agent_names",
         action="append",
         metavar="NAME",
-        help="a name of the agent (may be repeated), as the setting nlp.agent_names",
+        help="a name of the agent (may be repeated), as in the setting nlp.agent_names",
     )
     parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: show the scores of its intents")
     parser.add_argument(
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             matcher.load()
         except ModelMissing as error:
-            print(f"ravestate nlp: only exact matches: {error}", file=sys.stderr)
+            print(f"ravestate nlp: the analysis has only exact matches: {error}", file=sys.stderr)
             break
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _designed(options: argparse.Namespace) -> Matcher | None:
-    """Return the matcher of the intents of the agent that the arguments name, if any."""
+    """Return the matcher for the agent's intents; None if the arguments name no agent."""
     if not options.file and not options.modules:
         return None
     from ravestate.cli.agent import load_agent

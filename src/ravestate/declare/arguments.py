@@ -63,23 +63,23 @@ def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None
 
 
 def check_function(function: object, title: str, *, named: bool, where: str, decorator: str) -> None:
-    """Refuse a value that cannot be a rule's function. The rule is `named` if the declaration itself gives the `title`.
+    """Refuse a value that cannot be a rule's function. If the declaration has a ``name=``, `named` is true.
 
-    For messages, `where` is the place of the declaration, and `decorator` the decorator as the user types it.
+    The messages use `where`, the place of the declaration, and `decorator`, the decorator as the user types it.
     """
     if isinstance(function, Rule):
         raise DeclarationError(
-            f"{function.name} ({function.origin}) is a rule already: write its second condition behind |, or give "
-            "the second rule a function of its own"
+            f"{function.name} ({function.origin}) is a rule already: combine both conditions with |, or write "
+            "a second function"
         )
     if not callable(function):
-        raise DeclarationError(f"{decorator} stands above a function, not {function!r}")
+        raise DeclarationError(f"{decorator} must decorate a function, not {function!r}")
     if not named and not title.isidentifier():  # a lambda, a partial or a callable object
         raise DeclarationError(f"{where} has no name of its own: write name='...'")
     check_name(title, where)
     if inspect.isgeneratorfunction(function) or inspect.isasyncgenfunction(function):
         raise DeclarationError(
-            f"{where} is a generator: a rule returns once; write with ctx[slot] = value instead of yield"
+            f"{where} is a generator, but a rule returns only once: use ctx[slot] = value instead of yield"
         )
     code = getattr(function, "__code__", None)
     if code is not None and code.co_argcount == 0 and not code.co_flags & inspect.CO_VARARGS:
@@ -89,7 +89,8 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 def condition(value: object, what: str, where: str, home: str) -> Condition:
     """Return `value` if it is a condition; refuse any other value.
 
-    The message names the argument `what` and the place `where`; names of the module `home` appear without it.
+    For the message, `what` is the argument's name, and `where` is the place of the declaration. Names of the module
+    `home` appear there without the module's name.
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)
@@ -100,14 +101,14 @@ def condition(value: object, what: str, where: str, home: str) -> Condition:
 
 
 def number(value: object, what: str, where: str) -> Number:
-    """Return a number as a float, and a setting unchanged; refuse any other value."""
+    """Return a number as a float, or a setting unchanged; refuse any other value."""
     if isinstance(value, bool) or not isinstance(value, type_of_number):
         raise DeclarationError(f"{where}: {what}={value!r} is not a number; write {what}=1.0 or a setting")
     return value if isinstance(value, SettingRef) else float(value)
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Turn one slot or signal, or several, into a tuple without duplicates. Other arguments: see `condition`."""
+    """Return one or several slots, or signals, as a tuple without duplicates. For the other arguments, see `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:
@@ -118,9 +119,9 @@ def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tup
         if not isinstance(value, kind):
             hint = ""
             if isinstance(value, Signal):
-                hint = ": reads and writes name slots, emits names signals"
+                hint = ": `reads` and `writes` take slots, `emits` takes signals"
             elif isinstance(value, Slot):
                 name = cast("Slot[Any]", value).name
-                hint = f": a write raises its signals; write writes={spelt(name, home)}"
+                hint = f": a rule that writes a slot raises its signals; use writes={spelt(name, home)}"
             raise DeclarationError(f"{where}: {what}={value!r} is not a {kind.__name__.lower()}{hint}")
     return tuple(dict.fromkeys(found))

@@ -103,7 +103,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's current value. The rule runs only while it is true; it needs no spike (L4)."""
+    """A predicate on a slot's current value. The rule runs only while the predicate is true (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate
@@ -114,7 +114,7 @@ class Holds(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Compound(Condition):
-    """A conjunction or a disjunction of conditions."""
+    """Several conditions, combined by "and" or by "or"."""
 
     parts: tuple[Condition, ...]
 

@@ -28,7 +28,7 @@ class Module:
     """A named collection of signals, slots and rules.
 
     Args:
-        name: Letters, digits, ``_`` and ``-``; the first part of the names of the module's signals, slots and rules.
+        name: Letters, digits, ``_`` and ``-``. The names of the module's signals, slots and rules begin with it.
         requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain one
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
@@ -158,8 +158,8 @@ class Module:
         background: bool = False,
         name: str | None = None,
     ) -> Callable[[Callable[P, R]], Rule[P, R]]:
-        """Turn a function, which receives the rule context, into a rule. An ``async def`` runs on the event loop, a
-        plain function in a thread.
+        """Turn a function into a rule. The function receives the rule context. An ``async def`` runs on the event
+        loop; a plain function runs in a thread.
 
         Args:
             when: The condition: signals, combined with ``&`` and ``|``.
@@ -167,13 +167,13 @@ class Module:
             writes: The slot or slots that the function may write and read. Rules that write the same slot for the same
                 cause exclude each other (L10).
             emits: The signal or signals that the function may emit.
-            weight: Factor that multiplies the utility (L9), above 0.
+            weight: A factor above 0 that multiplies the utility (L9).
             cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-            patience: Seconds that the rule has to become ready while others wait (L16); the context's by default.
+            patience: Seconds that other rules wait for this rule to become ready (L16); by default, the context's.
             until: A condition that interrupts a run (L21).
             timeout: Seconds that a run may take (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
-            background: Whether the rule never makes ``rs.activity`` true (L22).
+            background: If true, the rule never makes ``rs.activity`` true (L22).
             name: The rule's name within the module; by default the function's name.
 
         Raises:
@@ -216,7 +216,7 @@ def as_module(value: object) -> Module:
     """Return the `Module` that a value denotes: the value itself, or the ``module`` of a Python module.
 
     Raises:
-        DeclarationError: The value is neither, or the Python module contains no `Module` or several.
+        DeclarationError: The value is of another type, or the Python module holds no `Module` or more than one.
     """
     if isinstance(value, Module):
         return value
@@ -229,6 +229,6 @@ def as_module(value: object) -> Module:
             return next(iter(held_all.values()))
         raise DeclarationError(
             f"Python module {value.__name__} holds {len(held_all) or 'no'} rs.Module"
-            + ("s: name the one you mean `module`" if held_all else ": write module = rs.Module('name')")
+            + ("s: call one of them `module`" if held_all else ": write module = rs.Module('name')")
         )
     raise DeclarationError(f"expected an rs.Module (or a Python module that holds one), not {value!r}")

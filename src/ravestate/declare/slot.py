@@ -75,7 +75,7 @@ class Slot(Generic[T]):
             setattr(self, what, signal)
 
     def check(self, value: object, writer: str) -> None:
-        """Refuse a value that is not of the slot's type with a `RuleError` that names the `writer`."""
+        """Raise a `RuleError` that names the `writer` if the value is not of the slot's type."""
         if self.type is None or isinstance(value, self.type) or (value is None and self.default is None):
             return
         takes = getattr(self.type, "__name__", str(self.type))
@@ -84,7 +84,7 @@ class Slot(Generic[T]):
         )
 
     def holds(self, predicate: Predicate) -> Holds:
-        """Return a gate: a rule runs only while ``predicate(value)`` of the slot is true. Adds ln 2 to the utility (L9)."""
+        """Return a gate: a rule runs only while ``predicate(value)`` is true. A gate adds ln 2 to the utility (L9)."""
         return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 
     def __getattr__(self, attribute: str) -> NoReturn:
@@ -108,7 +108,7 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """Return the type that `isinstance` can check in place of `kind`, else None. A float slot also takes integers."""
+    """Return a type that `isinstance` can check in place of `kind`, or None. A float slot also takes integers."""
     if kind is float:
         kind = int | float
     try:

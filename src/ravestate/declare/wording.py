@@ -12,7 +12,7 @@ CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as Python code in the file of the module `home`, whose own names are plain variables."""
+    """Return a qualified name as Python code for the file of the module `home`; its own names are plain variables there."""
     parts = name.split(":")
     if parts[0] == "core":
         parts[0] = "rs"
@@ -59,7 +59,7 @@ SHOWN = 8  # the maximum number of names that a list shows
 
 
 def few(names: Iterable[str]) -> str:
-    """Join names with commas, each name once; after the first eight, add how many more there are."""
+    """Join distinct names with commas; after the first eight, say how many more there are."""
     found = list(dict.fromkeys(names))
     more = len(found) - SHOWN
     if more <= 1:  # one more name is as short as "and 1 more"

@@ -1,8 +1,8 @@
 """Acyclic graphs: a topological order, and a small set of edges whose reversal makes a graph acyclic.
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
-both ends at once; the edges that point backwards in this order are reversed. Two refinements: weak edges are reversed
-before strong ones, and ties are broken by number, so that the result depends on the input alone.
+both ends at once; the edges that point backwards in this order are reversed. There are two refinements: weak edges are
+reversed before strong edges, and the vertex's number breaks ties, so that the result depends on the input alone.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
 
 
 def topological(after: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices in topological order, without those on or behind a cycle, given the successors of each."""
+    """Return the vertices in topological order, except those on or behind a cycle; `after` has each one's successors."""
     waiting = Counter(v for ahead in after for v in ahead)
     order = [v for v in range(len(after)) if not waiting[v]]
     for u in order:
@@ -74,11 +74,11 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     return place
 
 
-_LAST = (0, 2)  # the ranks of `_urgency` whose vertices get the last free number, not the first
+_LAST = (0, 2)  # vertices of these ranks (see `_urgency`) get the last free number, and others the first
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return a vertex's sort key (rank, gain): sinks, sources, sinks and sources among strong edges, the rest."""
+    """Return a vertex's sort key (rank, gain). Ranks: 0 sink, 1 source, 2 and 3 the same among strong edges, 4 other."""
     if out == 0:
         return (0, 0)
     if into == 0:

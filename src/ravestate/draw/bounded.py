@@ -1,8 +1,8 @@
 """Layers of bounded size, for pictures that would be too tall for a screen.
 
-With the shortest edges, layers may be few and crowded: all neighbours of a hub share one layer. If the picture is then
-tall and narrow, the layers get a bound. Vertices beyond the bound move to a later layer, as in the scheduling of
-Coffman and Graham (1972). A vertex goes first if its predecessors were placed just now, so that a chain continues.
+If edges are as short as possible, layers may be few and crowded, e.g. if all neighbours of a hub share one layer. If the
+picture is then tall and narrow, the layers get a bound. Vertices beyond the bound move to a later layer, as in the
+scheduling of Coffman and Graham (1972). Vertices whose predecessors were placed last go first, so that chains continue.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Coordinate assignment: short lines first, then straight ones.
+"""Coordinate assignment, which makes lines short first and then straight.
 
 Each layer in turn moves as near as possible to its neighbours. Within one layer, the best coordinates under minimum
 distances are a weighted isotonic regression, solved by pooling adjacent violators. Forward and backward sweeps repeat this

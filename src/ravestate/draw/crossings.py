@@ -20,8 +20,8 @@ _PATIENCE = 4  # sweeps without improvement before the search ends
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
-    If `centred`, the initial order puts dummies in the middle of a vertex's neighbours, instead of in order of
-    creation. A hyperedge through many layers then runs straight, with branches to both sides.
+    A vertex's neighbours are initially in order of creation. If `centred`, dummies are in the middle of them, so that a
+    hyperedge through many layers runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:
@@ -76,7 +76,7 @@ def _start(
 
 
 def _dummies_centred(graph: LayeredGraph, vertices: Sequence[int]) -> list[int]:
-    """Return `vertices` in another order: the dummies in the middle."""
+    """Return `vertices` with the dummies moved to the middle."""
     others = [v for v in vertices if graph.kind[v] != "dummy"]
     half = len(others) // 2
     return [*others[:half], *(v for v in vertices if graph.kind[v] == "dummy"), *others[half:]]

@@ -25,7 +25,7 @@ _LINES: dict[EdgeKind, str] = {
 
 
 def dot(diagram: Diagram) -> str:
-    """Return a diagram in the DOT language. Names may have any characters."""
+    """Return a diagram in the DOT language. Names may contain any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
     lines = ['digraph "Signal-Rule-Slot diagram" {', *_legend(diagram)]
     lines.append('  graph [rankdir=LR, charset="UTF-8", fontname="Helvetica", nodesep=0.25, ranksep=0.45];')
@@ -67,5 +67,5 @@ def _quoted(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Return the text with quotes and backslashes escaped, and ampersands, which Graphviz would read as entities."""
+    """Escape quotes, backslashes and ampersands; Graphviz would take an ampersand for an HTML entity."""
     return clean(text).replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')

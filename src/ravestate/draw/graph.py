@@ -35,7 +35,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """An arrow from `source` to `target` (both are ids of nodes), with `label` beside it if that is not empty."""
+    """An arrow between two nodes, given by their ids, with a label that may be empty."""
 
     source: str
     target: str

@@ -20,8 +20,8 @@ _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, F
 """(upper, lower neighbour in a layer) → the minimum pixels between them; `False` stands for a dummy vertex."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; overlapping dashes would not match
 _PITCH = 10.0  # pixels between ports of one side, where there is room
-_MARGIN = 10.0  # pixels from the first and last port to the corner, which is sometimes round
-_LEAST = 3.0  # minimum pixels between ports; with less room they coincide, but entering and leaving lines stay apart
+_MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
+_LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, but entering and leaving lines stay apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +99,8 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # A label is near the arrow's head, on a line of its own. Dashed lines that overlap
-            # coincide only if they start at the same point.
+            # A label is near the arrow's head, on its own line. The dashes of two overlapping lines
+            # coincide only if the lines start at the same point.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]

@@ -2,7 +2,7 @@
 
 1. Cycle removal reverses some edges (`acyclic`): preferably detached edges and reads.
 2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
-3. Dummies make the graph proper (`layered`). Crossing minimisation orders the layers (`crossings`).
+3. Dummy vertices split long edges into short segments (`layered`). Crossing minimisation orders the layers (`crossings`).
 4. Coordinate assignment places ports (`layered`) and vertices (`coordinates`).
 5. Edge routing sets the distances of the layers and the turns of the lines (`tracks`, `routing`).
 
@@ -76,7 +76,7 @@ class Layout:
 
 
 def lay_out(diagram: Diagram, nodes: Mapping[str, Size], labels: Sequence[Size | None]) -> Layout:
-    """Return the layout of a diagram, given the sizes of the nodes by their ids, and of each edge's label if any."""
+    """Return the layout of a diagram. `nodes` has each node's size by its id; `labels` has the size of each edge's label."""
     boxes: dict[str, Box] = {}
     lines: list[tuple[Point, ...]] = [()] * len(diagram.edges)
     places: list[Box | None] = [None] * len(diagram.edges)
@@ -173,7 +173,7 @@ def _extent(graph: LayeredGraph) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """Return the cost of an edge per layer of length: it keeps junctions near their rule, signals near their slot."""
+    """Return an edge's cost per layer of its length. High costs keep junctions near rules, and signals near slots."""
     if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":

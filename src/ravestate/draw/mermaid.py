@@ -30,7 +30,7 @@ _PLAIN = " _:,×≥≤–…"  # characters that need no escape, besides letters
 
 
 def mermaid(diagram: Diagram) -> str:
-    """Return a diagram as a Mermaid flowchart. Names may have any characters."""
+    """Return a diagram as a Mermaid flowchart. Names may contain any characters."""
     ids = {node.id: f"n{i}" for i, node in enumerate(diagram.nodes)}
     lines = ["flowchart LR", *_legend(diagram)]
     if len(diagram.edges) > _MOST_EDGES:

@@ -1,4 +1,4 @@
-"""Edge routing: from vertices with coordinates to lines of points."""
+"""Edge routing, which turns vertices with coordinates into lines of points."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    turns = [(0.0, 0.0)] * len(graph.segments)  # segment → x where it leaves its first y, x where it reaches its second
+    turns = [(0.0, 0.0)] * len(
+        graph.segments
+    )  # segment → the x at which it leaves its first y, and reaches its second y
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
         column = max(graph.width[v] for v in layer)

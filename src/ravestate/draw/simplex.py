@@ -20,8 +20,8 @@ _WORK = 2_000_000  # the maximum of exchanges x vertices
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
     """Return the layer, from 0, of each vertex of an acyclic, connected graph with `count` vertices.
 
-    Each arc spans at least its length, and the sum of weight x span is minimal. The number of exchanges is bounded: in
-    large graphs the sum may be slightly above the minimum.
+    Each arc spans at least its length, and the sum of weight x span is minimal. The number of exchanges is bounded, so
+    in large graphs the sum may be slightly above the minimum.
 
     Raises:
         ValueError: The graph has a cycle, or is not connected.
@@ -84,7 +84,7 @@ def _tight_tree(rank: list[int], arcs: Sequence[Arc]) -> list[int]:
 
 
 def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int]) -> tuple[int, set[int]]:
-    """Return the tree arc with the least cut value, and one of its sides, which is empty if no value is negative."""
+    """Return the tree arc with the least cut value, and one of its sides. If no value is negative, the side is empty."""
     near: list[list[int]] = [[] for _ in surplus]
     for arc in tree:
         for end in arcs[arc][:2]:
@@ -95,7 +95,7 @@ def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int])
         v, above = ahead.pop()
         order.append((v, above))
         ahead += [(sum(arcs[arc][:2]) - v, arc) for arc in near[v] if arc != above]
-    total, size = list(surplus), [1] * len(surplus)  # of each vertex's subtree
+    total, size = list(surplus), [1] * len(surplus)  # the sums over each vertex's subtree
     worst = (0, 0)
     for place in range(len(order) - 1, 0, -1):
         v, above = order[place]
@@ -110,7 +110,7 @@ def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int])
 
 
 def _balanced(rank: list[int], arcs: Sequence[Arc], surplus: Sequence[int]) -> list[int]:
-    """Return the ranks from 0 on. Given several equally good ranks, a vertex takes the one with the fewest vertices."""
+    """Return the ranks from 0 on. If several ranks cost the same, a vertex takes the rank with the fewest vertices."""
     least = min(rank)
     rank = [r - least for r in rank]
     size = [rank.count(r) for r in range(max(rank) + 1)]

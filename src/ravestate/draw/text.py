@@ -22,8 +22,8 @@ _CLASSES: tuple[tuple[float, str], ...] = (
     (1.10, "@"),
 )
 _EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
-_OTHER = 0.85  # of any other character
-_WIDE = 1.05  # of an East Asian wide character
+_OTHER = 0.85  # the width of any other character
+_WIDE = 1.05  # the width of an East Asian wide character
 
 
 def width(text: str, size: float) -> float:
@@ -32,7 +32,7 @@ def width(text: str, size: float) -> float:
 
 
 def shorten(text: str, size: float, limit: float) -> str:
-    """Return the text, without its middle if it is wider than `limit` pixels. Names often differ at one end."""
+    """Cut the middle out of a text wider than `limit` pixels; both ends stay, since names often differ there."""
     if width(text, size) <= limit:
         return text
     room = limit - width("…", size)
@@ -49,7 +49,7 @@ def shorten(text: str, size: float, limit: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Return the text with U+FFFD for each control character, line break, noncharacter and direction mark."""
+    """Replace each control character, line break, noncharacter and direction mark by U+FFFD."""
     return "".join("\ufffd" if _unprintable(character) else character for character in text)
 
 

@@ -1,8 +1,8 @@
 """Orthogonal routing between two layers: the track on which each line turns.
 
-Segments that leave or enter one port form a net: one vertical line with stubs to both sides. Nets get tracks from left to
-right. Two constraints order them: the stubs of different nets must not overlap (strong), and few stubs should cross the
-verticals of other nets (weak).
+Segments that leave or enter one port form a net: one vertical line with horizontal stubs to both sides. Nets get tracks
+from left to right. Two constraints order the nets: stubs of different nets must not overlap (strong), and few stubs should
+cross the vertical lines of other nets (weak).
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ Segment = tuple[int, int, float, float]
 _NEAR = 5.0  # pixels: closer stubs look like one line
 _APART = 7.0  # pixels: minimum distance of two verticals on one track
 _LEVEL = 0.01  # pixels: a net whose ends differ by less needs no track
-_TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above that of all crossings together
+_TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of all crossings together
 
 
 @dataclass(slots=True)
 class Tracks:
-    """How many tracks there are, and the track of each segment: None for a straight (rarely, a slanted) line."""
+    """The number of tracks, and the track of each segment; None for a straight (rarely, a slanted) line."""
 
     count: int
     of: list[int | None]
@@ -108,7 +108,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 
 
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
-    """Return the segments whose stubs overlap unless `a` is to the left of `b`; of each overlap, the smaller side."""
+    """Return the segments to slant if `a` cannot be left of `b`: for each overlap of stubs, those of the smaller side."""
     found: set[int] = set()
     for p, y in a.left.items():
         for q, z in b.right.items():

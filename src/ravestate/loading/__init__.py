@@ -1,1 +1,1 @@
-"""Agents by name: modules by name, path or file, and the agent files that list them with their settings."""
+"""Load modules by name, path or file, and agent files. An agent file lists modules with their settings."""

@@ -32,7 +32,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             return _as_module(name, installed[name].load())
     if "/" in name or name.startswith(".") or not name:
         raise UsageError(f"{name!r} is not a module: name a file (./hello.py), or a dotted path (pkg.mod)")
-    if str(Path.cwd()) not in sys.path:  # Python does not search there by default when a command runs
+    if str(Path.cwd()) not in sys.path:  # a command does not search the working folder by default
         sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         return _from_path(name, [*BUILT_IN, *installed])
@@ -80,7 +80,7 @@ def _from_file(name: str, path: Path) -> Module:
 
 @contextlib.contextmanager
 def _loading(failure: str) -> Generator[None]:
-    """Turn an exception in the body, which loads a user's module, into an error whose message begins with `failure`.
+    """Turn an exception while a user's module loads into an error whose message begins with `failure`.
 
     ``sys.exit`` counts as such an exception, because it would end the command without a message.
     """

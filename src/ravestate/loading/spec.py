@@ -33,9 +33,9 @@ class AgentSpec:
 
     Attributes:
         modules: The modules, in order.
-        settings: Module's name → key → value, as far as files and options set them.
+        settings: Module's name → key → value, for the settings that files and options set.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: The seconds that a rival under pressure has (L16).
+        patience: The seconds that a rival under pressure has to become ready (L16).
         faults: A message for each mistake so far.
     """
 
@@ -54,7 +54,7 @@ class AgentSpec:
         return spec
 
     def options(self) -> dict[str, Any]:
-        """Return the arguments for `ravestate.Context` besides the modules."""
+        """Return the arguments for `ravestate.Context`, without the modules."""
         return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
 
     def read(self, path: Path) -> list[tuple[str, Path]]:
@@ -111,7 +111,7 @@ class AgentSpec:
             return
         known = {found.name: found for found in with_required(self.modules)}
         if module not in known:
-            hint = ": name it too" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
+            hint = ": add the module" if module in BUILT_IN else nearest(module, known) or nearest(module, BUILT_IN)
             self.faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
         elif (settings := known[module].settings) is None:
             self.faults.append(f"--set {text}: module {module!r} has no settings")
@@ -125,9 +125,9 @@ class AgentSpec:
             self.settings.setdefault(module, {})[key] = value
 
     def check(self) -> None:
-        """Raise a `UsageError` with all `faults`, and with those of the settings.
+        """If there are `faults`, raise a `UsageError` with all of them, and with the faults of the settings.
 
-        If `faults` is empty, this does not check the settings either: compiling the modules finds their faults.
+        If there are none, the settings are not checked here: compiling the modules finds their faults.
         """
         if not self.faults:
             return

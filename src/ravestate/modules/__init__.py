@@ -15,7 +15,7 @@ from ravestate.errors import nearest
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
-    from ravestate.modules.platform import conio, webio
+    from ravestate.modules.platform import conio, telegramio, voiceio, webio
     from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
 
 __all__ = [
@@ -33,14 +33,18 @@ __all__ = [
     "ontology",
     "persqa",
     "rawio",
+    "telegramio",
     "verbaliser",
+    "voiceio",
     "webio",
     "wildtalk",
 ]
 
 BUILT_IN = {
     "conio": "platform",
+    "voiceio": "platform",
     "webio": "platform",
+    "telegramio": "platform",
     "rawio": "modality",
     "interloc": "modality",
     "emotion": "modality",

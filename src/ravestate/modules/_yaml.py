@@ -1,4 +1,4 @@
-"""YAML read as nodes, which know their lines: errors name file and line. No values are built, so no code can run."""
+"""Functions that read YAML as nodes with line numbers, for messages. They build no values, so no code can run."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The static graph of causes between signals (L7), and its closures.
 
-An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. Effects of a detached rule
-have no causes, so only the wide closures contain them.
+An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. The closure of a signal
+holds the signal itself and all signals that lead to it. Effects of a detached rule have no causes.
 
 A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
 intersections are fast.
@@ -22,7 +22,7 @@ class Causes:
     Attributes:
         causes: Signal → the non-detached rules that may raise it.
         all_causes: Signal → all rules that may raise it.
-        direct: Signal → the signals of the non-detached constraints of its rules in `causes`.
+        direct: Signal → the signals that may directly cause it, without detachment.
         components: The cycles of `direct`; signals of one component lead to each other.
     """
 
@@ -78,7 +78,7 @@ class Causes:
 
     @cached_property
     def _closures(self) -> list[int]:
-        """Component → the closure that all its signals have."""
+        """Return component → the closure that the component's signals share."""
         of = self.components.of
         found: list[int] = []
         for number, members in enumerate(self.components.members):  # causes before their effects
@@ -99,8 +99,8 @@ class Causes:
         return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which any chain of effects leads to the signal. A chain does not pass
-        through an input, because an input may occur at any time anyway."""
+        """Return the numbers of the rules from which a chain of effects, detached or not, leads to the signal. A chain
+        does not pass through an input, because an input may occur at any time anyway."""
         if signal not in self._wide:
             self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
         return self._wide[signal]

@@ -18,7 +18,7 @@ Atoms = tuple[Constraint | Holds, ...]
 
 @dataclass(frozen=True, slots=True)
 class Conjunction:
-    """A conjunction: constraints on signals, and the predicates on slots that must hold besides (guards)."""
+    """A conjunction of constraints on signals and predicates on slots; the predicates are its guards."""
 
     constraints: tuple[Constraint, ...]
     guards: tuple[Holds, ...]
@@ -46,7 +46,7 @@ def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
 
 
 def _inner_first(condition: Condition) -> Iterator[Condition]:
-    """Yield the condition and each of its parts once, each after its own parts."""
+    """Yield the condition and each of its parts once; a part follows the parts that it contains."""
     seen: set[int] = set()
     stack = [(condition, False)]
     while stack:
@@ -86,7 +86,7 @@ def _shown(count: int) -> str:
 
 
 def _expanded(part: Condition, forms: dict[int, list[Atoms]]) -> list[Atoms]:
-    """Return the conjunctions of a part; `forms` has those of the part's own parts."""
+    """Return the conjunctions of a part; `forms` has those of the parts that it contains."""
     if isinstance(part, AnyOf):
         return [atoms for inner in part.parts for atoms in forms[id(inner)]]
     if isinstance(part, Signal):

@@ -56,10 +56,10 @@ def compile_policy(*modules: Module | ModuleType) -> Policy:
 def build(
     modules: Sequence[Module], rules: Sequence[Rule[Any, Any]], settings: Mapping[str, Any], faults: Sequence[str] = ()
 ) -> Policy:
-    """Number all signals, slots and rules, and make the policy.
+    """Give numbers to all signals, slots and rules, and make the policy.
 
     A rule that a context added is in none of the modules. Without an entry in `settings`, a module has its default
-    settings. If there are `faults`, found here or by the caller, they are raised together.
+    settings. Faults found here, and the caller's `faults`, are raised together.
     """
     found = list(faults)
     names = Names(modules, found)
@@ -106,8 +106,8 @@ def _check_reachable(causes: Causes, faults: list[str]) -> None:
         raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
         faults.append(
             f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
-            f"only {raisers} may raise it, and they wait for each other; if it comes from outside, declare it "
-            "with input=True"
+            f"only {raisers} may raise that, and only after an effect of their own; if code outside the rules raises "
+            "the signal, declare it with input=True"
         )
 
 
@@ -146,8 +146,8 @@ def _in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     return list(ordered)
 
 
-PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the prior (L9)
-NO_INFORMATION = 1e-9  # the nats with which a clause without information competes: its weight and cooldown count
+PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds, because it halves the prior (L9)
+NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: above 0, so that its weight counts
 
 
 def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:

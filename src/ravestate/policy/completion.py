@@ -1,11 +1,11 @@
 """The graph in which clauses are completed to pathways (L8).
 
-Each signal is completed by one of its *alternatives*: a conjunction of signals that may cause it, or nothing, if it is
-an input or has no causes. A pathway of a clause is a set of signals. It holds the clause's own signals, and with each
-signal one of its alternatives. In a cycle, the alternative's signals may already be in the set.
+An *alternative* of a signal is a conjunction of signals that may cause it. An input, or a signal without causes, also
+has the empty alternative. A pathway of a clause is a set of signals: the clause's own signals, and for each signal of
+the set, the signals of one of its alternatives.
 
 Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order with causes before their effects.
-Except in cycles, nothing else in a set causes the signal of its highest bit.
+Except in cycles, the signal of a set's highest bit causes no other signal of the set.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
     """Return signal → the number of rules with the signal on one of their pathways."""
     of, members = causes.components.of, causes.components.members
-    completed = [0] * len(members)  # component → the set of rules with a non-detached need that it leads to
+    completed = [0] * len(members)  # component → the rules that it leads to without detachment, as a set
     looked_at = [0] * len(signals)
     for rule in rules:
         bit = 1 << rule.index

@@ -31,7 +31,7 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 
 
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
-    """In each clause, mark as kin the needs whose pathways have a signal in common (coherence, L12)."""
+    """Set the kin of each need: the needs of its clause whose pathways share a signal with its own (coherence, L12)."""
     for rule in rules:
         for clause in rule.clauses:
             families: list[tuple[int, int]] = []  # the roots and the needs of each group of kin, as bits
@@ -51,11 +51,11 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_contests(signals: Iterable[SignalPlan]) -> None:
-    """Set the contests of each signal: the clauses that compete for each of its spikes, in a fixed order.
+    """Set the contests of each signal. A contest is a group of clauses that compete for each spike of the signal.
 
-    One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
-    Only the first clause can get consent, unless it resigns or fails. Until then the engine makes no activation of
-    the others (``engine/conflict_sets.py``).
+    One such spike makes every clause of the contest ready. The clauses write the same slots, and their order never
+    changes. Only the first clause gets consent, unless it resigns or fails. The engine makes no activation of the
+    other clauses before that (``engine/conflict_sets.py``).
     """
     for signal in signals:
         contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}

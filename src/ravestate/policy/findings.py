@@ -46,9 +46,9 @@ class Finding:
 
 
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
-    """Return all findings, those that make a rule fail at run time first. A rule has at most one finding of each kind.
+    """Return all findings, at most one of each kind for a rule. Those that make a rule fail at run time come first.
 
-    Without `source`, which returns the source of a function, the findings that need source code are left out.
+    `source` returns the source of a function. Without it, the findings that need source code are left out.
     """
     return (
         *(_in_source(policy, source) if source else ()),
@@ -92,11 +92,11 @@ def _unraised(policy: Policy) -> Iterator[Finding]:
 def _loops(policy: Policy) -> Iterator[Finding]:
     for rules, signals in endless_loops(policy):
         names = few(rule.name for rule in rules)
-        subject = f"rule {names} sets itself" if len(rules) == 1 else f"rules {names} set each other"
+        subject = f"rule {names} triggers itself" if len(rules) == 1 else f"rules {names} trigger each other"
         yield Finding(
             "loop",
             rules[0].name,
-            f"{subject} off by {few(signals)} without time passing, and may never end (L23): write .min_age(seconds) behind "
+            f"{subject} through {few(signals)} without time passing, and may never end (L23): add .min_age(seconds) to "
             "one of these signals",
         )
 
@@ -111,8 +111,8 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
             yield Finding(
                 "unreachable",
                 rule.name,
-                f"rule {rule.name} runs only if {names} comes from outside: no input leads there; if it does come from "
-                "outside, declare it with input=True",
+                f"rule {rule.name} runs only if code outside the rules raises {names}, because no input leads to it; "
+                "if such code exists, declare the signal or its slot with input=True",
             )
         elif rule.slots and all(_starves(policy, clause, known) for clause in rule.clauses):
             slots = ", ".join(policy.slot_plans[s].name for s in rule.slots)
@@ -120,13 +120,13 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
                 "unreachable",
                 rule.name,
                 f"rule {rule.name} waits for an effect of rules that write {slots} before it, and a causal group allows "
-                "one write of a slot (L19): write .detached() behind that signal, or detached=True at the rule that "
+                "one write of a slot (L19): add .detached() to that signal, or detached=True to the rule that "
                 "causes it",
             )
 
 
 def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
-    """Return whether one of the clause's signals comes only from rules that write one of its slots before it."""
+    """Return whether a signal of the clause comes only from rules that have already written a slot of the clause."""
     slots = clause.rule.slotset
     for need in clause.needs:
         if need.detached or need.signal.input:
@@ -157,7 +157,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
                 "never-wins",
                 rule.name,
                 f"rule {rule.name} runs only when {few(w.rule.name for w in losers if w is not None)} resigns: the same "
-                f"signals trigger both, and its utility is not greater; {advice}",
+                f"signals trigger both, and {rule.name} has no greater utility; {advice}",
             )
 
 
@@ -254,9 +254,9 @@ def _cooldowns(policy: Policy) -> Iterator[Finding]:
             yield Finding(
                 "cooldown",
                 rule.name,
-                f"rule {rule.name} has a cooldown of {rule.cooldown:g} s, but no rival: a cooldown lets other rules go "
-                "first, and holds no rule back; to let the rule rest, write the time of each run to a slot, and resign "
-                "while that time is recent",
+                f"rule {rule.name} has a cooldown of {rule.cooldown:g} s, but no rival: a cooldown only lets other rules "
+                "go first; to let the rule rest, write the time of each run to a slot, and resign while that time is "
+                "recent",
             )
 
 

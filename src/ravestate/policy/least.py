@@ -1,14 +1,14 @@
 """The least pathway of a clause (L9): the choice of alternatives with the least information in their union.
 
 A pathway is a set that holds an alternative of each of its signals (`Completion`). The search begins with the
-clause's own signals. Each step completes the highest signal that lacks an alternative, in every way. Two sets have
-the same future if they agree in all signals that may still matter; the search follows only the cheaper one. So
-independent choices do not multiply. In a chain, a ring or a tree, a step or two lead from the least pathway of the
-causes to that of the effect.
+clause's own signals. Each step takes the highest signal that lacks an alternative, and tries each of its alternatives.
+Two sets have the same future if they agree in all signals that may still matter; the search follows only the cheaper
+one. So independent choices do not multiply. In a chain, a ring or a tree, one or two steps lead from the least pathway
+of the causes to that of the effect.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
-step leaves more sets than there is room for, the search follows only the cheapest ones. Otherwise the result is exact:
-for policies of any size, unless dozens of their choices depend on each other.
+step leaves more sets than there is room for, the search follows only the cheapest ones, and the result may be too
+high. That happens only if dozens of a policy's choices depend on each other; its size does not matter.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Least:
         self.completion = completion
         self._effort = EFFORT
         self._open = 0
-        """The open signals, as a set: those with several alternatives."""
+        """The set of open signals. A signal is open if it has several alternatives."""
         self._whole = [1 << place for place in range(len(completion.bare))]
         """Signal → the set of the signal and the causes that it must have, up to the next choice."""
         self._price = completion.information[:]
@@ -52,7 +52,8 @@ class Least:
     def pathway(self, firm: Iterable[int], looked_at: Iterable[int]) -> tuple[int, int]:
         """Return the information of a clause's least pathway, and the pathway as a set.
 
-        The places `firm` are those of its non-detached signals; those `looked_at`, detached, need no completion.
+        `firm` has the places of its non-detached signals. `looked_at` has those of its detached signals; they need no
+        completion.
         """
         free = _set(looked_at)
         cost, found = self._search(firm, free)
@@ -74,7 +75,7 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other. Those of their other causes must be known."""
+        """Find the least pathways of signals that lead to each other; the pathways of their other causes must be known."""
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}
@@ -148,7 +149,7 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """Return the signals of `found` without an alternative: of `lacking`, and of those new since `before`."""
+        """Return the signals that lack an alternative in `found`, out of `lacking` and those that `before` does not have."""
         new = found & ~before
         left = lacking | new & self._open
         for place in each(left):

@@ -2,8 +2,8 @@
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is not part of a loop here, because it may end one. A rule that takes time is not part of one either: a rule that
-awaits something, or a plain function that calls code outside its context.
+is not part of a loop here, because it may end the loop. Nor is a rule part of a loop if it takes time: if it awaits
+something, or is a plain function that calls code outside its context.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
 
 
 def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
-    """Return the clauses of `clauses` whose signals all come from rules of such clauses."""
+    """Remove each clause that waits for a signal which no rule of the remaining clauses raises; return the rest."""
     hearers: dict[int, list[Clause]] = {}
     raisers = Counter[int]()
     for clause in clauses:
@@ -80,7 +80,7 @@ def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
 
 
 def _wanted(clause: Clause) -> list[Need]:
-    """Return the clause's needs that take a new spike for each run; a detached need beside them may see an old one."""
+    """Return the clause's needs that take a new spike for each run. A detached need beside them may reuse a spike."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 

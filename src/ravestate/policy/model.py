@@ -1,7 +1,7 @@
 """The records of a policy: the numbered form of what a designer declares.
 
-Compiling numbers signals, slots, rules and clauses once, in declaration order, and fills the records in.
-Nothing changes them afterwards, so any number of engines share them. A signal's record lists the needs that hear it. So
+The compiler gives each signal, slot, rule and clause a number, in declaration order, and fills in the records. Nothing
+changes the records afterwards, so any number of engines share them. A signal's record lists the needs that hear it. So
 the cost of a spike depends on the rules that hear its signal, never on the number of all rules.
 """
 
@@ -22,8 +22,8 @@ class ClauseView:
 
     Attributes:
         signals: The signals of the clause's constraints, as declared.
-        pathways: The clause's completed pathways (L8), by their information, the least first. There may be
-            exponentially many; at most 256 are listed.
+        pathways: The clause's completed pathways (L8); those with the least information come first. At most 256 are
+            listed, because there may be exponentially many.
         utility: The least self-information among the clause's pathways, in nats (L9).
     """
 
@@ -50,7 +50,7 @@ class SignalPlan:
     uncontested: tuple[Need, ...] = ()
     """The listeners that take part in no contest."""
     contests: tuple[tuple[Clause, ...], ...] = ()
-    """Groups of clauses in which only one can have a given spike, the best clause first."""
+    """Groups of clauses that compete for each spike of the signal; the best clause of a group comes first."""
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
@@ -94,7 +94,7 @@ class SlotPlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Need:
-    """One constraint of a clause, as its need for a spike. Ages are in seconds."""
+    """A constraint of a clause: the clause needs a spike that meets it. Ages are in seconds."""
 
     clause: Clause
     index: int
@@ -105,7 +105,7 @@ class Need:
     predicates: tuple[Predicate, ...]
     bit: int = field(init=False)
     kin: int = field(init=False)
-    """The bits of this need and of those that must hold spikes of the same causal group (L12)."""
+    """The bits of this need and of the needs that must hold spikes of the same causal group (L12)."""
 
     def __post_init__(self) -> None:
         self.bit = self.kin = 1 << self.index
@@ -133,16 +133,16 @@ class Clause:
     utility: float = 0.0
     """The information of that pathway, plus that of the clause's predicates, in nats (L9)."""
     base: float = 0.0
-    """The utility, or `NO_INFORMATION` if that is 0, times the rule's weight."""
+    """The utility times the rule's weight; a utility of 0 counts as `NO_INFORMATION`."""
     all_bits: int = 0
     firm_bits: int = 0
     """The bits of the clause's non-detached needs."""
     asks_detached: bool = False
     """Whether some, but not all, of the clause's needs are detached."""
     simple: bool = False
-    """Whether the clause has one need without `min_age` and no guard: an activation with a spike is ready at once."""
+    """Whether a spike makes the clause ready at once: it has a single need, without `min_age`, and no guard."""
     reflexive: bool = False
-    """Whether the clause hears a built-in flag; its activations then change neither flag (L22)."""
+    """Whether the clause hears a built-in flag. If so, its activations change no built-in flag (L22)."""
     cyclic: bool = False
     """Whether the clause's rule may raise, without detachment, a signal that leads to one of the clause's needs."""
 

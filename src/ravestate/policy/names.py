@@ -59,11 +59,11 @@ class Names:
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, have one name."""
-        if self._modules[name.split(":")[0]] < 2:  # otherwise the fault is that two modules have one name
+        if self._modules[name.split(":")[0]] < 2:  # two modules with one name are a fault reported elsewhere
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """Return the record of a signal that a declaration (`where`) names. If unknown, add a fault; return None."""
+        """Return the record of a signal that a declaration (`where`) names. If there is none, add a fault; return None."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan

@@ -45,7 +45,7 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting; after a fault, None. By default, the rule's own module has the setting."""
+        """Return the value of a setting, or None after a fault. A setting without an owner is of the rule's module."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

@@ -1,9 +1,9 @@
 """All pathways of a clause (L8), for explanations.
 
-The pathways of a signal are, for each of its alternatives, the signal and every union of pathways of the
-alternative's signals. A cycle ends at a signal that is already on the path, so its signals have different pathways for
-each path. Nothing but an explanation needs the pathways one by one: `Completion` counts rules by reachability, and
-`Least` searches for the least pathway.
+To make a pathway of a signal, choose one of its alternatives, and one pathway of each signal in the alternative. Their
+union, with the signal itself, is the pathway. A cycle ends at a signal that is already on the path, so a signal's
+pathways depend on the path. Only explanations need the pathways one by one: `Completion` counts rules by reachability,
+and `Least` searches for the least pathway.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Pathways:
         return found
 
     def _of_signal(self, place: int, way: int) -> Search:
-        """Find the pathways of the signal at `place`; a cycle ends at a signal of the path, the set `way`."""
+        """Find the pathways of the signal at `place`. A cycle ends at a signal in `way`, the set of the path's signals."""
         graph = self.completion
         alone = 1 << place
         if way & alone:

@@ -69,10 +69,10 @@ class Policy:
         return found
 
     def utility(self, rule: str | Rule[Any, Any]) -> float:
-        """Return the utility of a rule in nats, without weight and cooldown: the greatest among its clauses' (L9).
+        """Return the utility of a rule in nats: the greatest utility of its clauses, without weight and cooldown (L9).
 
-        The result is exact, unless dozens of signals on a pathway each have several causes with common causes; then it
-        may be slightly too high (``policy/least.py``). If the policy has no such rule, raise a `DeclarationError`.
+        The result may be slightly too high if dozens of signals on a pathway each have several causes, and these share
+        causes (``policy/least.py``). In all other cases, it is exact. Raise a `DeclarationError` for an unknown rule.
 
         Example:
             >>> import ravestate as rs
@@ -89,7 +89,7 @@ class Policy:
         return max((clause.utility for clause in self.rule_plan(rule).clauses), default=0.0)
 
     def clauses(self, rule: str | Rule[Any, Any]) -> tuple[ClauseView, ...]:
-        """Return the clauses of a rule: for each its signals, its pathways and its utility.
+        """Return the clauses of a rule, each with its signals, pathways and utility.
 
         Args:
             rule: The rule, or its qualified name.
@@ -126,7 +126,7 @@ class Policy:
     def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
         """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
 
-        A rule has at most one finding of each kind; among several ties, the finding names the first declared rule.
+        A rule has at most one finding of each kind. If several rules tie with it, the finding names the first declared.
 
         Args:
             source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the
@@ -147,7 +147,7 @@ class Policy:
         return draw(self, format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """Return a policy with these modules and the given settings; if no rule names a setting, return this one.
+        """Return a policy with these modules and the given settings. If no rule names a setting, return this policy.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible, e.g. a number is out of range.
@@ -159,7 +159,7 @@ class Policy:
         return build(self.modules, self.declared, settings)
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
-        """Return a policy with these rules and one more, which uses this policy's signals and slots.
+        """Return this policy with one more rule; the rule must use this policy's signals and slots.
 
         Raises:
             DeclarationErrors: The rule does not fit this policy.
@@ -170,7 +170,7 @@ class Policy:
             fault = f"{rule!r} is not a rule: write @module.rule(when=...) above the function"
             raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:
-            fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new one another name=..."
+            fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new rule another name=..."
             raise DeclarationErrors([DeclarationError(fault)])
         return build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
 

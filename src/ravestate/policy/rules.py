@@ -18,8 +18,8 @@ from ravestate.policy.numbers import Numbers
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
 """The prefixes of the names of the built-in flags' signals (`core:activity` and `core:pressure`).
 
-An activation that waits for such a signal changes neither flag. Otherwise an activation on `activity.false` would set
-the flag, thereby lose its spike, clear the flag again, and so on, all in one instant.
+An activation that waits for such a signal changes neither flag. If it did, an activation on `activity.false` would set
+the flag, and so lose its spike. The flag would then be false again, and so on, all in one instant.
 """
 
 
@@ -89,7 +89,7 @@ class Rules:
                 needs.append(self._need(clause, len(needs), constraint, signal, plan.rule, where))
         if not conjunction.constraints:
             self.faults.append(
-                f"{where}: {source!r} waits for no signal, and a predicate on a slot only gates: write "
+                f"{where}: {source!r} has no signal, and a predicate on a slot triggers no rule: write "
                 f"{conjunction.guards[0].slot.name.split(':')[-1]}.changed & ..."
             )
         guards = [(self.names.slot(guard.slot, where), guard) for guard in conjunction.guards]

@@ -1,11 +1,11 @@
 """Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``.
 
-An act is a read, a write, an emit or the use of a payload. It counts only if the function's globals or closure hold its slot
-or signal under that name. Everything else is checked when the rule runs (L3), such as names that the function binds itself.
+An act is a read, a write, an emit or the use of a payload. It is checked here only if the function's globals or closure
+hold its slot or signal. All other acts are checked when the rule runs (L3), e.g. if the function binds the name itself.
 
-Guarded code, too, is checked only then. Code is guarded in a branch on a constant, on ``hasattr``, or on a variable of an
-enclosing function: such a function may make several rules with different declarations. The body of a ``try`` that expects a
-missing name is guarded as well.
+Guarded code is also checked only when the rule runs. Code is guarded in a branch on a constant, on ``hasattr``, or on a
+variable of an enclosing function: such a function may make several rules with different declarations. The body of a
+``try`` that expects a missing name is guarded as well.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
     heard = {need.signal.signal for clause in rule.clauses for need in clause.needs}
     for signal, line in acts.payloads.items():
         if signal not in heard:
-            yield f"asks for the payload of {signal} (line {line}), which its condition lacks: write when=... | {spelt(signal.name, home)}"
+            yield f"asks for the payload of {signal} (line {line}), which is not in its condition: write when=... | {spelt(signal.name, home)}"
 
 
 class _Reader:

@@ -1,4 +1,4 @@
-"""An agent without a conversation: each conversation gets a context of its own."""
+"""An agent apart from its conversations. Each conversation gets its own context."""
 
 from __future__ import annotations
 
@@ -25,6 +25,6 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context of this agent, which can be started once; `options` override those of the agent."""
+        """Return a new context of this agent. It can be started once. `options` override those of the agent."""
         merged: Any = self._options | options
         return Context(self.policy, **merged)

@@ -61,7 +61,7 @@ class StepTimer:
             if seconds > BLOCKING:
                 log.warning(
                     "rule %s (%s) blocked the loop for %.0f ms by %s: make it a plain function (it then runs in a "
-                    "thread), or await what takes so long",
+                    "thread), or await the slow call",
                     *(rule.name, rule.origin, 1000 * seconds, manner),
                 )
 

@@ -40,9 +40,9 @@ class Context:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Module's name → the module's settings; they override those of the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: Seconds that a rival under pressure has, unless its rule says otherwise (L16).
-        trace: Whether to keep records of what happens, for ``trace`` and ``explain``; or a function that receives them.
-        journal: A function, e.g. a `Journal`. It receives each event, and each `Taken`, with its time (seconds).
+        patience: Seconds that a rival under pressure has to become ready (L16), if its rule sets no patience.
+        trace: True to keep records of all that happens, for ``trace`` and ``explain``; or a function to call with each.
+        journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -174,7 +174,7 @@ class Context:
         self._running().pause()
 
     def step(self) -> bool:
-        """Do the next thing that is due in a paused context; several rules may start at once (one wave).
+        """Perform the next step of a paused context. Several rules may start in one step (a wave).
 
         If nothing is due now, set the clock forward to the next time at which something is due.
 
@@ -257,7 +257,7 @@ class Context:
         """Call `observer` with every record of the trace from now on; return a function that stops the calls.
 
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
-        act on the context. Without observers the engine makes no records, so there is no cost until then.
+        act on the context. Without observers the engine makes no records, and spends no time on them.
         """
         self._observers.append(observer)
         self._attach()
@@ -299,7 +299,7 @@ class Context:
         return self._running().read(slot.name)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
-        """Explain why a rule runs, waits, or did not fire (L25); if the context keeps a trace, with the rule's history.
+        """Explain why a rule runs, waits, or did not fire (L25). If the context keeps a trace, add the rule's history.
 
         Raises:
             DeclarationError: The policy has no such rule.

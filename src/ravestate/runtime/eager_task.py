@@ -1,6 +1,6 @@
 """A task for a coroutine that may end before it needs a task.
 
-Making a task and having the loop switch to it costs more than most rules take. So the first step of a coroutine runs
+To make a task and switch to it costs more time than most rules take. So the first step of a coroutine runs
 outside of any task, while a spare task counts as the current task. `asyncio.current_task`, `asyncio.timeout` and
 context variables work as they should. If the coroutine ends in its first step, the spare task is kept for the next
 coroutine. If the coroutine suspends, the spare task adopts it.
@@ -36,7 +36,7 @@ class EagerTask:
         self._context = contextvars.copy_context()
         self._clean = self._context.copy()
         host = self._main()
-        host.send(None)  # now a cancellation before the task's first step reaches the host
+        host.send(None)  # from now on, a cancellation reaches the host even before the task's first step
         self.task: asyncio.Task[Any] = loop.create_task(host, context=self._context)
 
     def first_step(self, coroutine: Coroutine[Any, Any, Any], rule: Rule[Any, Any]) -> None:
@@ -120,7 +120,7 @@ class EagerTask:
                     pending = coroutine.throw(thrown)
             except StopIteration as stop:
                 return stop.value
-            except SystemExit as exit:  # raised here, it would end the loop and all other rules
+            except SystemExit as exit:  # if raised here, SystemExit would end the loop and all other rules
                 return exit
             finally:
                 self._timer.end(rule, began)

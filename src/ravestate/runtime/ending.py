@@ -14,7 +14,7 @@ from ravestate.errors import RuleError
 
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
-    """Return the event that reports the end of a run: its function returned, or `raised`, the `outcome`."""
+    """Return the event that reports the end of a run, given its result or, if `raised`, its exception."""
     if outcome is None:
         return Finish(run, "done")
     if isinstance(outcome, Resign):
@@ -35,8 +35,8 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
     if isinstance(result, Coroutine):
         cast("Coroutine[Any, Any, Any]", result).close()
         return RuleError(
-            f"rule {rule.name} ({rule.origin}) is a plain function that returned a coroutine: write async def, also for "
-            "what a decorator puts around it"
+            f"rule {rule.name} ({rule.origin}) is a plain function that returned a coroutine: write async def, also in "
+            "the wrapper of a decorator"
         )
     return RuleError(
         f"rule {rule.name} ({rule.origin}) returned {short(result)}; a rule returns nothing, rs.Resign(reason) or "

@@ -50,7 +50,7 @@ class Listeners:
                 future.set_result(spiked.payload)
 
     def fail(self, error: Callable[[str], BaseException]) -> None:
-        """Wake all waiting tasks with an error, which `error` makes from the name of the task's signal."""
+        """Wake all waiting tasks with an error; the function `error` makes it from the name of the task's signal."""
         for signal, futures in self._futures.items():
             for future in futures:
                 if not future.done():

@@ -14,7 +14,7 @@ from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.workers import Job, JobQueue
 
 STARVED = 5.0
-"""After this many seconds of a plain function's wait for a thread, a warning names the rules that hold the threads."""
+"""If a plain function has waited this many seconds for a thread, a warning names the rules that hold the threads."""
 
 log = logging.getLogger("ravestate")
 
@@ -47,7 +47,7 @@ class PlainRules:
             self._alarm = self._loop.call_later(STARVED, self._watch)
 
     def abandon(self, ctx: RuleContext) -> None:
-        """Stop waiting for a run's function, which keeps running: a thread cannot be stopped."""
+        """Stop waiting for a run's function. The function keeps running, because a thread cannot be stopped."""
         self._queue.abandon(self.runs.pop(ctx))
 
     def close(self) -> None:

@@ -74,7 +74,7 @@ class RuleContext:
         except (KeyError, AttributeError):
             self._refuse("read", "reads", slot, (*self.rule.reads, *self.rule.writes))
         if slot.kind == "collection":
-            return Items(self, slot)  # type: ignore[arg-type]  # its kind says so
+            return Items(self, slot)  # type: ignore[arg-type]  # the kind of the slot proves the type
         return value
 
     def __setitem__(self, slot: Slot[T], value: T) -> None:
@@ -96,9 +96,9 @@ class RuleContext:
                     f"rule {self.rule.name} ({self.rule.origin}) wrote {type(value).__name__} to the collection "
                     f"{slot.name}: write a mapping of keys to items, or ctx[{self._spelt(slot)}].add(key, item)"
                 )
-            value = MappingProxyType(dict(value))  # type: ignore[assignment]  # its kind says so
+            value = MappingProxyType(dict(value))  # type: ignore[assignment]  # the kind of the slot proves the type
         elif slot.kind == "flag":
-            value = bool(value)  # type: ignore[assignment]  # its kind says so
+            value = bool(value)  # type: ignore[assignment]  # the kind of the slot proves the type
         self._values[slot.name] = value
         self._host.receive(Write(slot.name, value, self.run))
 
@@ -107,7 +107,7 @@ class RuleContext:
     @overload
     def payload(self, signal: Signal[Any]) -> Any: ...
     def payload(self, signal: Signal[Any]) -> Any:
-        """Return the payload of a signal that started the rule; None if the clause that started it lacks the signal.
+        """Return the payload of a signal that started the rule. If another clause started the rule, return None.
 
         Raises:
             UndeclaredError: The signal is not part of the rule's condition.
@@ -120,8 +120,8 @@ class RuleContext:
             if getattr(signal, "name", None) in names:
                 return None
             raise UndeclaredError(
-                f"rule {self.rule.name} ({self.rule.origin}) asked for the payload of {signal!r}, which its condition "
-                f"does not name: it has {', '.join(sorted(names))}"
+                f"rule {self.rule.name} ({self.rule.origin}) asked for the payload of {signal!r}, which is not in its "
+                f"condition: the condition has {', '.join(sorted(names))}"
                 f"{nearest(str(getattr(signal, 'name', signal)), names)}"
             ) from None
 
@@ -167,7 +167,7 @@ class RuleContext:
         """Ask the context to end: it raises ``rs.shutdown``, waits a few seconds, and cancels the rules that still run.
 
         Args:
-            failure: The error because of which the agent cannot go on; ``rs.run`` raises it after the end.
+            failure: The error that ends the agent; ``rs.run`` raises it after the end.
         """
         self._host.stop(failure)
 
@@ -182,13 +182,18 @@ class RuleContext:
         return self._host.settings.get(self.rule.name.split(":", 1)[0])
 
     @property
+    def policy(self) -> Policy:
+        """The context's policy: its modules, signals, slots and rules."""
+        return self._host.policy
+
+    @property
     def log(self) -> logging.Logger:
         """A logger named ``ravestate.<module>.<rule>``."""
         return logging.getLogger("ravestate." + self.rule.name.replace(":", "."))
 
     @property
     def random(self) -> random.Random:
-        """Random numbers, made with the context's seed. A rule should use no other source, so that tests repeat."""
+        """Random numbers from the context's seed. A rule should use no other source, so that tests can be repeated."""
         return self._host.random
 
     def _alive(self) -> None:
@@ -200,7 +205,7 @@ class RuleContext:
         if what == "emits" and isinstance(value, Slot):
             raise UndeclaredError(
                 f"rule {self.rule.name} ({self.rule.origin}) emitted {name}, which is a slot: write "
-                f"ctx[{self._spelt(value)}] = value, which signals, or ctx.emit(signal)"
+                f"ctx[{self._spelt(value)}] = value, or emit a signal: ctx.emit(signal)"
             )
         if what != "emits" and not isinstance(value, Slot):
             raise UndeclaredError(
@@ -272,7 +277,7 @@ class Items(Mapping[str, V], Generic[V]):
     def _point_to(self, call: str) -> NoReturn:
         rule, slot = self._ctx.rule, self._ctx._spelt(self._slot)  # pyright: ignore[reportPrivateUsage]
         raise RuleError(
-            f"rule {rule.name} ({rule.origin}): the items of a collection are not assigned or deleted: write "
+            f"rule {rule.name} ({rule.origin}): the items of a collection cannot be assigned or deleted: write "
             f"ctx[{slot}].{call}"
         )
 

@@ -26,7 +26,7 @@ class Waits:
         self._ended = False
 
     async def until(self, reached: Callable[[], bool]) -> None:
-        """Wait until all effects are performed and `reached` is true. Effects or ends of runs must make it true."""
+        """Wait until all effects are performed and `reached` is true. Only effects and ends of runs may make it true."""
         if not self._ended and (self._is_busy() or not reached()):
             future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self.futures[future] = reached
@@ -41,7 +41,7 @@ class Waits:
                 future.set_result(None)
 
     def end(self, error: BaseException | None = None) -> None:
-        """Wake all tasks, with `error` unless that is None. Further tasks do not wait."""
+        """Wake all tasks; if `error` is given, they raise it. Later tasks do not wait."""
         self._ended = True
         for future in self.futures:
             if future.done():
@@ -67,7 +67,7 @@ class Waits:
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until only `known` activations run or wait, and no rule waits until an ``rs.shutdown`` is old enough.
+        """Wait until only `known` activations run or wait, and no rule waits for ``rs.shutdown`` to reach an age.
 
         A background rule among `known` may restart endlessly. Its new run counts only if it handles ``rs.shutdown``.
         Wait for at most `seconds`.

@@ -4,7 +4,7 @@ All contexts of a process share one pool of threads, and no context may take the
 function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
 
 At its end, the process still waits a while for running functions. A thread may be inside a C++ library, loading a model
-for instance; if the interpreter ends it there, the whole process may crash.
+for instance; if the interpreter ends the thread there, the whole process may crash.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class ThreadPool:
                     self._jobs.extend(job.queue.done(job))  # this thread is free for the next job
                     if not self.at_work:
                         self.rest.notify_all()
-                del job  # do not keep it alive: it may refer to a context
+                del job  # a reference to the job may keep a whole context alive
 
     def _next(self) -> Job | None:
         """Wait for a job, and return it; return None if the thread is to end."""

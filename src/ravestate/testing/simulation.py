@@ -37,7 +37,7 @@ class Simulation:
 
     Args:
         modules, settings, patience, journal: As for `Context`.
-        seed: The seed of random choices; fixed by default, so that tests repeat.
+        seed: The seed of random choices; fixed by default, so that a test makes the same choices each time.
         trace: Whether to keep a record of every decision.
 
     Attributes:

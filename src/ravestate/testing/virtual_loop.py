@@ -100,7 +100,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         if self._endless:
             raise EngineError(
                 f"at {self._virtual:g} s rules run without end, {self._endless} among them: a detached loop needs an age; "
-                "write .min_age(seconds) behind the signal that closes the loop"
+                "add .min_age(seconds) to the signal that closes the loop"
             )
         self._virtual = max(self._virtual, goal)
 

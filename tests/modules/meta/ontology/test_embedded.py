@@ -269,7 +269,7 @@ def test_a_database_of_something_else_is_left_alone(tmp_path: Path) -> None:
         ladybug.Connection(database) as connection,
     ):
         connection.execute("CREATE NODE TABLE Person(id STRING PRIMARY KEY)")
-    assert "is a ladybug database of something else (it has Person)" in failure(path=path)
+    assert "is a ladybug database of another program (it has Person)" in failure(path=path)
 
 
 def test_a_folder_is_no_file_and_a_file_is_no_folder(file: Path, tmp_path: Path) -> None:
@@ -285,7 +285,7 @@ def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_he
     memory.close().result()
     types.write_text("Person: {has: {shoe_size: number, hat_size: number}}")
     said = failure(path=file, types=(types,))
-    assert "has Person.shoe_size as text, and the types say number: write shoe_size: text" in said
+    assert "has Person.shoe_size as text, but the types say number: write shoe_size: text" in said
     types.write_text("Person: {has: {shoe_size: date}}")  # kept as a text too, so it comes out when it is read
     memory = open_here(path=file, types=(types,))
     with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is not a valid date"):

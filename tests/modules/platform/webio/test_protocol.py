@@ -130,7 +130,10 @@ def test_what_parsers_stumble_over(text: str) -> None:
         (b"{}", "a frame is a text message, not a binary one"),
         ("[1]", '\'[1]\' is not an object: write {"type": "hello", "v": 1}'),
         ("{}", "\"type\": 'None' is none of hello, say, writing, bye, ping"),
-        ('{"type": "hallo"}', "'hallo' is none of hello, say, writing, bye, ping; did you mean 'hello'?"),
+        (
+            '{"type": "hallo"}',
+            "'hallo' is none of hello, say, writing, bye, ping, microphone, played, hush; did you mean 'hello'?",
+        ),
         ('{"type": ["say"]}', "is none of hello, say, writing, bye, ping"),
         ('{"type": "hello"}', 'hello lacks "v": the version, 1'),
         ('{"type": "hello", "v": true}', "hello: \"v\": 'True' is not the version, 1"),

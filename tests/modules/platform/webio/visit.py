@@ -146,7 +146,9 @@ class Visit:
     async def next(self) -> dict[str, Any]:
         """The next frame; or what ends the connection."""
         message = await self._out.get()
-        return json.loads(message["text"]) if message["type"] == "websocket.send" else message
+        if message["type"] != "websocket.send":
+            return message
+        return json.loads(message["text"]) if "text" in message else {"type": "sound", "sound": message["bytes"]}
 
     async def frames(self, until: str) -> list[dict[str, Any]]:
         """The next frames, up to the first of a type."""

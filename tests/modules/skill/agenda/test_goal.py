@@ -17,8 +17,8 @@ number = guide.slot("number", 3)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, r"say=None and intent=None: write one of them"),
-        ({"say": "a", "intent": "b"}, r"say='a' and intent='b': write one"),
+        ({}, r"say=None and intent=None: give exactly one"),
+        ({"say": "a", "intent": "b"}, r"say='a' and intent='b': give exactly one"),
         ({"say": ""}, r"say='': write a text"),
         ({"say": []}, r"say=\[\]: write a text"),
         ({"say": ["a", 3]}, r"write a text, several"),
@@ -32,7 +32,7 @@ number = guide.slot("number", 3)
         ({"say": "a", "done": "("}, r"done='\(' is not a regular expression"),
         ({"say": "a", "refused": 7}, r"refused=7 is neither"),
         ({"say": "a", "done": number}, r"write done=guide:number\.changed"),
-        ({"say": "a", "unless": asked}, r"has a signal in it: write unless=slot\.holds"),
+        ({"say": "a", "unless": asked}, r"contains a signal: write unless=slot\.holds"),
     ],
 )
 def test_faulty_goals(arguments: dict[str, Any], message: str) -> None:

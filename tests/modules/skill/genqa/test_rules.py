@@ -282,6 +282,6 @@ def test_wording_by_a_model_needs_one_in_the_agent(settings: dict[str, dict[str,
     with simulate(genqa, talk, settings=settings) as sim:
         ((rule, error),) = sim.failures
         assert rule == "genqa:choose_wording"
-        assert "make the module wildtalk a part of this agent" in str(error)
+        assert "add the module wildtalk to this agent" in str(error)
         sim.say("What is the capital of Peru?")
         assert "Lima" in sim.said[0]

@@ -51,6 +51,15 @@ def test_a_wrong_or_refused_answer_makes_a_new_person_of_the_same_name(ada: Path
         assert "you live in Hannover" in answers(sim, "where do i live?")
 
 
+@pytest.mark.parametrize("first", ["hi, i'm kim", "hi kim here", "kim here"])
+@pytest.mark.parametrize("confirm", [True, False])
+def test_somebody_of_whom_memory_knows_only_the_name_is_no_stranger(file: Path, first: str, confirm: bool) -> None:
+    with agent(file, confirm=confirm) as sim:
+        assert meant(answers(sim, first), "learned_name")
+    with agent(file, confirm=confirm) as sim:
+        assert meant(answers(sim, "hi, kim here"), "back")
+
+
 def test_nothing_leaks_before_the_answer(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         sim.say("my name is ada")

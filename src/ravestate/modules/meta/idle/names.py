@@ -18,12 +18,11 @@ class Settings(rs.Settings):
     bored_after: Seconds = 15.0
     """Seconds without activity after which the agent is bored."""
     answer_time: Seconds = 25.0
-    """Seconds of silence after a question from the agent, if that is longer."""
+    """Seconds without activity, at least, after which the agent is bored if it has asked a question."""
     writing_time: Seconds = 20.0
-    """Seconds of silence after the last key of an unsent line."""
+    """Seconds without a key after which the agent is bored while a line is unsent."""
     remarks: Annotated[int, Field(ge=0)] = 2
-    """The maximum number of remarks in a row that the agent makes out of boredom without a word or a key from the
-    user."""
+    """The maximum number of remarks out of boredom until the user says or types something again."""
     impatient_after: Seconds = 1.0
     """Seconds that a ready rule waits before the agent is impatient."""
 

@@ -39,7 +39,7 @@ _STATES = word_set("better worse well fine good bad great ok okay awful hard alo
 """Adjectives that the tagger mistakes for adverbs."""
 
 _GIVING = word_set("give tell show send lend buy bring teach")
-_OWN_STATES = word_set("live like love hate want need miss hope prefer know understand")
+_OWN_STATES = word_set("live like love hate want need miss hope prefer know understand work study own")
 """Verbs of states, which no request has: *live in Rome* stands for *I live in Rome*."""
 
 _NOMINAL = ("NOUN", "PROPN", "ADJ", "NUM")
@@ -47,6 +47,7 @@ _NOMINAL = ("NOUN", "PROPN", "ADJ", "NUM")
 Part = Phrase | QuestionWord
 NOTHING = Phrase("")
 YOU = Phrase("you", person="you")
+_BE = Word(0, "be", "be", "AUX", "VB", "auxpass", 0, 0)
 _I = Phrase("I", person="I")
 _WE = Phrase("we", person="I")
 
@@ -153,8 +154,11 @@ class Clause:
             auxiliaries += [word for word in self.tree.children(first, "aux") if lemma_of(word) == "be"]
         if auxiliaries:
             return auxiliaries[0]
-        joined = self.verb.dep == "conj" and self.verb.tag == "VBN" and not self.own_subjects  # born and raised
-        return head.passive if joined and head is not None and not self.tree.children(self.verb, "aux") else None
+        if self.own_subjects or self.tree.children(self.verb, "aux", "dobj"):
+            return None
+        if head is not None and self.verb.dep == "conj" and first.low.endswith(("ed", "en")):  # born and raised
+            return head.passive
+        return _BE if first.low in ("born", "raised") and head is None else None  # born in Rome
 
     @property
     def requests(self) -> bool:
@@ -302,7 +306,7 @@ class Clause:
         has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)
         states = lemma_of(self.verb) in _OWN_STATES or has
         request = (self.verb.tag in ("VB", "VBP") or "do" in auxiliaries) and not states
-        return [YOU] if request else [_I] if states or self.verb.tag in ("VBD", "VBG") else [NOTHING]
+        return [YOU] if request else [_I] if states or self.verb.tag in ("VBD", "VBG", "VBN") else [NOTHING]
 
     @property
     def _antecedent(self) -> list[Part]:

@@ -63,7 +63,8 @@ def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase
     if head.pos == "PROPN":  # friend, of my friend Anna
         noun = next((word for word in tree.children(head, "compound", "nmod") if word.pos == "NOUN"), None)
     of = [word for word in tree.children(noun or head, "prep") if word.low == "of"]
-    owner = next(iter([*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj")]), None)
+    owned = [*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj"), *tree.children(head, "poss")]
+    owner = next(iter(owned), None)
     return Phrase(
         tree.phrase(noun_phrase(tree, head) if words is None else words),
         head="" if noun is None else noun.lemma.lower() if noun.pos == "NOUN" else noun.low,

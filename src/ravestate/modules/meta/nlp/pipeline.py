@@ -6,6 +6,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Collection
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -163,7 +164,7 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
     for token in doc:
         if not token.is_space and not (token.is_punct and normal.adds(token.idx, token.idx + len(token))):
             numbers[token.i] = len(numbers)
-    words = [_as_written(typed, numbers, token) for token in doc if token.i in numbers]
+    words = _with_names([_as_written(typed, numbers, token) for token in doc if token.i in numbers])
     end = len(typed)
     if _without_stop(typed) != typed and not normal.adds(end - 1, end):
         head = next((word.index for word in reversed(words) if word.head == word.index), len(words))
@@ -173,6 +174,18 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
         start, end = normal.span(found.start_char, found.end_char)
         entities.append(Entity(typed[found.start_char : found.end_char], found.label_, start, end))
     return Tree(typed, words), tuple(entities)
+
+
+def _with_names(words: list[Word]) -> list[Word]:
+    """Make nouns with a capital inside a sentence names, unless most words have one."""
+    capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
+    if 2 * sum(capital) > len(words):
+        return words
+    starts = {0, *(word.index + 1 for word in words if word.pos == "PUNCT")}
+    return [
+        replace(word, pos="PROPN", tag="NNP") if up and word.tag == "NN" and word.index not in starts else word
+        for word, up in zip(words, capital, strict=True)
+    ]
 
 
 def _without_stop(text: str) -> str:

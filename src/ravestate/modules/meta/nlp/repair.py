@@ -23,6 +23,8 @@ def repaired(tree: Tree) -> Tree:
             _mark_tag(tree, words, word)
             _make_verb(tree, words, word)
             _make_passive(tree, words, word)
+            _make_copula(tree, words, word)
+        _name_relative(tree, words, word)
     return tree if words == list(tree.words) else Tree(tree.text, words)
 
 
@@ -83,6 +85,27 @@ def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
     for participle in tree.children_of(nouns, "acl"):
         if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
             _reroot(tree, words, be, participle, tree.head(participle), "auxpass")
+
+
+def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
+    """Make *'s* a verb where the sentence has none: *my name's Ada*, but not *my sister's car*."""
+    owner = tree.head(short)
+    named = tree.head(owner)
+    if short.dep != "case" or owner.dep != "poss" or named.dep != "ROOT" or named.pos != "PROPN" or owner.pos != "NOUN":
+        return
+    if any(word.pos in ("VERB", "AUX") for word in tree.subtree(named)):
+        return
+    for word, dep, head in ((short, "ROOT", short), (owner, "nsubj", short), (named, "attr", short)):
+        words[word.index] = replace(word, dep=dep, head=head.index, pos="AUX" if word == short else word.pos)
+
+
+def _name_relative(tree: Tree, words: list[Word], noun: Word) -> None:
+    """Join a noun to the name after it: *my mum*, in *my mum Ann sings*."""
+    name = tree.after(noun)
+    if noun.pos != "NOUN" or name is None or name.pos != "PROPN" or name.dep != "nsubj" or noun.head == name.index:
+        return
+    if tree.children(noun, "poss") and noun.dep != "nsubj" and name not in tree.children(noun):
+        words[noun.index] = replace(noun, dep="compound", head=name.index)
 
 
 def _reroot(tree: Tree, words: list[Word], auxiliary: Word, verb: Word, subject: Word, dep: str) -> None:

@@ -31,6 +31,8 @@ _KNOWN_AS_TRUE = word_set(
 )
 _IMAGINED = word_set("wish imagine dream pretend suppose hope doubt fantasise fantasize")
 _WANTED = word_set("want wan hope plan intend wish dream decide aim like love need prepare promise expect")
+_IMMINENT = word_set("move leave retire")
+_PONDERED = word_set("think consider dream talk plan")
 _DOUBTS = word_set("maybe perhaps possibly probably")
 _REPORTS = word_set("apparently supposedly allegedly reportedly according")
 _UNREAL = word_set("would 'd could might may should")
@@ -155,8 +157,10 @@ class _Assertion:
             return True
         if len(chain) > 1 and chain[1].tag == "VB" and lemma_of(chain[0]) in _WANTED:
             return True
+        if lemma_of(chain[-1]) in _PONDERED and any(word.dep == "pcomp" for word in self._clause.own):
+            return True  # I'm thinking of moving
         verbs = [chain[0], *self._tree.children(chain[0], "auxpass")]
-        soon = set(self._when.lower().split()) & _SOON
+        soon = set(self._when.lower().split()) & _SOON or self._clause.lemma in _IMMINENT
         if soon and self._tense == "present" and any(verb.tag == "VBG" for verb in verbs):
             return True
         wanted = self._clause.verb.dep in ("xcomp", "ccomp") and self._clause.verb.tag == "VB"

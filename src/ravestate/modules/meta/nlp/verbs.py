@@ -79,6 +79,9 @@ def _following(tree: Tree, verb: Word) -> Word | None:
         if (infinitive or child.tag in ("VBG", "VB")) and not other:
             return child
     for child in tree.children(verb, "dobj", "pobj"):
+        listed = child.tag == "NN" and not all(word.low.endswith("ing") for word in tree.children(child, "conj"))
+        if listed:  # I like swimming and tennis
+            continue
         if lemma_of(verb) in _GERUND_TAKERS and child.low.endswith("ing") and child.index == verb.index + 1:
             return child if child.tag in ("NN", "VBG") else None
     return None

@@ -28,7 +28,7 @@ LIVELY = 5.0
 
 
 class BoltStore:
-    """A database on a server, by Neo4j's official driver.
+    """A database on a server, accessed through Neo4j's official driver.
 
     The store has its own thread, and yet uses the asynchronous driver, because a wait for that driver can be cancelled.
     So a server that stalls costs `timeout` seconds and no thread.
@@ -52,7 +52,7 @@ class BoltStore:
                 import neo4j
         except ImportError as error:
             raise PlatformError(f"ontology needs neo4j for the server {url}: pip install 'ravestate[neo4j]'") from error
-        # The driver warns of queries for a property that no node has yet, which is not a fault.
+        # The driver warns of a query for a property that no node has yet, but such a query is not a fault.
         logging.getLogger("neo4j.notifications").setLevel(logging.ERROR)
         self._neo4j: Any = neo4j  # the driver is only partly typed
         self._place = url
@@ -129,20 +129,20 @@ class BoltStore:
             ) from error
         except errors.AuthError as error:
             raise PlatformError(
-                f"memory {self._place} refuses the user {self._user!r}: set RAVESTATE_ONTOLOGY_PASSWORD, or another user with "
-                "--set ontology.user=NAME"
+                f"memory {self._place} refuses the user {self._user!r}: set RAVESTATE_ONTOLOGY_PASSWORD, or choose another user "
+                "with --set ontology.user=NAME"
             ) from error
         except errors.Neo4jError as error:
             if any(problem in (error.code or "") for problem in ("DatabaseNotFound", "DatabaseUnavailable")):
-                named = f"has no database {self._database!r}" if self._database else "has no database of its own choice"
+                named = f"has no database {self._database!r}" if self._database else "has no default database"
                 raise PlatformError(
-                    f"memory {self._place} {named}: create it there, or name another with --set ontology.database=NAME"
+                    f"memory {self._place} {named}: create it, or choose another with --set ontology.database=NAME"
                 ) from error
             raise PlatformError(f"memory {self._place} failed: {error.message or error}") from error
         except (errors.DriverError, OSError, ValueError) as error:  # ValueError: an invalid port
             raise PlatformError(
-                f"memory {self._place} cannot be reached ({_first_line(error)}): start the server, or name another with --set "
-                "ontology.url=bolt://HOST:PORT"
+                f"memory {self._place} cannot be reached ({_first_line(error)}): start the server, or choose another with "
+                "--set ontology.url=bolt://HOST:PORT"
             ) from error
 
     # ------------------------------------------------------------------------------------ types

@@ -36,8 +36,8 @@ def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
     """
     if ontology not in module.requires:
         raise DeclarationError(
-            f"module {module.name} ({module.origin}) binds {name} to memory: write rs.Module({module.name!r}, "
-            "requires=[ontology, ...])"
+            f"module {module.name} ({module.origin}) binds {name} to memory but does not require ontology: write "
+            f"rs.Module({module.name!r}, requires=[ontology, ...])"
         )
     slot: rs.Slot[Node | None] = module.slot(name, type=Node)
 

@@ -27,7 +27,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
 
     Args:
         path: The database file; created if it is missing.
-        whole_log: Whether a damaged log is an error. If false, the log is read up to the damage, and the rest cut off.
+        whole_log: Whether a damaged log is an error. If not, the log is read up to the damage, and the rest is cut off.
 
     Raises:
         Exception: RuntimeError if the file has lost all of its tables. For a damaged file, ladybug may raise any
@@ -41,7 +41,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        auto_checkpoint=False,  # the store makes checkpoints later: here, one could make the opening fail
+        auto_checkpoint=False,  # the store makes checkpoints later, since a checkpoint here could make the opening fail
         throw_on_wal_replay_failure=whole_log,
     )
     connection = ladybug.Connection(database, num_threads=1)
@@ -76,7 +76,7 @@ def _read_all(path: Path, *, whole_log: bool) -> None:
 def copy_database(source: Any, target: Any) -> None:
     """Copy all tables, nodes and relations in one transaction, including those that no type declares.
 
-    Deleted nodes, whose bytes stay in the old file, are not in the copy.
+    The copy has no bytes of deleted nodes; the old file still has them.
 
     Args:
         source: A connection to the database to copy.

@@ -67,7 +67,7 @@ def read_document(document: Mapping[str, Any], types: Types) -> tuple[list[Node]
     for one in read.relations:
         name = f"{one.source} {one.relation} {one.target}"
         if one.source not in nodes or one.target not in nodes:
-            raise RuleError(f"the relation {name} is between nodes that the document does not have")
+            raise RuleError(f"the relation {name} joins nodes that the document does not have")
         values = _values(name, types.relating(one.relation).properties, one)
         relations.append(Relation(nodes[one.source], one.relation, nodes[one.target], values))
     return list(nodes.values()), relations

@@ -45,9 +45,9 @@ log = logging.getLogger("ravestate.ontology")
 class EmbeddedStore:
     """A database file of ladybug, which only this process has open.
 
-    Committed writes are in the write-ahead log, on disk. After a write to that log fails, ladybug would hang in the
-    next write and end the process when it closes. So the store checks the free space before each write. If a write
-    fails anyway, its incomplete record is cut off. Then nothing is written or closed until the disk has room again.
+    Committed writes are in the write-ahead log, on disk. If a write to that log fails, ladybug hangs in the next write,
+    and ends the process when it closes the file. So the store checks the free space before each write. If a write still
+    fails, its incomplete record is cut off. Then nothing is written or closed until the disk has room again.
     """
 
     def __init__(self, path: Path) -> None:
@@ -61,7 +61,7 @@ class EmbeddedStore:
         """
         try:
             with LOADING:
-                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # this only loads it, with the lock
+                import ladybug  # noqa: F401  # pyright: ignore[reportUnusedImport]  # load it while the lock is held
         except ImportError as error:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
         self._path = path
@@ -82,7 +82,7 @@ class EmbeddedStore:
             self._check_space(0)
             self._set_orphans_aside(self._files.logs())
             self._open()
-        self._files.remove_rewrite()  # a process that was killed during a purge leaves one
+        self._files.remove_rewrite()  # a process that was killed during a purge leaves an unfinished rewrite
 
     # ------------------------------------------------------------------------------------ statements
 
@@ -145,7 +145,7 @@ class EmbeddedStore:
 
     def prepare(self, types: Types) -> None:
         """Create the tables and columns that the types need and the file lacks."""
-        if types is self._prepared:  # the types are prepared: no other process writes this file
+        if types is self._prepared:  # no other process changes the file, so the tables are still there
             return
         missing = list(missing_tables(self._execute, types, str(self._path)))
         if missing:  # write only if needed, so that memory on a full disk can be read
@@ -176,7 +176,7 @@ class EmbeddedStore:
         self._files.restrict()
 
     def _attempt(self, *, trial: bool, whole_log: bool = True) -> str:
-        """Open the file; return why that failed, or empty. With `trial`, let another process try first."""
+        """Open the file; return the error, or "" if there is none. With `trial`, let another process try first."""
         if trial and not survives(self._path, whole_log=whole_log):
             return ENDS_PROCESS
         try:
@@ -186,7 +186,7 @@ class EmbeddedStore:
         return ""
 
     def _open_in_part(self) -> str:
-        """Open the file with a damaged log, usually cut off by a power failure; return why that failed, or empty.
+        """Open the file although a power failure has cut off its log; return the error, or "" if there is none.
 
         The log is read up to the damage, or not at all if that is not possible. A copy of the log is kept.
         """
@@ -205,7 +205,7 @@ class EmbeddedStore:
             raise PlatformError(
                 f"memory {self._path} has a damaged log, which cannot be copied before its repair: {error.strerror}"
             ) from error
-        what = "the part before the damage was read, and the log as it was is kept as"
+        what = "memory has read the part before the damage; a copy of the damaged log is"
         log.warning("memory %s has a damaged log: %s %s", self._path, what, copy)
         return ""
 
@@ -221,7 +221,7 @@ class EmbeddedStore:
                 f"renamed ({error.strerror}): remove them"
             ) from error
         log.warning(
-            "memory %s begins without the logs of an earlier memory that was deleted; they may still have names in them. "
+            "memory %s ignores the logs of an earlier memory that was deleted; they may contain personal data. "
             "They are kept as %s. To remove them: rm, or ravestate memory reset --path %s",
             self._path,
             ", ".join(map(str, kept)),
@@ -325,7 +325,7 @@ class EmbeddedStore:
     def _get_stuck(self, said: str) -> None:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
-            os.truncate(self._files.log, self._log_good)  # the next opening stops at an incomplete record
+            os.truncate(self._files.log, self._log_good)  # an incomplete record would make the log look damaged
         for held in (self._connection, self._database):  # garbage collection of these would end the process
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 

@@ -31,7 +31,7 @@ def is_foreign_log(said: str) -> bool:
 
 
 def is_about_log(said: str) -> bool:
-    """Return whether a message of ladybug allows that a damaged log prevents the opening of the file."""
+    """Return whether a damaged log may be the cause of a message of ladybug that the file cannot be opened."""
     return _NO_DAMAGE.search(said) is None
 
 
@@ -57,8 +57,8 @@ def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
     """Return the message for users about a damaged memory; it names all files of the memory."""
     first = (said.splitlines() or [""])[0][:200]
     return (
-        f"memory {path} is damaged, or is not a memory file ({first}): put a copy in its place, or begin again with "
-        f"ravestate memory reset --path {path} , which removes {', '.join(file.name for file in files)}"
+        f"memory {path} is damaged, or is not a memory file ({first}): replace it by a backup copy, or remove "
+        f"{', '.join(file.name for file in files)} with ravestate memory reset --path {path}"
     )
 
 

@@ -44,7 +44,7 @@ class MemoryFiles:
         return [file for file in self.present() if (match := self._match(file)) and match["kept"]]
 
     def logs(self) -> list[Path]:
-        """Return the other files with data: logs that are not set aside, and an unfinished rewrite."""
+        """Return the files with data besides the database: logs that are not set aside, and an unfinished rewrite."""
         others = {self.path, self.probe, self._sum, *self.kept()}
         return [file for file in self.present() if file not in others and file.stat().st_size]
 
@@ -60,7 +60,7 @@ class MemoryFiles:
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create missing files for the user alone: files that ladybug creates can be read by everybody."""
+        """Create missing files for the user alone, because everybody can read the files that ladybug creates."""
         for suffix in suffixes:
             with contextlib.suppress(OSError):  # ladybug will report the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))
@@ -82,8 +82,8 @@ class MemoryFiles:
         return moved
 
     def in_use(self) -> bool:
-        """Return whether another process has the database open. On Windows, return False: there, removing a file
-        in use fails."""
+        """Return whether another process has the database open. On Windows, return False, because removing a file in
+        use fails there."""
         try:
             import fcntl
 

@@ -37,7 +37,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ nodes
 
     def save(self, node: Node, /, *, of: str | None = None) -> Node:
-        """Set a node's properties in memory, remove those that are None, and keep the others that memory has.
+        """Set a node's properties in memory, and remove those that are None; memory keeps its other properties.
 
         Args:
             node: The node to write.
@@ -101,7 +101,7 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        A person or robot with more than a name stays as well.
+        Keep also a person or robot of whom memory has more than a name.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
@@ -136,7 +136,7 @@ class Graph:
         )
 
     def _ends(self, node: Node, *, back: bool) -> list[tuple[str, dict[str, Value], Node]]:
-        """Return name, properties and other end of each declared relation from a node; with `back`, to the node."""
+        """Return the name, properties and other end of each declared relation from a node; with `back`, to the node."""
         found: list[tuple[str, dict[str, Value], Node]] = []
         for relation, raw in self._edges(node, back=back):
             other = self._node(raw)
@@ -165,7 +165,7 @@ class Graph:
         if not self._types.is_a(keep.type, duplicate.type):
             hint = "; merge them the other way round" if self._types.is_a(duplicate.type, keep.type) else ""
             problem = f"a {keep.type} is not a {duplicate.type}{hint}"
-            raise RuleError(f"{keep.id} cannot take over what {duplicate.id} has: {problem}")
+            raise RuleError(f"{keep.id} cannot take over the data of {duplicate.id}: {problem}")
         with self._store.transaction():
             kept, other = self._must_know(keep), self._must_know(duplicate)
             self._must_declare(other)
@@ -180,7 +180,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Copy a relation to other nodes. If these have the relation already, its properties have priority."""
+        """Copy a relation to other nodes. If they are so related already, that relation keeps its own properties."""
         ends = self._ends(source, back=False)
         present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))
@@ -203,10 +203,10 @@ class Graph:
         return list(going.values())
 
     def forget(self, node: Node, /) -> list[Node]:
-        """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
+        """Remove a node, its relations, and the nodes that only this node needs. The file keeps no byte of these.
 
         A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
-        related to them. A person or robot with more than a name stays as well.
+        related to them. A person or robot of whom memory has more than a name also stays.
 
         Returns:
             The removed nodes, `node` first; an empty list if memory does not have `node`.
@@ -238,7 +238,7 @@ class Graph:
         unknown |= {raw.label for _, raw in edges if raw.label not in self._types}
         if unknown:
             raise RuleError(
-                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types declares: name the file that declares it in "
+                f"{node.id} is related by {', '.join(sorted(unknown))}, which no file of types declares: add the missing file to "
                 "the setting ontology.types"
             )
 
@@ -265,7 +265,7 @@ class Graph:
         return write_document(nodes, relations)
 
     def load(self, document: Mapping[str, Any], /) -> int:
-        """Save all nodes and relations of a document from `export`, or none; return the number of nodes."""
+        """Save all nodes and relations of an exported document, or none of them; return the number of nodes."""
         nodes, relations = read_document(document, self._types)
         with self._store.transaction():
             for node in nodes:
@@ -301,7 +301,7 @@ class Graph:
         found = self.get(_known(node).id)
         if found is None:
             raise RuleError(
-                f"memory does not know {node.id} (or no longer): save it first, with await memory.save(node)"
+                f"memory does not know {node.id}, or has forgotten it: save it first, with await memory.save(node)"
             )
         return found
 

@@ -78,8 +78,8 @@ class Memory:
         """Wait until memory is open; return its types.
 
         Raises:
-            PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server
-                refuses. The message says what to do. All operations raise it too.
+            PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server refuses
+                the connection. The message says what to do. All other operations then raise the same error.
             DeclarationError: A file of types is invalid, or contradicts another.
         """
         return self._opened
@@ -101,7 +101,7 @@ class Memory:
     save = _operation(Graph.save)
 
     def find(self, type: str, /, **properties: Value) -> Reply[list[Node]]:
-        """Return all nodes of a type or its subtypes with these properties, oldest first. None matches no value."""
+        """Return all nodes of a type or its subtypes with these properties, oldest first. None stands for no value."""
         return self.submit("find", lambda graph: graph.find(type, properties))
 
     get = _operation(Graph.get)

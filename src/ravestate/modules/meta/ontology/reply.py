@@ -34,7 +34,7 @@ class Reply(Generic[T]):
         self._looked = False
 
     def result(self, timeout: float | None = None) -> T:
-        """Wait for the result. Do not call this on the event loop, which it would block.
+        """Wait for the result. This call blocks, so do not use it on the event loop.
 
         Args:
             timeout: The maximum number of seconds to wait; None for no maximum.

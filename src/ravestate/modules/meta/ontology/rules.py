@@ -13,7 +13,7 @@ from .opening import open_memory
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory at the place that the settings name. The slot gets it at once: operations wait until it is open."""
+    """Open memory at the place that the settings name. The slot gets the memory at once; operations on it wait."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 
@@ -23,7 +23,7 @@ async def open_up(ctx: rs.RuleContext) -> None:
 
     try:
         await opening.opened()
-    except PlatformError as error:  # no rule is to blame, so this is no ``rs.error``
+    except PlatformError as error:  # no rule is at fault, so this does not raise ``rs.error``
         let_go()
         ctx.log.warning("there is no long-term memory in this conversation: %s", error)
     except BaseException:
@@ -39,6 +39,6 @@ async def close(ctx: rs.RuleContext) -> None:
         return
     try:
         await ctx.quiet()
-        await asyncio.sleep(0)  # the last writes to bound slots are queued now
+        await asyncio.sleep(0)  # let the rules queue the last writes to bound slots
     finally:
         await opened.close()

@@ -42,7 +42,7 @@ def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
         check_format(place, found[0][0] if found else None)
     elif tables:
         raise PlatformError(
-            f"{place} is a ladybug database of something else (it has {', '.join(sorted(tables)[:3])}): name another file "
+            f"{place} is a ladybug database of another program (it has {', '.join(sorted(tables)[:3])}): name another file "
             "with --set ontology.path=FILE. Nothing was changed"
         )
     else:
@@ -82,7 +82,7 @@ def _missing_columns(execute: Execute, table: str, properties: Mapping[str, Kind
         elif present[name] != COLUMNS[kind]:
             held = next((k for k, column in COLUMNS.items() if column == present[name]), present[name])
             raise PlatformError(
-                f"memory {place} has {table}.{name} as {held}, and the types say {kind}: write {name}: {held}, or give the "
+                f"memory {place} has {table}.{name} as {held}, but the types say {kind}: write {name}: {held}, or give the "
                 "property another name. Nothing was changed"
             )
 

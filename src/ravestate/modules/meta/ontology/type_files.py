@@ -9,7 +9,7 @@
         sails_to: [City, Country]       # to nodes of these types, and their subtypes
         insured_by: {to: Company, has: {since: date}}
 
-A later file extends earlier ones; it cannot remove or contradict anything.
+A later file extends the earlier files; it cannot remove or contradict their declarations.
 """
 
 from __future__ import annotations
@@ -84,12 +84,12 @@ class _Reader:
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """(whether a relation has it, name in lower case) of a property → its spelling, kind and ``file:line``."""
+        """(whether it belongs to a relation, its name in lower case) of a property → spelling, kind and ``file:line``."""
 
     def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:
             return
-        for key, name, body in _entries(file, root, "a file of types maps types to what they have"):
+        for key, name, body in _entries(file, root, "a file of types maps types to their parts"):
             self._name(file, key, name, self._has, self._ends)
             self._has.setdefault(name, {})
             if kind_of(body) == "scalar" and not body.value:
@@ -126,7 +126,7 @@ class _Reader:
         parent = _text(file, node, f"the parent of {name} is one type")
         said = self._parents.get(name)
         if said is not None and said[0] != parent:
-            raise fault(file, node, f"{name} is a {said[0]} already ({said[1]}), and has one parent")
+            raise fault(file, node, f"{name} is a {said[0]} already ({said[1]}), and can have only one parent")
         self._parents[name] = (parent, line_of(file, node))
 
     def _add_relations(self, file: str, source: str, node: yaml.Node) -> None:
@@ -137,7 +137,7 @@ class _Reader:
             if kind_of(value) == "mapping":
                 parts = _parts(file, value, name, "relation", OF_A_RELATION)
                 if "to" not in parts:
-                    raise fault(file, key, f"{name} leads nowhere: write {name}: {{to: Thing}}")
+                    raise fault(file, key, f"relation {name} has no target: write {name}: {{to: Thing}}")
                 targets = parts["to"]
                 if "has" in parts:
                     self._add_properties(file, parts["has"], name, properties, relation=True)
@@ -179,7 +179,7 @@ class _Reader:
 def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, str, yaml.Node]]:
     if kind_of(node) != "mapping":
         example = "write for example\nBoat:\n  has: {length: number}"
-        raise fault(file, node, f"{meaning}, and this is not a mapping: {example}")
+        raise fault(file, node, f"{meaning}, but this is not a mapping: {example}")
     seen: set[str] = set()
     for key, value in node.value:
         name = _text(file, key, "a name is a text")
@@ -202,7 +202,7 @@ def _parts(file: str, node: yaml.Node, owner: str, what: str, known: tuple[str, 
 
 def _text(file: str, node: yaml.Node, meaning: str) -> str:
     if kind_of(node) != "scalar":
-        raise fault(file, node, f"{meaning}, and this is a {kind_of(node)}")
+        raise fault(file, node, f"{meaning}, but this is a {kind_of(node)}")
     return str(node.value)
 
 

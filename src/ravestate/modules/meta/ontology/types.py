@@ -105,7 +105,7 @@ class Types:
             if name not in kinds:
                 raise RuleError(
                     f"{owner} has no {name!r}{nearest(name, kinds)} (it has {', '.join(kinds) or 'nothing'}; to add it, write "
-                    f"in a file of your own, setting ontology.types: {owner}: {{has: {{{name}: text}}}})"
+                    f"{owner}: {{has: {{{name}: text}}}} in a file of types, and name the file in ontology.types)"
                 )
         return {
             name: None if value is None else _as_stored(f"{owner}.{name}", kinds[name], value)
@@ -142,8 +142,8 @@ class Types:
         found = self._relations.get(relation)
         if found is None:
             raise RuleError(
-                f"there is no relation {relation!r}{nearest(relation, self._relations)} (to add it, write under a type in "
-                f"a file of your own, setting ontology.types: relations: {{{relation}: Thing}})"
+                f"there is no relation {relation!r}{nearest(relation, self._relations)} (to add it, write relations: "
+                f"{{{relation}: Thing}} under a type in a file of types, and name the file in ontology.types)"
             )
         return found
 
@@ -164,8 +164,8 @@ class Types:
     def _check(self, type: str) -> None:
         if type not in self._types:
             raise RuleError(
-                f"there is no type {type!r}{nearest(type, self._types)} (to add it, write in a file of your own, setting "
-                f"ontology.types: {type}: {{is: Thing}})"
+                f"there is no type {type!r}{nearest(type, self._types)} (to add it, write {type}: {{is: Thing}} in a file "
+                "of types, and name the file in the setting ontology.types)"
             )
 
 

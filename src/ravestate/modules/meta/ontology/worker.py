@@ -96,7 +96,7 @@ class StoreWorker:
 
 
 def _settle(future: Future[T], work: Callable[[], T]) -> None:
-    """Give the result of `work` to those who wait for the future, or its exception."""
+    """Run `work`, and set its result or its exception as that of the future."""
     try:
         future.set_result(work())
     except BaseException as error:

@@ -21,8 +21,8 @@ class Intent:
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
     """Name of a parameter in phrases → its value; None counts as missing."""
     package: str | None = None
-    """The package whose ``phrases.yaml`` has phrases for the intent, usually the rule's ``__package__``; or None."""
+    """The package whose ``phrases.yaml`` has phrases for the intent, usually the rule's ``__package__``."""
     file: Path | None = None
-    """A file with phrases for the intent, for a rule outside packages; or None."""
+    """A file with phrases for the intent, for a rule outside packages."""
     phrases: Mapping[str, Sequence[str]] | None = None
-    """Language → phrases, for a rule that provides the phrases itself; no file is then read."""
+    """Language → phrases, for a rule that provides the phrases itself. If given, no file is read."""

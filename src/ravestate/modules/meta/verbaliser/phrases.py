@@ -86,7 +86,7 @@ class PhraseBook:
 
     @classmethod
     def load(cls, sources: Iterable[Source], language: str = "en", *, default_language: str = "en") -> PhraseBook:
-        """Return a book of the phrases in YAML files, read in the given order; for their format, see this file's start.
+        """Return a book of the phrases in YAML files, read in the given order. This module's docstring has the format.
 
         Phrases without a language in the files are in the default language.
 
@@ -141,8 +141,8 @@ class PhraseBook:
     ) -> Phrase:
         """Choose a phrase at random, and fill in its parameters.
 
-        A phrase is eligible if all its parameters have values; None counts as missing. If it begins with a parameter,
-        it gets a capital letter. The template `last` is not chosen again if another is eligible.
+        A phrase is eligible if all its parameters have values; None counts as missing. A phrase that begins with a
+        parameter gets a capital letter. The template `last` is not chosen again if another template is eligible.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.
@@ -186,7 +186,7 @@ class PhraseBook:
             except DeclarationError as error:
                 raise fault(name, item, str(error)) from None
         if not templates:
-            raise fault(name, node, "there are no phrases; leave the language out, or write some")
+            raise fault(name, node, "there are no phrases: write some, or remove the language")
         before = intent.get(tag, ()) if added else ()
         intent[tag] = (*before, *templates)
 
@@ -241,7 +241,7 @@ def _added(name: str, node: yaml.Node) -> bool:
 
 def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.Node, yaml.Node]]:
     if kind_of(node) != "mapping":
-        raise fault(name, node, f"{meaning}, and this is not a mapping: write for example\ngreet:\n  en: [Hello!]")
+        raise fault(name, node, f"{meaning}, but this is not a mapping: write for example\ngreet:\n  en: [Hello!]")
     if _added(name, node):
         raise fault(name, node, "!add goes in front of phrases: write en: !add [...]")
     seen: set[str] = set()
@@ -256,5 +256,5 @@ def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
 def _text_of(name: str, node: yaml.Node, meaning: str) -> str:
     if kind_of(node) != "scalar":
         hint = "put quotes around a text that has : or begins with braces"
-        raise fault(name, node, f"{meaning}, and this is a {kind_of(node)}; {hint}")
+        raise fault(name, node, f"{meaning}, but this is a {kind_of(node)}; {hint}")
     return str(node.value)

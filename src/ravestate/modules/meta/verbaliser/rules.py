@@ -19,14 +19,14 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Say a phrase for the intent: not the same as last time, if there is another."""
+    """Say a phrase for the intent. If there are several, do not repeat the phrase of last time."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:
         book = PhraseBook({meant.name: meant.phrases}, language=settings.language)
     else:
         own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
-        here = tuple(path.expanduser().absolute() for path in own)  # a different working folder means different files
+        here = tuple(path.expanduser().absolute() for path in own)  # a relative path depends on the working folder
         book = phrase_book(meant.package, here, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
     ctx[rawio.output] = phrase.text
@@ -34,7 +34,7 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return the slot's value as an `Intent`: it is one, or the name of one."""
+    """Return an `Intent` for the slot's value, which is an `Intent` or the name of one."""
     if isinstance(value, Intent):
         return value
     if isinstance(value, str) and value:

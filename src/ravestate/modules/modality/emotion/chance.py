@@ -1,4 +1,4 @@
-"""Spontaneous feelings: random ones that certain words may trigger."""
+"""Spontaneous feelings: certain words of the user trigger them at random."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def by_chance(sentences: Sequence[str], likely: Mapping[Feeling, float], rng: ra
     Args:
         sentences: The user's words, in the normal form.
         likely: The probability of each feeling on its occasion: a goodbye, a greeting or thanks, words about the agent, a
-            question. The rarest occasion counts.
+            question. The first of these occasions that occurs counts.
         rng: The source of chance.
 
     Example:

@@ -23,10 +23,10 @@ SHARED: Mapping[str, Feeling] = {
     "joy": "happy",
     "astonishing": "surprised",
 }
-"""The agent's feeling for each class of ``feelings.yaml``, the strongest first. It stays calm at the other classes."""
+"""The agent's feeling for each class of ``feelings.yaml``, the strongest first. Other classes raise no feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
-"""Classes beside which nothing is joyful: "I got my results, and I failed"."""
+"""Classes that rule out joy in the same text: "I got my results, and I failed"."""
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),
@@ -63,5 +63,5 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
 
 
 def sorrowful(text: str, names: Collection[str] = ()) -> bool:
-    """Return whether a text is sad, worried or angry; the matcher of feelings is loaded."""
+    """Return whether a text is sad, worried or angry. The matcher of feelings must be loaded."""
     return not SORROWS.isdisjoint(feelings(heard(text, names), names))

@@ -9,13 +9,13 @@ import ravestate as rs
 module = rs.Module("interloc")
 
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
-"""The agent's name. A module that knows it writes the slot: `agentqa` takes the name from the agent's life file."""
+"""The agent's name. `agentqa` writes it, from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
 """Key that the platform chooses for a present user → the user's name, or None while it is unknown."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
-"""Known facts about the user: values by topic, such as ``home`` or ``sister``. A module that learns them writes them."""
+"""Topic, such as ``home`` or ``sister`` → known facts about the user. A module that learns facts writes them."""
 
 forgotten: rs.Signal[None] = module.signal("forgotten", input=True)
-"""The user has been forgotten: modules wipe what they keep of them. `persqa` raises it."""
+"""The user has been forgotten, so modules delete their data about the user. `persqa` raises it."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .names import heard, hearing, input, module, output, picture, piece, sound, speaking, typing
-from .sound import IN_RATE, OUT_RATE, Line
+from .line import IN_RATE, OUT_RATE, Line
+from .names import heard, hearing, hush, input, module, output, picture, piece, reaction, sound, speaking, typing
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
@@ -16,11 +16,13 @@ __all__ = [
     "Line",
     "heard",
     "hearing",
+    "hush",
     "input",
     "module",
     "output",
     "picture",
     "piece",
+    "reaction",
     "say",
     "sound",
     "speaking",

@@ -6,7 +6,7 @@ from typing import Any
 
 import ravestate as rs
 
-from .sound import Line
+from .line import Line
 
 module = rs.Module("rawio")
 
@@ -26,6 +26,9 @@ speaking = module.flag("speaking")
 typing = module.signal("typing", input=True, keep="latest")
 """The user is typing. A platform that notices this emits the signal at each key press, or every few seconds."""
 
+reaction: rs.Signal[str] = module.signal("reaction", payload=str, input=True)
+"""The user has reacted to the agent's words with an emoji, as messengers allow."""
+
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The picture that the user showed last: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
 
@@ -35,5 +38,9 @@ sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
 hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
 """The words so far of an utterance that the user is still speaking, for platforms that show captions."""
 
-heard: rs.Slot[str] = module.slot("heard", "", type=str, input=True)
-"""The part of the agent's last utterance that the user heard. A platform that speaks writes it when the sound ends."""
+hush: rs.Signal[None] = module.signal("hush", input=True, keep="latest")
+"""The user asks the agent to stop speaking, for example with a button."""
+
+heard: rs.Slot[str] = module.slot("heard", "", type=str, always=True, input=True)
+"""The part of the agent's last utterance that the user heard. A platform that speaks writes it for each utterance, when its
+sound ends or is cut."""

@@ -30,14 +30,14 @@ class Screen(Protocol):
     async def __aexit__(self, *_: object) -> None: ...
 
     async def read(self) -> str:
-        """Return the next line. Raise EOFError at the end, KeyboardInterrupt for Ctrl-C, OSError if the input fails."""
+        """Return the next line. Raise EOFError at the end of input, KeyboardInterrupt for Ctrl-C, OSError for a fault."""
         ...
 
     def show(self, text: str) -> None:
         """Print a text of whole lines. Raise OSError if the output is gone."""
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line: at once on a terminal, else once the line is complete."""
+        """Print a piece of a line: at once on a terminal, and elsewhere once the line is complete."""
 
     def end(self) -> None:
         """End the line of pieces that `stream` has begun, if there is one."""
@@ -47,8 +47,8 @@ class Console:
     """An async iterator of the lines that the user types; meanwhile, `write` and `stream` print texts.
 
     If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
-    Otherwise the console reads and writes plain lines. Control characters, and bytes that are not text, are removed in
-    both directions: neither a user nor a language model can move the cursor.
+    If not, the console reads and writes plain lines. Control characters, and bytes that are not text, are removed in
+    both directions, so neither a user nor a language model can move the cursor.
 
     Call everything on one event loop. Writing never fails: if the output is gone, the iteration ends.
 
@@ -70,14 +70,14 @@ class Console:
         stdin: TextIO | None = None,
         stdout: TextIO | None = None,
     ) -> None:
-        """Make a console that has not read or written anything yet.
+        """Make a console; it reads and writes nothing yet.
 
         Args:
-            screen: The input and output; by default, the streams decide whether that is a terminal or pipes.
+            screen: The input and output; by default, a terminal or pipes, whichever the streams are.
             prompt: The text before the line that the user types.
-            history: The file that keeps typed lines; None keeps them for this session only.
-            on_key: Called when the user presses a key; only a terminal notices that.
-            stdin, stdout: The streams instead of standard input and output.
+            history: The file that keeps typed lines; with None, they are kept for this session only.
+            on_key: A function to call when the user presses a key; only a terminal notices keys.
+            stdin, stdout: The streams to use instead of standard input and output.
 
         Raises:
             PlatformError: A terminal needs prompt_toolkit, which is not installed.
@@ -122,8 +122,8 @@ class Console:
     def write(self, text: str) -> None:
         """Print `text` and a line end.
 
-        If `text` begins with the streamed pieces, only the rest is printed behind them. Otherwise the streamed line
-        ends first, and later pieces continue on a new line.
+        If `text` begins with the streamed pieces, only the rest is printed, after them. If it does not, the streamed
+        line ends first, and later pieces continue on a new line.
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
@@ -134,7 +134,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def stream(self, piece: str) -> None:
-        """Print `piece` behind the earlier pieces of its text: at once on a terminal, else with its whole line."""
+        """Print `piece` after the earlier pieces of its text: at once on a terminal, and elsewhere with its whole line."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece
@@ -163,7 +163,7 @@ class Console:
 
 
 def prepare() -> None:
-    """Load the library for a terminal, if there is one. Call this in a thread: it would block the event loop."""
+    """If the console is a terminal, load its library. Call this in a thread: it would block the event loop."""
     if is_terminal(sys.stdin, sys.stdout):
         with contextlib.suppress(ImportError):  # the console reports the missing package
             importlib.import_module(".terminal", __package__)

@@ -1,4 +1,4 @@
-"""The log of a chat on a terminal, which goes to a file, so that no log line appears between the lines of the chat."""
+"""A file for the log of a chat on a terminal, so that no log line appears between the lines of the chat."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ def log_file() -> Path:
 
 @contextlib.contextmanager
 def log_to_file(file: Path) -> Generator[None]:
-    """In the body, write the log to a file, if the chat and the log would share a terminal.
+    """Write the log to a file within the ``with`` block, if the chat and the log would share a terminal.
 
-    Afterwards the log goes where it went before, and a line on standard error names the file if it got warnings or
-    errors. If either stream is redirected, or the file cannot be written, the log stays as it is.
+    After the block, the log goes where it went before. If the file got warnings or errors, a line on standard error names
+    the file. If either stream is redirected, or the file cannot be written, the log stays as it is.
     """
     if not all(stream is not None and stream.isatty() for stream in (sys.stdout, sys.stderr)):
         yield

@@ -13,16 +13,16 @@ _BLOCK = 1 << 16
 
 
 class Pipes:
-    """Reads lines in a thread of its own, one at a time and only on request; writes and flushes line by line.
+    """Reads lines in its own thread, one at a time and only on request; writes and flushes line by line.
 
-    A file works as well as a pipe, on every system. The thread ends when its input ends or when this object is closed.
-    While it waits for a line, it does not keep the process from ending.
+    The streams may be pipes or files. The thread ends when its input ends or when this object is closed. A thread that
+    waits for a line does not keep the process from ending.
     """
 
     interactive = False
 
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
-        """Make a console that has not read anything yet. For a closed stream, write None.
+        """Make a console; it reads nothing yet. For a closed stream, write None.
 
         It reads at most `longest_line` bytes of a line, and leaves out the rest.
         """
@@ -40,7 +40,7 @@ class Pipes:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        self._loop = None  # from now on, no task wants a line
+        self._loop = None  # from now on, no task waits for a line
         self._wanted.release()
 
     async def read(self) -> str:
@@ -49,7 +49,7 @@ class Pipes:
             raise EOFError
         if self._loop is None:
             self._loop = asyncio.get_running_loop()
-            # A daemon: nothing can wake a thread that waits for input at the end of the program.
+            # The thread is a daemon, because nothing can wake a thread that waits for input when the program ends.
             threading.Thread(target=self._read_all, args=(self._stdin,), name="conio", daemon=True).start()
         if self._line is None:
             self._line = self._loop.create_future()
@@ -93,7 +93,7 @@ class Pipes:
             raise
 
     def _silence(self) -> None:
-        """Redirect the broken standard output: Python's own flush at exit would print a second error."""
+        """Redirect the broken standard output, because Python's own flush at exit would print a second error."""
         if self._stdout is not None and self._stdout is sys.stdout:
             with contextlib.suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -34,7 +34,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # This runs in a thread, because it takes long while other threads load models.
+        # `prepare` runs in a thread, because it takes long while other threads load models.
         plain = Pipes(sys.stdin, sys.stdout) if ctx.settings.plain else None
         console = await asyncio.to_thread(
             Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell

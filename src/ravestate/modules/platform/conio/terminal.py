@@ -25,8 +25,8 @@ from prompt_toolkit.utils import get_cwidth
 from ravestate.modules._text import without_controls
 
 LONGEST = 10_000
-"""The number of characters in a line after which a key adds nothing. Undoing a key may cost as much memory as the whole
-line. Pasted text is always accepted whole."""
+"""A line of this many characters ignores further keys, because the undo history may store the whole line for each key.
+Pasted text is always accepted whole."""
 
 _OPEN = "…"  # the mark behind a streamed line that the user has interrupted by entering a line
 
@@ -49,10 +49,10 @@ class Terminal:
         input: Input | None = None,
         output: Output | None = None,
     ) -> None:
-        """Make a console that has not read or written anything yet.
+        """Make a console; it reads and writes nothing yet.
 
-        The file `history` keeps typed lines; without a writable file, they are kept for this session only. Each key
-        that changes the line calls `on_key`, unless the line is empty afterwards.
+        The file `history` keeps typed lines; if it cannot be written, they are kept for this session only. Each key that
+        changes the line calls `on_key`, unless the line is empty afterwards.
         """
         self._prompt = prompt
         self._streamed = ""
@@ -72,7 +72,7 @@ class Terminal:
     async def __aenter__(self) -> Terminal:
         self._context = contextvars.copy_context()
         stderr = sys.stderr
-        self._patch.enter_context(patch_stdout(raw=True))  # so that any other print goes above the prompt as well
+        self._patch.enter_context(patch_stdout(raw=True))  # any other print goes above the prompt as well
         if not stderr.isatty():  # a redirected stream does not disturb the prompt
             self._patch.enter_context(contextlib.redirect_stderr(stderr))
         return self
@@ -121,7 +121,7 @@ class Terminal:
         """End the line of pieces, as `Screen.end` describes."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # with the mark, these pieces came after the interruption
+        if late and not late.endswith(_OPEN):  # if the mark ends them, these pieces came after the interruption
             line += late
         if line:
             self.show(line)

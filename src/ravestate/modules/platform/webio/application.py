@@ -106,7 +106,8 @@ class AccessMiddleware:
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 answered = MutableHeaders(scope=message)
-                for name, value in _bounds(() if self._inside else access.origins).items():
+                voice = not self._inside and scope["app"].state.sessions.hears
+                for name, value in _bounds(() if self._inside else access.origins, voice=voice).items():
                     answered.setdefault(name, value)  # the board's own header is stricter, so it stays
             await send(message)
 
@@ -119,8 +120,11 @@ class AccessMiddleware:
             log.warning("a page of %s may not embed the chat: add it to the setting webio.origins", origin)
 
 
-def _bounds(framing: Iterable[str]) -> dict[str, str]:
-    """Return headers that restrict scripts, and let only the page's own site and the origins `framing` embed it."""
+def _bounds(framing: Iterable[str], *, voice: bool) -> dict[str, str]:
+    """Return headers that restrict scripts, and let only the page's own site and the origins `framing` embed it.
+
+    The page may use the microphone only if the agent has a `voice`.
+    """
     policy = (
         "default-src 'none'",
         "script-src 'self'",
@@ -134,7 +138,7 @@ def _bounds(framing: Iterable[str]) -> dict[str, str]:
     )
     return {
         "content-security-policy": "; ".join(policy),
-        "permissions-policy": "camera=(), geolocation=(), microphone=()",
+        "permissions-policy": f"camera=(), geolocation=(), microphone=({'self' if voice else ''})",
         "referrer-policy": "no-referrer",
         "x-content-type-options": "nosniff",
     }

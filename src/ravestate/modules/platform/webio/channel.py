@@ -62,6 +62,10 @@ class Channel:
         """Send a frame to the client at once."""
         await self._socket.send_text(text)
 
+    async def send_sound(self, sound: bytes | memoryview) -> None:
+        """Send a binary frame to the client at once."""
+        await self._socket.send_bytes(bytes(sound))
+
     def reply(self, text: str) -> None:
         """Queue a frame for the task that writes; it calls `send_replies`."""
         if len(self._replies) >= self._most:
@@ -104,12 +108,12 @@ class Bucket:
         self._level -= 1
         return max(0.0, -self._level / self._rate)
 
-    def take(self, now: float) -> bool:
-        """Count an event if the limit allows it; return whether it does."""
+    def take(self, now: float, amount: float = 1) -> bool:
+        """Count an event, or a greater amount, if the limit allows it; return whether it does."""
         self._fill(now)
-        if self._level < 1:
+        if self._level < amount:
             return False
-        self._level -= 1
+        self._level -= amount
         return True
 
     def _fill(self, now: float) -> None:

@@ -11,7 +11,7 @@ from ravestate.runtime.run import until_first_ends
 
 from . import protocol
 from .channel import Bucket, Channel
-from .protocol import CLIENT, VERSION, ProtocolError, parse, serialise
+from .protocol import CLIENT, VERSION, ProtocolError, parse, serialise, sound_of
 from .session import Ending, Session
 
 if TYPE_CHECKING:
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 BURST, RATE = 20, 5.0
 """How many frames a client may send in a burst, and per second after it. The server delays further frames, and loses
 none. `Writing` frames have a limit of their own with the same numbers; the server ignores further ones."""
+
+SOUND_BURST, SOUND_RATE = 2 * 32_000, 1.25 * 32_000
+"""How many bytes of sound a client may send in a burst (2 s), and per second after it. The server ignores more."""
+
+REPORTS_BURST, REPORTS_RATE = 40, 20.0
+"""How many `Played` frames a client may send in a burst, and per second after it. The server ignores more."""
 
 REPLIES = 32  # the maximum number of replies that may wait to be sent to a client
 
@@ -51,6 +57,8 @@ class Connection:
         self._suggestions = suggestions
         self._note = note
         self._channel = Channel(socket, REPLIES)
+        self._stream: object = None  # the stream of sound that the client knows
+        self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
 
     async def run(self) -> None:
         """Serve the client until either side closes."""
@@ -59,6 +67,11 @@ class Connection:
     def wake(self) -> None:
         """Wake the task that sends changes in the conversation to the client."""
         self._channel.woken.set()
+
+    def lose_sound(self, why: str) -> None:
+        """Tell the client that its window has lost the line."""
+        self._taken = why
+        self.wake()
 
     async def _serve(self) -> None:
         hello = await self._hello()
@@ -72,9 +85,11 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
-            await self._send(protocol.Welcome(*begin, self._suggestions, self._note))
+            await self._send(protocol.Welcome(*begin, self._suggestions, self._note, session.hears or None))
             await until_first_ends(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
+            if session.line is not None:
+                session.line.leave(self)
             self._sessions.exit(session, self)
 
     async def _hello(self) -> protocol.Hello:
@@ -88,10 +103,23 @@ class Connection:
     async def _read(self, session: Session) -> None:
         now = asyncio.get_running_loop().time
         writing, others = (Bucket(burst=BURST, rate=RATE, now=now()) for _ in range(2))
+        sound = Bucket(burst=SOUND_BURST, rate=SOUND_RATE, now=now())
+        reports = Bucket(burst=REPORTS_BURST, rate=REPORTS_RATE, now=now())
         while True:
             text = await self._channel.receive()
             try:
+                if isinstance(text, bytes) and session.hears:
+                    block = sound_of(text)
+                    if sound.take(now(), len(block)) and session.line is not None:
+                        session.line.hear(self, block)
+                    await asyncio.sleep(0)
+                    continue
                 frame = parse(text, CLIENT)
+                if isinstance(frame, protocol.Played) and session.hears:
+                    if reports.take(now()) and session.line is not None:
+                        session.line.report(self, frame.n, frame.samples)
+                    await asyncio.sleep(0)
+                    continue
                 if isinstance(frame, protocol.Writing):
                     if writing.take(now()):
                         session.notice_writing()
@@ -108,17 +136,30 @@ class Connection:
                 raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
         elif isinstance(frame, protocol.Ping):
             self._reply(protocol.Pong())
+        elif isinstance(frame, protocol.Microphone | protocol.Played | protocol.Hush):
+            self._take_sound(frame, session)
         elif isinstance(frame, protocol.Bye):
             self._sessions.leave(session, Ending.BYE)
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
+
+    def _take_sound(self, frame: protocol.Microphone | protocol.Played | protocol.Hush, session: Session) -> None:
+        if not session.hears:
+            raise ProtocolError("deaf", "this agent neither hears nor speaks: it needs a module such as voiceio")
+        if isinstance(frame, protocol.Hush):
+            session.hush()
+        elif isinstance(frame, protocol.Microphone) and frame.on:
+            self._taken = None
+            session.take_line(self)
+        elif isinstance(frame, protocol.Microphone) and session.line is not None:
+            session.line.leave(self)
 
     def _reply(self, frame: protocol.ServerFrame) -> None:
         self._channel.reply(serialise(frame))
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
         """Send all that the client lacks: a name other than `agent`, messages after number `last`, a new `Piece`."""
-        shown, typing, paused = "", False, False
+        shown, typing, paused, caption, marked = "", False, False, "", 0
         woken = self._channel.woken
         while True:
             woken.clear()
@@ -142,11 +183,34 @@ class Connection:
             if session.paused != paused:
                 paused = session.paused
                 await self._send(protocol.Paused(paused))
+            if session.caption != caption:
+                caption = session.caption
+                await self._send(protocol.Caption(caption))
+            marks, marked = session.history.marks_since(marked), session.history.marked
+            for mark in marks:
+                if mark.n <= last:  # a later message carries its mark
+                    await self._send(mark)
+            await self._write_sound(session)
             if session.ended is not None and last == session.history.last:
                 await self._send(protocol.Ended(session.ended.for_visitor))
                 await self._channel.end()
                 return
             await woken.wait()
+
+    async def _write_sound(self, session: Session) -> None:
+        """Send the agent's sound, if this window has the line, or the loss of the line."""
+        if self._taken is not None:
+            why, self._taken = self._taken, None
+            await self._send(protocol.Taken(why))
+        line = session.line
+        while line is not None and line.window is self:
+            if (line, line.stream) != self._stream:
+                self._stream = line, line.stream
+                await self._send(protocol.Flush(line.stream))
+            elif (sound := line.fetch(self)) is not None:
+                await self._channel.send_sound(sound)
+            else:
+                return
 
     def _name_of(self, session: Session) -> str:
         """Return the agent's name for the page of a conversation."""

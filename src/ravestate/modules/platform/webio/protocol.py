@@ -1,4 +1,4 @@
-"""The web protocol, version 1: JSON frames over a WebSocket between an agent and its visitors.
+"""The web protocol, version 1: JSON frames, and sound, over a WebSocket between an agent and its visitors.
 
 ``docs/reference/web-protocol.md`` describes each frame. ``tools/protocol.py`` writes the page's TypeScript from this file.
 Nothing here reads or writes a connection: `parse` and `serialise` translate between text and records.
@@ -24,8 +24,9 @@ from ravestate.modules._text import printable
 
 __all__ = [
     "CLIENT", "CLOSING_CODES", "LONGEST_NAME", "LONGEST_TEXT", "SERVER", "VERSION", "Bye", "ClientFrame", "Ended",
-    "Error", "Hello", "Message", "Paused", "Piece", "Ping", "Pong", "ProtocolError", "Renamed", "Say",
-    "ServerFrame", "Typing", "Welcome", "Writing", "heard_text", "name_of", "parse", "serialise",
+    "Caption", "Error", "Flush", "Heard", "Hello", "Hush", "Message", "Microphone", "Paused", "Piece", "Ping", "Played",
+    "Pong", "ProtocolError", "Renamed", "Say", "ServerFrame", "Taken", "Typing", "Welcome", "Writing", "heard_text",
+    "LONGEST_SOUND", "name_of", "parse", "serialise", "sound_of",
 ]  # fmt: skip
 
 VERSION = 1
@@ -36,6 +37,9 @@ LONGEST_NAME = 80
 
 LONGEST_TEXT = 10_000
 """The maximum number of characters in one utterance of a visitor."""
+
+LONGEST_SOUND = 32_000
+"""The maximum number of bytes of sound in one frame from a client: 1 s."""
 
 GREATEST = 2**53 - 1
 """The greatest whole number that every JSON reader can hold."""
@@ -84,6 +88,19 @@ def heard_text(text: str) -> str:
     if not text.strip():
         raise ProtocolError("empty", 'say: "text" has nothing in it')
     return text
+
+
+def sound_of(data: bytes) -> bytes:
+    """Return the sound in a binary frame from a client.
+
+    Raises:
+        ProtocolError: The frame does not hold whole samples, or holds too many.
+    """
+    if not 0 < len(data) <= LONGEST_SOUND or len(data) % 2:
+        raise _malformed(
+            f"sound is 1 to {LONGEST_SOUND // 2:,} samples of two bytes (16 kHz, mono, little-endian), not {len(data):,} bytes"
+        )
+    return data
 
 
 def name_of(text: str) -> str:
@@ -180,6 +197,39 @@ class Ping:
     type: Literal["ping"] = "ping"
 
 
+@dataclass(frozen=True, slots=True)
+class Microphone:
+    """The visitor's microphone goes on or off in this window.
+
+    While it is on, binary frames carry its sound, and this window plays the agent's sound. At most one window of a
+    conversation has it: the last one that turned it on.
+    """
+
+    on: Truth
+    type: Literal["microphone"] = "microphone"
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """The loudspeaker's position. While sound plays, the client sends this frame every 100 ms, and at the sound's end.
+
+    Attributes:
+        n: The number of the stream, from the last `Flush`.
+        samples: The number of samples of this stream that the loudspeaker has played.
+    """
+
+    n: Number
+    samples: Number
+    type: Literal["played"] = "played"
+
+
+@dataclass(frozen=True, slots=True)
+class Hush:
+    """The visitor asks the agent to stop speaking."""
+
+    type: Literal["hush"] = "hush"
+
+
 # ------------------------------------------------------------------------------------ from the server
 
 
@@ -198,6 +248,7 @@ class Welcome:
         writing: Whether the server accepts `Writing` frames. Early server releases did not.
         suggestions: A few things that the visitor could say first.
         note: A line of text that the page shows until the visitor has said something; None for no line.
+        voice: Whether the agent can hear and speak: the server accepts `Microphone` and sound.
     """
 
     v: Version
@@ -210,6 +261,7 @@ class Welcome:
     writing: Truth = False
     suggestions: tuple[Text, ...] = ()
     note: Text | None = None
+    voice: Truth | None = None
     type: Literal["welcome"] = "welcome"
 
 
@@ -231,6 +283,7 @@ class Message:
         text: Plain text.
         time: The time of the utterance, in milliseconds since 1970 (UTC).
         id: The `id` of the client's `Say`, if the utterance came from a `Say`.
+        heard: The part of the utterance that the visitor heard, if the agent's speech was cut.
     """
 
     n: Number
@@ -238,6 +291,7 @@ class Message:
     text: Text
     time: Number
     id: Id | None = None
+    heard: Text | None = None
     type: Literal["message"] = "message"
 
 
@@ -272,6 +326,48 @@ class Paused:
 
 
 @dataclass(frozen=True, slots=True)
+class Caption:
+    """The words so far of an utterance that the visitor is still speaking; empty once it has become a `Message`."""
+
+    text: Text
+    type: Literal["caption"] = "caption"
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """The part of a message of the agent that the visitor heard: all of it, unless the agent's speech was cut.
+
+    Attributes:
+        n: The message's number.
+        text: The part that was heard.
+    """
+
+    n: Number
+    text: Text
+    type: Literal["heard"] = "heard"
+
+
+@dataclass(frozen=True, slots=True)
+class Flush:
+    """The client drops all sound that it has not played. The sound after this frame is a new stream.
+
+    Attributes:
+        n: The number of the new stream.
+    """
+
+    n: Number
+    type: Literal["flush"] = "flush"
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """This window no longer has the microphone; `text` says why."""
+
+    text: Text
+    type: Literal["taken"] = "taken"
+
+
+@dataclass(frozen=True, slots=True)
 class Ended:
     """The conversation is over; `text` says why. The server then closes the connection."""
 
@@ -302,8 +398,10 @@ class Pong:
     type: Literal["pong"] = "pong"
 
 
-ClientFrame = Hello | Say | Writing | Bye | Ping
-ServerFrame = Welcome | Renamed | Message | Piece | Typing | Paused | Ended | Error | Pong
+ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush
+ServerFrame = (
+    Welcome | Renamed | Message | Piece | Typing | Paused | Caption | Heard | Flush | Taken | Ended | Error | Pong
+)
 
 _BY_TYPE = Field(discriminator="type")
 CLIENT: TypeAdapter[ClientFrame] = TypeAdapter(Annotated[ClientFrame, _BY_TYPE])

@@ -31,6 +31,34 @@ async def end_piece(ctx: rs.RuleContext) -> None:
         session.fall_silent()
 
 
+@module.rule(when=rawio.input.changed.max_age(None).detached(), reads=page)
+async def show_input(ctx: rs.RuleContext) -> None:
+    """Show the visitor's words on the page if they came in another way, such as by voice."""
+    if session := ctx[page]:
+        session.note_input(ctx.payload(rawio.input.changed))
+
+
+@module.rule(when=rawio.hearing.max_age(None).detached(), reads=page, background=True)
+async def caption(ctx: rs.RuleContext) -> None:
+    """Show the words of an utterance that the visitor is still speaking."""
+    if session := ctx[page]:
+        session.show_caption(ctx.payload(rawio.hearing))
+
+
+@module.rule(when=rawio.hush.max_age(None).detached(), reads=page, background=True)
+async def hush(ctx: rs.RuleContext) -> None:
+    """Silence the visitor's loudspeaker. The rule that speaks has heard of it already."""
+    if (session := ctx[page]) and session.line is not None:
+        session.line.stop()
+
+
+@module.rule(when=rawio.heard.changed.max_age(None).detached(), reads=page, background=True)
+async def mark_heard(ctx: rs.RuleContext) -> None:
+    """Mark the part of the agent's last utterance that the visitor heard."""
+    if session := ctx[page]:
+        session.mark_heard(ctx.payload(rawio.heard.changed))
+
+
 @module.rule(when=interloc.agent.changed.max_age(None).detached(), reads=page, background=True)
 async def show_name(ctx: rs.RuleContext) -> None:
     """Show the agent's new name on the page."""

@@ -4,29 +4,33 @@ from __future__ import annotations
 
 import asyncio
 import enum
+import itertools
 import logging
+import re
 import secrets
 import time
-from collections import OrderedDict
-from typing import TYPE_CHECKING, Protocol
+from collections import OrderedDict, deque
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable, without_controls
 
+from .line import PageLine, Window
 from .names import page
-from .protocol import LONGEST_NAME, name_of
+from .protocol import LONGEST_NAME, Heard, Message, name_of
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
-from collections import deque
-from collections.abc import Iterator
-from typing import Literal
-
-from .protocol import Message
 
 REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
 GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
+RECENT = 5  # the number of the agent's newest messages that `rawio.heard` can mean
+LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
+WORD = re.compile(r"\S+")
+LINGER = 30.0  # the seconds for which the line stays in ``rawio.sound`` after the microphone went off
 FAREWELL = 5.0  # the seconds that the agent has for a farewell
 
 log = logging.getLogger("ravestate.webio")
@@ -36,6 +40,7 @@ Speaker = Literal["user", "agent"]
 
 MESSAGES = 500  # the maximum number of messages that a history keeps
 CHARACTERS = 200_000  # the maximum number of characters that a history keeps
+MARKS = 32  # the maximum number of marks that a history keeps for windows that lag behind
 
 
 class History:
@@ -46,6 +51,9 @@ class History:
         self._most = messages
         self._characters = characters
         self._size = 0
+        self._marks: deque[Heard] = deque(maxlen=MARKS)
+        self.marked = 0
+        """How many marks there have been so far."""
         self.last = 0
         """The number of the newest message; 0 before the first."""
 
@@ -68,6 +76,24 @@ class History:
         while len(self._messages) > self._most or self._size > self._characters:
             self._size -= len(self._messages.popleft().text)
         return message
+
+    def mark(self, message: Message, heard: str) -> None:
+        """Note which part of a kept message the visitor heard."""
+        place = message.n - self.first
+        if 0 <= place < len(self._messages):
+            self._messages[place] = replace(message, heard=None if heard == message.text else heard)
+            self._marks.append(Heard(message.n, heard))
+            self.marked += 1
+
+    def marks_since(self, number: int) -> list[Heard]:
+        """Return the newest marks, without the first `number` ones."""
+        new = self.marked - number
+        return list(self._marks)[-new:] if new > 0 else []
+
+    def recent(self, speaker: Speaker, most: int) -> list[Message]:
+        """Return the newest messages of a speaker, newest first."""
+        said = (message for message in reversed(self._messages) if message.speaker == speaker)
+        return list(itertools.islice(said, most))
 
     def since(self, number: int) -> Iterator[Message]:
         """Yield the messages with numbers greater than `number`, in order, including those added meanwhile."""
@@ -106,7 +132,7 @@ class Session:
     A session has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
     """
 
-    def __init__(self, context: Context, name: str | None = None) -> None:
+    def __init__(self, context: Context, name: str | None = None, *, hears: bool = False) -> None:
         self.id = secrets.token_urlsafe(24)
         """The conversation's secret id; a client sends it to resume."""
         self.visitor = f"webio-{secrets.token_hex(4)}"
@@ -120,6 +146,12 @@ class Session:
         """The text so far of a growing utterance of the agent; empty if there is none."""
         self.spoken = False
         """Whether the visitor has ever said anything."""
+        self.hears = hears
+        """Whether the agent can hear and speak."""
+        self.line: PageLine | None = None
+        """The line to the visitor's microphone and loudspeaker; None while the microphone is off in all windows."""
+        self.caption = ""
+        """The words so far of an utterance that the visitor is still speaking."""
         self.ended: Ending | None = None
         """The reason for which the conversation is over; None while it goes on."""
         self.onlookers: set[Onlooker] = set()
@@ -127,6 +159,9 @@ class Session:
         self._left: asyncio.Event = asyncio.Event()
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
+        self._put: deque[str] = deque()  # words that `show_input` will see, and that the history has already
+        self._heard_part: str | None = None  # the part heard of a growing utterance whose speech was cut
+        self._hanging_up: asyncio.TimerHandle | None = None
         self._working = False
         self._following: asyncio.Task[None] | None = None
 
@@ -139,6 +174,8 @@ class Session:
             async with self.context as context:
                 self._begun = True
                 context.put(page, self)
+                if self.line is not None:
+                    context.put(rawio.sound, self.line)
                 context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
                 await self._until_left()
                 users = self.context.read(interloc.users)
@@ -154,6 +191,7 @@ class Session:
             if self._following is not None:
                 self._following.cancel()
             self.fall_silent()
+            self._hang_up()
             self.ended = self._reason
             self.notify()
 
@@ -196,10 +234,76 @@ class Session:
             self._heard.popitem(last=False)
         self.spoken = True
         self.history.add("user", text, _now(), id)
+        self._put.append(text)
         self.context.put(rawio.input, text)
         self.show_work(GRACE)
         self.notify()
         return True
+
+    def note_input(self, text: str) -> None:
+        """Note an input of the agent. If it did not come through `hear`, add it to the history."""
+        if text in self._put:
+            while self._put.popleft() != text:
+                pass  # a later input in the same instant stands for this one
+            return
+        self.caption = ""
+        self.spoken = True
+        if (text := printable(text)).strip():
+            self.history.add("user", text, _now())
+            self.show_work(GRACE)
+        self.notify()
+
+    def show_caption(self, text: str) -> None:
+        """Show the words so far of an utterance that the visitor is still speaking."""
+        self.caption = printable(text)[:LONGEST_CAPTION]
+        self.notify()
+
+    def mark_heard(self, text: str) -> None:
+        """Note the part that the visitor heard of the agent's last utterance."""
+        words = text.split()
+        if self.partial and self.partial.split()[: len(words)] == words:
+            self._heard_part = text  # the utterance is not complete yet
+            return
+        for message in self.history.recent("agent", RECENT):
+            ends = [word.end() for word in WORD.finditer(message.text)]
+            if message.text.split()[: len(words)] == words:
+                cut = len(message.text) if len(words) == len(ends) else ends[len(words) - 1] if words else 0
+                if cut < len(message.text.rstrip()) or message.heard is not None:
+                    self.history.mark(message, message.text[:cut])
+                    self.notify()
+                return
+
+    def take_line(self, window: Window) -> None:
+        """Give the line to a window; a line that was not there goes into ``rawio.sound``."""
+        self._stay_on_line()
+        if self.line is None or self.line.closed:
+            self.line = PageLine(self._linger)
+            if self._begun:
+                self.context.put(rawio.sound, self.line)
+        self.line.take(window)
+
+    def _linger(self) -> None:
+        """Keep the line for a while without a window: the agent hears the end of the utterance, and may be quick again."""
+        self._stay_on_line()
+        self._hanging_up = asyncio.get_running_loop().call_later(LINGER, self._hang_up)
+
+    def _stay_on_line(self) -> None:
+        if self._hanging_up is not None:
+            self._hanging_up.cancel()
+            self._hanging_up = None
+
+    def _hang_up(self) -> None:
+        line, self.line = self.line, None
+        if line is not None:
+            if self._begun:
+                self.context.put(rawio.sound, None)
+            line.close()
+        self._stay_on_line()
+
+    def hush(self) -> None:
+        """Ask the agent to stop speaking."""
+        if self._begun:
+            self.context.emit(rawio.hush)
 
     def notice_writing(self) -> None:
         """Tell the agent that the visitor is writing."""
@@ -218,6 +322,9 @@ class Session:
         self.partial = ""
         if text.strip():
             self.history.add("agent", text, _now())
+            if self._heard_part is not None:
+                part, self._heard_part = self._heard_part, None
+                self.mark_heard(part)
         self.notify()
 
     def grow(self, piece: str) -> None:

@@ -1,4 +1,4 @@
-"""The declaration of a goal: an ordinary rule of its module, and one or two more that end it."""
+"""The declaration of a goal. A goal is an ordinary rule of its module, with further rules that end the goal."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ def goal(
     """Declare a goal of the agent.
 
     The agent pursues a goal by saying something, when it is bored and no other goal has just had its turn. The goal is
-    over when `done` or `refused` comes, or after the last try. The user goes first: their words interrupt a pursuit,
-    and take the opportunity away.
+    over when `done` or `refused` comes, or after the last try. The user has priority: their words interrupt a pursuit,
+    and end the opportunity.
 
     The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
@@ -122,7 +122,7 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # no `cooldown`, which would not hold the rule back: it rests by resigning
+        weight=priority,  # a `cooldown` would not hold the rule back, so the rule rests by resigning
         until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say()` runs
         detached=True,  # a new causal group begins, so that rules can react to the user's answer
         name=name,
@@ -182,7 +182,7 @@ async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
 
 
 def _condition(event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None) -> Condition:
-    """Return the condition that ends a goal: `event`, or words that fit `words`, not `unless`. It consumes nothing."""
+    """Return a condition that ends a goal and consumes nothing: `event`, or words that fit `words` and not `unless`."""
     if words is None:
         assert not isinstance(event, str)  # if `event` is a text, `words` is its pattern
         return watching(event)
@@ -211,13 +211,13 @@ def _expression(goal: str, what: str, event: Condition | str | None) -> re.Patte
 def _check(goal: str, say: object, intent: object, priority: object, cooldown: object, tries: object) -> None:
     if (say is None) == (intent is None):
         raise rs.DeclarationError(
-            f"goal {goal}: say={say!r} and intent={intent!r}: write one of them, such as say='Shall we play?'"
+            f"goal {goal}: say={say!r} and intent={intent!r}: give exactly one of them, such as say='Shall we play?'"
         )
     if say is not None and not callable(say):
         texts = list(cast("Iterable[object]", (say,) if isinstance(say, str) or not isinstance(say, Iterable) else say))
         if not texts or not all(isinstance(text, str) and text for text in texts):
             raise rs.DeclarationError(
-                f"goal {goal}: say={say!r}: write a text, several, or a function of the rule context"
+                f"goal {goal}: say={say!r}: write a text, several texts, or a function of the rule context"
             )
     for what, number in (("priority", priority), ("cooldown", cooldown)):
         if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0 < number < math.inf:
@@ -261,6 +261,6 @@ def negated(condition: Condition) -> Condition:
             return AllOf(tuple(map(negated, parts)))
         case _:
             raise rs.DeclarationError(
-                f"unless={condition} has a signal in it: write unless=slot.holds(predicate), with a slot that "
-                "keeps the signal's state"
+                f"unless={condition} contains a signal: write unless=slot.holds(predicate), with a slot that a rule on "
+                "the signal writes"
             )

@@ -42,7 +42,7 @@ class Settings(rs.Settings):
     """The settings of agenda: when the agent may pursue goals, and goals that need no code."""
 
     gap: Annotated[float, Field(ge=0)] = 15.0
-    """The least number of seconds from the pursuit of one goal to the pursuit of the next."""
+    """The minimum number of seconds from the pursuit of one goal to the pursuit of the next."""
     goals: Annotated[tuple[Wish, ...], without_twins] = ()
     """Goals of your own, each with a name and words; see `Wish`."""
 

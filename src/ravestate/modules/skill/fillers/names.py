@@ -25,7 +25,7 @@ filled: rs.Slot[float | None] = module.slot("filled", None)
 """The time of the last filler, in seconds since the context began."""
 
 waiting = module.flag("waiting")
-"""Whether the user has said something and has heard no answer yet; fillers and apologies are for them alone."""
+"""Whether the user has said something and has heard no answer yet. If not, the agent says no filler and no apology."""
 
 promised = module.flag("promised")
 """Whether the agent still owes an answer after a filler."""
@@ -34,4 +34,4 @@ late = module.signal("late")
 """An answer after a filler takes too long; it may still come."""
 
 lost = module.signal("lost")
-"""An answer after a filler does not come: no rule is left that runs or waits."""
+"""No answer comes after a filler, because no rule is left that could answer."""

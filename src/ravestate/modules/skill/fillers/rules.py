@@ -1,4 +1,4 @@
-"""The rules: when a pause is filled."""
+"""The rules that fill a pause while the user waits for an answer."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .names import filled, late, lost, module, promised, waiting
 
 ENOUGH = 5.0
-"""Seconds until another filler may follow."""
+"""The minimum number of seconds between two fillers."""
 REMEMBERED = 120.0
-"""Seconds from the user's words until their answer counts as one to the newest words."""
+"""An answer that comes later than this many seconds after its words counts as an answer to the newest words."""
 
 
 @module.rule(
@@ -37,7 +37,7 @@ def _silent(speaking: bool) -> bool:
 
 
 @module.rule(
-    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # later, the answer may have come
+    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # at any later time, the answer may have come
     reads=(filled, waiting),
     writes=(verbaliser.intent, filled, promised),
 )
@@ -55,7 +55,8 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=rawio.input.changed.max_age(REMEMBERED) & rawio.output.changed.max_age(None)  # one causal group: its answer
+    when=rawio.input.changed.max_age(REMEMBERED)
+    & rawio.output.changed.max_age(None)  # the user's words and their answer
     | rawio.output.changed.max_age(None)
     | rawio.input.changed.detached()
     | rawio.speaking.true.detached(),
@@ -88,7 +89,7 @@ async def notice_late_answer(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=late.max_age(0.0) & promised.holds(bool) & rawio.speaking.holds(_silent), writes=verbaliser.intent)
 async def admit_delay(ctx: rs.RuleContext) -> None:
-    """Say that the answer is still being made: a rule that may yet answer runs or waits."""
+    """Say that the answer takes longer, while a rule that may answer still runs or waits."""
     ctx[verbaliser.intent] = Intent("late", package=__package__)
 
 

@@ -1,4 +1,4 @@
-"""From a question to an answer with a source and a confidence: retrieve, read, weigh."""
+"""The steps from a question to an answer with a source and a confidence: retrieve, read, weigh."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from .shipped import bring_up
 from .stems import Stems
 
 RETRIEVED = 16
-"""The number of passages to compare word by word: so many with any word of a question, and as many with all words."""
+"""The maximum number of passages that the search returns with any word of the question, and of those with all words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The number of these passages to read, in batches. Each batch is read only if the last one had no answer."""
+"""The sizes of the batches in which these passages are read. A batch is read only if those before it had no answer."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Scores that end the reading: `GOOD` for the best of several, `VERY_GOOD` for a single one, `HOPELESS` for the first
-few."""
+"""Best scores that end the reading: `VERY_GOOD` after the first passage, `GOOD` after later passages, and `HOPELESS` or
+less after the first few passages."""
 ENOUGH = 0.4
-"""The minimum share of the question's words (0 to 1) in a passage that is read."""
+"""The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages of a document in view that are all read."""
+"""The maximum number of passages to compare from a document that the thread is about, whatever words they have."""
 LEVEL = 0.8
-"""Scores that differ by less count as equal."""
+"""Two scores count as equal if they differ by less than this."""
 COMMON, COMMON_KIND = 20_000, 2_000
-"""The maximum number of passages for a word to be searched, unless there is no rarer word; and for a word of kinds."""
+"""A word in more passages than this is searched only if all are so common. `COMMON_KIND` is for words of `Question.kinds`."""
 NAMES, KINDS = 0.4, 0.7
-"""The share that counts for a follow-up without words besides names; `KINDS` if the passage has a word of its kind."""
+"""The share of words in a passage if a follow-up has only names: `KINDS` if the passage has a word of `Question.kinds`."""
 WORDS = 24
 """The maximum number of words to search for."""
 
@@ -57,7 +57,7 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The documents' answer; without a text, there is none."""
+    """The documents' answer. If the text is empty, there is no answer."""
 
     question: str
     text: str = ""
@@ -65,15 +65,15 @@ class Answer:
     source: str = ""
     title: str = ""
     confidence: float = 0.0
-    """The probability that it is right: 0 to 1."""
+    """The probability that the text is right, from 0 to 1."""
     candidates: tuple[Candidate, ...] = ()
     """All passages that were read, best first."""
     reason: str = ""
-    """The reason why there is no text."""
+    """The reason why there is no text; empty if there is one."""
 
 
 class Answerer:
-    """An index with a reader. It opens the file at the first question, and again when another one takes its place.
+    """An index with a reader. It opens the file at the first question, and again if another file replaces it.
 
     Thread-safe.
 
@@ -85,12 +85,12 @@ class Answerer:
     """
 
     def __init__(self, path: Path, *, collection: bool = True, reranker: Path | str | None = None) -> None:
-        """Nothing is opened or loaded yet.
+        """Make an answerer; it opens and loads nothing yet.
 
         Args:
             path: The index; it is created if there is none.
-            collection: Whether it should contain the collection that comes with Ravestate.
-            reranker: The folder of another reader, see `Reranker`.
+            collection: Whether the index should contain the collection that comes with Ravestate.
+            reranker: The folder of another reader; see `Reranker`.
         """
         self._path = path
         self._collection = collection
@@ -100,7 +100,7 @@ class Answerer:
         self._stems: Stems | None = None
 
     def load(self) -> None:
-        """Open the index, add the collection, and load the reader. `answer` does it as well.
+        """Open the index, add the collection, and load the reader, if this has not happened yet. `answer` also does so.
 
         Raises:
             PlatformError: The index cannot be opened, or the reader is not installed.
@@ -119,7 +119,7 @@ class Answerer:
         """Answer an utterance from the documents.
 
         Args:
-            heard: The utterance, or what is known of it already.
+            heard: The utterance, its parse, or its question.
             titles: The titles of the documents to search; empty for all.
 
         Raises:
@@ -145,7 +145,7 @@ class Answerer:
         )
 
     def titled(self, name: str) -> str:
-        """Return the title of a document about `name`, in any case, with or without *the*; empty if there is none."""
+        """Return the title of a document about `name`, or "". Upper and lower case, and *the*, make no difference."""
         return self._opened().title_of(name)
 
     # ---------------------------------------------------------------------------------- internals
@@ -168,7 +168,7 @@ class Answerer:
             return self._index
 
     def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
-        """Return the passages to read with their share of the question, best first; all meet its qualifiers."""
+        """Return the passages that meet the question's qualifiers, each with its share of the question, best first."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
         groups = (*asked, question.kinds[:WORDS], *question.needs)
@@ -184,7 +184,7 @@ class Answerer:
         rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
         in_view = [each for title in titles for each in index.passages(title, SHORT)]
         found = [*in_view, *index.search(rare or searched, RETRIEVED, without=question.avoids)]
-        # A passage with all words may be hidden behind many that repeat the rarest one.
+        # Many passages that repeat the rarest word may rank above a passage that has all words.
         found = list(dict.fromkeys([*found, *index.search_all(asked, RETRIEVED, without=question.avoids)]))
         avoided = {stem for stems in self._stems(*question.avoids) for stem in stems}
 
@@ -218,7 +218,7 @@ class Answerer:
             )
             if fits and all(has(have, need) for need in question.needs):
                 retrieved.append((covered, each))
-        # The sort is stable, so BM25 decides between equals.
+        # The sort is stable, so passages with equal shares stay in the order of BM25.
         return sorted(retrieved, key=lambda each: -each[0])
 
     def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
@@ -251,7 +251,7 @@ def _chance(question: Question, best: Candidate) -> float:
 
 
 def _readable(found: Found) -> str:
-    """Return a passage for the reader, with its title unless the passage names it."""
+    """Return a passage for the reader: with its title before it, unless the passage contains the title."""
     text = found.text if found.title.lower() in found.text.lower() else f"{found.title}: {found.text}"
     return text[:LONGEST]
 
@@ -273,7 +273,7 @@ _TIME = re.compile(
 
 
 def _can_answer(question: Question, found: Found) -> bool:
-    """Return whether a passage has the kind of thing that was asked for: a number, or the name of a place."""
+    """Return whether a passage has the kind of thing that the question asks for, such as a number or a place."""
     asked = question.text.lower()
     if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
         return _NUMBER.search(found.text) is not None
@@ -292,5 +292,5 @@ def _can_answer(question: Question, found: Found) -> bool:
 
 
 def _besides(text: str, asked: set[str]) -> int:
-    """Return the number of words of `text`, outside brackets, that were not asked for."""
+    """Return the number of words of `text`, outside brackets, that are not in `asked`."""
     return len(set(re.findall(r"[a-z]{2,}", re.sub(r"\([^)]*\)", "", text.lower()))) - asked)

@@ -1,4 +1,4 @@
-"""Files and folders, brought into an index: new and changed files are read, deleted ones removed."""
+"""Bring an index up to date with files and folders: read new and changed files, and remove deleted files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Outcome:
     kind: Kind
     passages: int = 0
     why: str = ""
-    """Why it is unreadable."""
+    """Why the file is unreadable; empty if it is not."""
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Found:
     """The files under some paths, before they are read."""
 
     files: list[tuple[Path, str]] = field(default_factory=list[tuple[Path, str]])
-    """Each with the source that answers name."""
+    """The files, each with the source that answers name."""
     roots: list[Path] = field(default_factory=list[Path])
     """The folders in which files may have been deleted."""
     unreadable: list[Outcome] = field(default_factory=list[Outcome])
@@ -95,7 +95,7 @@ def name_of(path: Path) -> str:
 
 
 def within(name: str, root: Path) -> bool:
-    """Return whether the file of this name is `root`, or in it."""
+    """Return whether the file of this name is `root`, or is inside it."""
     above = name_of(root)
     return name == above or name.startswith(above.rstrip(os.sep) + os.sep)
 

@@ -21,11 +21,11 @@ _TIMED = ("old", "early", "late")
 
 
 def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the result of a comparison; None if the utterance is none, or if the documents lack a number.
+    """Return the result of a comparison; None if the utterance compares nothing, or if the documents lack a number.
 
     Args:
         heard: The utterance.
-        thread: The latest questions, oldest first: *which one is bigger?*.
+        thread: The latest questions, oldest first; *which one is bigger?* refers to them.
         ask: A function that asks the documents a question.
     """
     table: dict[str, tuple[str, int]] = lexicon("reckoning.yaml")["comparatives"]
@@ -79,7 +79,7 @@ def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> 
 
 
 def _both(heard: Parse, verdict: str, one: Answer, other: Answer) -> Answer:
-    """Return a verdict with the two answers that it stands on."""
+    """Return a verdict with the two answers that support it."""
     text = " ".join(dict.fromkeys((verdict, one.text, other.text)))
     sources = " and ".join(dict.fromkeys(filter(None, (one.source, other.source))))
     return Answer(heard.text, text, sources, one.title, min(one.confidence, other.confidence))
@@ -166,7 +166,7 @@ def begun(name: str, ask: Callable[[str], Answer]) -> Answer | None:
 def _values(one: str, other: str, base: str) -> tuple[float, float] | None:
     """Return both values in the same unit; None if they cannot be compared."""
     if base in _TIMED:
-        sign = -1.0 if base == "old" else 1.0  # the earlier, the older
+        sign = -1.0 if base == "old" else 1.0  # the thing with the earlier date is older
         days = [sign * dates[0].day.toordinal() for dates in (dates_in(one), dates_in(other)) if dates]
         return (days[0], days[1]) if len(days) == 2 else None
     pairs = (left.beside(right) for left in measured(one) for right in measured(other))

@@ -10,7 +10,7 @@ INTERCEPT, SCORE, COVERED = -5.806, 0.699, 4.481
 def confidence(score: float, covered: float) -> float:
     """Return the probability (0 to 1) that a passage answers the question.
 
-    The lead over the next best passage tells nothing more: the next best is often right, too.
+    The lead over the next best passage does not count, because the next best passage is often right, too.
 
     Args:
         score: The reader's score of the passage.
@@ -20,10 +20,10 @@ def confidence(score: float, covered: float) -> float:
 
 
 def in_talk(score: float, own: float) -> float:
-    """Return the same for a follow-up; `own` is the share of its words besides the names that come from the talk.
+    """Return this probability for a follow-up. `own` is the share of its words, without names from earlier questions.
 
-    A high score alone is enough, because a follow-up rarely has the document's own words. A wrong answer is worse than
-    none, so that doubt counts twice.
+    A high score alone is enough, because a follow-up rarely has the document's own words. Doubt counts twice, because a
+    wrong answer is worse than no answer.
     """
     alone = 1.46 * max(score - 6.0, 0.0) * (1.0 - own)
     return 1.0 / (1.0 + math.exp(-(-9.4 + 0.48 * max(score, 0.0) + 7.72 * own + alone)))

@@ -1,4 +1,4 @@
-"""Documents, and passages that can be answers."""
+"""Documents, and the passages of documents. A passage can be an answer."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """A sentence or two."""
+    """One sentence, or two."""
 
     text: str
     hints: str = ""
-    """Further words that a question may use for it. The search uses them; they never appear."""
+    """Further words that a question may use for the passage. The search uses them, and no answer shows them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,4 +24,4 @@ class Document:
     source: str
     """The source that an answer names."""
     passages: Iterable[Passage]
-    """The passages, possibly from a generator: a large file is never in memory as a whole."""
+    """The passages. They may come from a generator, so that a large file is never in memory as a whole."""

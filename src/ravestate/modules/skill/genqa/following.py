@@ -1,4 +1,4 @@
-"""The answer to an utterance in a talk: the readings of it that the documents support best."""
+"""The answer to an utterance in a conversation: the answer to the reading that the documents support best."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
 CLEAR = 0.9
-"""The confidence of an answer that ends the search."""
+"""An answer of this confidence ends the search."""
 AGAIN = 5
-"""The maximum number of words that repeat a sum with another number: *and how about 300?*."""
+"""The maximum number of words in an utterance that repeats a sum with another number: *and how about 300?*."""
 MOST = 8
 """The maximum number of readings that are tried."""
 
@@ -39,7 +39,7 @@ def answer_in(
         answerer: The documents.
         heard: The utterance.
         thread: The latest questions, oldest first.
-        settings: The confidence that an answer needs.
+        settings: The settings of the module, with the confidence that an answer needs.
         now: Seconds since the context began.
     """
     if (reckoned := _reckoned(heard, thread, settings)) is not None:
@@ -82,7 +82,7 @@ def answer_in(
 
 
 def _about(answerer: Answerer, question: Question, reading: Reading, latest: str) -> tuple[Question, tuple[str, ...]]:
-    """Return a question about something in view, and the titles of the documents that may have the answer."""
+    """Return a question about something in the thread, and the titles of the documents that may have the answer."""
     about = as_question(reading.about)
     title = answerer.titled(reading.about)
     given = question.given | {word.lower() for word in about.words}
@@ -97,7 +97,7 @@ def _about(answerer: Answerer, question: Question, reading: Reading, latest: str
 
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
-    """Return the result of a sum; None if the utterance is none."""
+    """Return the result of a sum; None if the utterance is no sum."""
     told, now = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone()
     text = heard.text
     try:
@@ -120,7 +120,7 @@ def _warn(error: str) -> None:
 
 
 def _again(text: str, before: str) -> str:
-    """Return the sum before with another number or date: *and of 200?*; empty if the text has none."""
+    """Return the previous sum with the text's number or date (*and of 200?*); empty if the text has no number or date."""
     dates, old = dates_in(text), dates_in(before)
     if dates and old:
         return before.lower().replace(old[-1].shown, dates[-1].shown)
@@ -129,7 +129,7 @@ def _again(text: str, before: str) -> str:
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
-    """Return the answer; another question may decide one of yes or no, and a vague one has no sure answer."""
+    """Return the answer. A yes-or-no question may get the answer of another question; a vague one gets no sure answer."""
     if question.kind is QuestionWord.YES_NO and not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)
         if decided.confidence >= settings.sure:
@@ -162,7 +162,7 @@ def other_wording(question: str) -> str:
         return tree.phrase(some)
 
     place = next((word for word in words if word.low == "in"), None)
-    for word in words[2:]:  # the subject before *the ... of*
+    for word in words[2:]:  # the words before *the ... of* are the subject
         if word.low == "the" and any(other.low == "of" for other in words[word.index :]):
             return f"what is {text(words[word.index :])}?"
     if place is not None and 1 < place.index < len(words) - 1:
@@ -172,7 +172,7 @@ def other_wording(question: str) -> str:
 
 
 def _shifted(confidence: float, prior: float) -> float:
-    """Return a probability, moved by a logarithm of odds."""
+    """Return a probability, after its log odds have grown by `prior`."""
     if not 0.0 < confidence < 1.0:
         return confidence
     return 1 / (1 + math.exp(-(math.log(confidence / (1 - confidence)) + prior)))

@@ -17,9 +17,9 @@ from .document import Document
 from .stems import TOKENIZER
 
 FORMAT = 1
-"""The version of the file format. A greater one is refused."""
+"""The version of the file format. A file of a greater version is refused."""
 APPLICATION = 0x52764741
-"""The mark of our files."""
+"""The number in an SQLite file that marks it as an index of genqa."""
 
 _SCHEMA = f"""
 CREATE TABLE files (
@@ -36,21 +36,21 @@ CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
 PRAGMA application_id = {APPLICATION};
 PRAGMA user_version = {FORMAT};
 """
-# The weight of a match in the title, the text and the hints.
+# The ranking, with the weights of matches in the title, the text and the hints.
 _RANK = "bm25(passages, 1.0, 1.0, 0.7)"
 
 
 @dataclass(frozen=True, slots=True)
 class IndexedFile:
-    """A file at the time when it was read."""
+    """A file, as it was when it was read."""
 
     path: str
     size: int
-    """Bytes."""
+    """The size in bytes."""
     modified: int
-    """Nanoseconds, from the file system."""
+    """The time of the last change in nanoseconds, from the file system."""
     digest: str
-    """A hash of its content."""
+    """A hash of the file's content."""
     passages: int = 0
 
 
@@ -67,8 +67,8 @@ class Found:
 class Index:
     """Passages on disk. Any number of threads and processes may read while one writes.
 
-    Each file is added, replaced or removed as a whole, in one transaction. After Ctrl-C, ``kill -9`` or on a full disk the
-    index is as it was before.
+    Each file is added, replaced or removed as a whole, in one transaction. If Ctrl-C, ``kill -9`` or a full disk
+    interrupts the transaction, the index stays as it was before.
 
     Example:
         ::
@@ -82,11 +82,11 @@ class Index:
         """Open the file, or create it.
 
         Args:
-            path: The file; its folder is created as well.
+            path: The file. A missing file or folder is created.
             timeout: Seconds to wait for another process that writes.
 
         Raises:
-            PlatformError: It cannot be opened, has a newer version, or is not an index.
+            PlatformError: The file cannot be opened, has a newer version, or is not an index.
         """
         self.path = path
         self._lock = threading.RLock()
@@ -128,7 +128,7 @@ class Index:
         return (IndexedFile(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
 
     def file(self, path: str) -> IndexedFile | None:
-        """Return the file under this path; None if it was not read."""
+        """Return the file with this path; None if it was not read."""
         rows = self._rows("SELECT * FROM files WHERE path = ?", path)
         return IndexedFile(*rows[0]) if rows else None
 
@@ -142,7 +142,7 @@ class Index:
         return found[0][0] if found else ""
 
     def title_of(self, name: str) -> str:
-        """Return the title that is `name`, in any case, with or without *the*; empty if there is none."""
+        """Return the title that is `name`, or "". Upper and lower case, and *the*, make no difference."""
         bare = name.lower().removeprefix("the ")
         query = "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1"
         found = self._rows(query, bare, f"the {bare}")
@@ -173,7 +173,7 @@ class Index:
         return self.search_all([words], limit, without=without)
 
     def search_all(self, groups: Sequence[Sequence[str]], limit: int, *, without: Sequence[str] = ()) -> list[Found]:
-        """Return passages like `search`, with a word of each group."""
+        """Return passages as `search` does, but only those that have a word of each group."""
         query = " AND ".join(f"({any_of})" for group in groups if (any_of := _any_of(group)))
         if not query:
             return []
@@ -188,8 +188,8 @@ class Index:
         """Add a file, or replace it; return the number of its passages.
 
         Raises:
-            PlatformError: The disk is full, or another process has been writing for too long. The index is unchanged then,
-                and also if reading `documents` raises.
+            PlatformError: The disk is full, or another process has been writing for too long. After this error, and after
+                an error in reading `documents`, the index is unchanged.
         """
         with self._changing():
             self._forget(file.path)
@@ -214,7 +214,7 @@ class Index:
         return row - first
 
     def touch(self, file: IndexedFile) -> None:
-        """Save a file's new size and date; its content has not changed."""
+        """Save the new size and date of a file whose content has not changed."""
         with self._changing():
             self._base.execute(
                 "UPDATE files SET size = ?, modified = ? WHERE path = ?",
@@ -243,7 +243,7 @@ class Index:
         ours = self._base.execute("PRAGMA application_id").fetchone()[0]
         empty = not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
         if not empty and ours != APPLICATION:
-            raise PlatformError(f"genqa: {self.path} is an SQLite file, but no index of genqa: {_OTHER}")
+            raise PlatformError(f"genqa: {self.path} is an SQLite file, but not an index of genqa: {_OTHER}")
         if version > FORMAT:
             raise PlatformError(
                 f"genqa: the index {self.path} was written by a newer Ravestate (format {version}, this one knows "
@@ -253,13 +253,12 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # nobody was faster
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # still no tables
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 
     @contextmanager
     def _changing(self) -> Generator[None]:
-        """Run a transaction."""
         with self._lock, self._told():
             self._base.execute("BEGIN IMMEDIATE")
             try:
@@ -285,11 +284,11 @@ class Index:
 
 _OTHER = "name another file: --set genqa.index=/path/to/index.sqlite"
 _BUSY = "another process is writing to it: wait until `ravestate genqa index` has ended there"
-_DAMAGED = f"it is not an index, or damaged: remove it and index anew, or {_OTHER}"
+_DAMAGED = f"it is not an index, or damaged: remove it and read the files again, or {_OTHER}"
 _ERRORS = {
-    "FULL": "the disk is full: make room, then index again; what was complete is kept",
+    "FULL": "the disk is full: make room, then try again; the index keeps the files that were read completely",
     "BUSY": _BUSY, "LOCKED": _BUSY, "NOTADB": _DAMAGED, "CORRUPT": _DAMAGED,
-    "READONLY": f"it may not be written: {_OTHER}", "CANTOPEN": f"it cannot be opened: {_OTHER}",
+    "READONLY": f"it cannot be written: {_OTHER}", "CANTOPEN": f"it cannot be opened: {_OTHER}",
 }  # fmt: skip
 """The advice for each error of SQLite."""
 

@@ -1,4 +1,4 @@
-"""Lists of words from YAML, and the words that count as the same."""
+"""Lists of words from YAML files, and the variants of words that count as the same word."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ravestate.yaml_text import load_yaml
 
 @cache
 def lexicon(name: str = "words.yaml") -> dict[str, Any]:
-    """Return a YAML file of this folder."""
+    """Return the content of a YAML file in this folder."""
     return load_yaml((files(__package__ or "") / name).read_text(encoding="utf-8"), name)
 
 

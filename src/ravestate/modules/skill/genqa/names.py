@@ -23,11 +23,11 @@ class Settings(rs.Settings):
     index: Path | None = None
     """The file that ``ravestate genqa index`` writes; by default ``ravestate/genqa.sqlite`` in the user's data folder."""
     collection: bool = True
-    """Whether to search the collection that comes with Ravestate as well: countries, nature, the calendar."""
+    """Whether to search also the collection that comes with Ravestate: countries, nature, the calendar."""
     sure: Probability = 0.7
-    """The minimum confidence of a sure answer."""
+    """The minimum confidence of an answer that the agent says without a doubt."""
     unsure: Probability = 0.5
-    """The minimum confidence of an answer with a doubt; below that, the module is silent."""
+    """The minimum confidence of an answer that the agent says with a doubt; below that, the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
     sentences that were found, and an answer with another name or number is dropped."""
@@ -36,7 +36,7 @@ class Settings(rs.Settings):
     bundled one."""
 
     rates: Mapping[str, float] = Field(default_factory=dict[str, float])
-    """The value of one ``dollar``, ``euro``, ``sterling``..., each in the same currency; without it no money is exchanged."""
+    """Currency (``dollar``, ``euro``, ``sterling``...) → its value; only currencies with a value are converted."""
 
     @model_validator(mode="after")
     def _in_order(self) -> Settings:

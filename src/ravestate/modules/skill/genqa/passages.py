@@ -1,4 +1,4 @@
-"""Passages of running text: sentences, and groups of sentences that need each other."""
+"""Cut running text into passages: single sentences, and sentences together with the sentence that they refer to."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def passages_of(text: str) -> Iterator[Passage]:
     """Yield the passages of `text`, in order.
 
     An empty line ends a paragraph; a single line break is a space. A sentence that begins with *it*, *she* or *this*
-    comes with the latest one that does not, if both are short.
+    follows the latest sentence that does not, in one passage, if both are short.
 
     Example:
         >>> [p.text for p in passages_of("Delft is a town in Holland. It has 100,000 inhabitants.\\n\\nVermeer lived there.")]
@@ -57,7 +57,7 @@ def _sentences(paragraph: str) -> Iterator[str]:
 
 def _fitting(paragraph: str, start: int, end: int) -> Iterator[str]:
     """Yield the sentence from `start` to `end` in short parts; nothing if it has no letter."""
-    while end - start > LONGEST + SHORTEST:  # otherwise the rest would be too short
+    while end - start > LONGEST + SHORTEST:  # a cut must leave a rest that is long enough
         window = paragraph[start : start + LONGEST]
         cut = max(window.rfind(mark, LONGEST // 3) for mark in ("; ", ": ", ", ")) + 1
         cut = cut or window.rfind(" ", LONGEST // 3) + 1 or LONGEST

@@ -1,4 +1,4 @@
-"""The question in an utterance: its words, its qualifiers, and whether documents can answer it. All from the parse."""
+"""The question in an utterance: its words, its qualifiers, and whether documents can answer it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .lexicon import variants_of, words_of
 from .reckoning import scaled
 
 LONGEST = 600
-"""The maximum length of an utterance in characters; a longer one is not a question about the world."""
+"""The maximum length of an utterance in characters; a longer utterance does not count as a question."""
 THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
 _OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])
@@ -37,29 +37,29 @@ class Question:
     """A question about the world."""
 
     text: str
-    """The question alone."""
+    """The text of the question, without the rest of the utterance."""
     words: tuple[str, ...] = ()
-    """The words for its subject, in order, each once."""
+    """The words for the question's subject, in order, each once."""
     kinds: tuple[str, ...] = ()
     """The words for the kind of answer."""
     given: frozenset[str] = frozenset()
-    """The words for the names in it, which every passage about them has."""
+    """The words of the names in the question; every passage about the named things has these words."""
     needs: tuple[tuple[str, ...], ...] = ()
-    """Its qualifiers: a passage must have a word of each."""
+    """The qualifiers of the question: a passage must have a word of each."""
     avoids: tuple[str, ...] = ()
     """Words that a passage must not have: other ranks, the other sex."""
     kind: QuestionWord | None = None
     doubtful: bool = False
-    """Whether only a sure answer counts: the utterance may not be a question about the world."""
+    """Whether only a sure answer counts, because the utterance may be no question about the world."""
     follows: bool = False
-    """Whether it was completed from earlier questions; names do not count for its confidence then."""
+    """Whether the question was completed from earlier questions. If so, names do not count for the confidence."""
     declined: str = ""
-    """The reason why documents cannot answer it; empty if they may."""
+    """The reason why documents cannot answer the question; empty if they may."""
 
 
 @dataclass(frozen=True, slots=True)
 class Parse:
-    """The parse of an utterance, and the words in it that ask."""
+    """The parse of an utterance, and the words of the question in it."""
 
     tree: Tree
     entities: tuple[Entity, ...]
@@ -69,13 +69,13 @@ class Parse:
 
     @property
     def text(self) -> str:
-        """The question alone."""
+        """The text of the question, without the rest of the utterance."""
         text = self.tree.phrase(self.asked).strip(" ?!.,;:")
         return f"{text}?" if text and self.kind is not None else text
 
     @property
     def is_finite(self) -> bool:
-        """Whether it has a finite verb."""
+        """Whether the question has a finite verb."""
         return any(word.tag in FINITE for word in self.asked)
 
 
@@ -86,7 +86,7 @@ def parse(text: str) -> Parse:
 
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
-    """Return the parse with the words that ask: the first sentence with a question word or mark, else the last."""
+    """Return the parse. Its question is the first sentence with a question word or a question mark, or else the last."""
     sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
     asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
     asked = (asking or sentences[-1:] or [[]])[0]
@@ -172,7 +172,7 @@ def _means(word: Word) -> bool:
 
 
 def _declined(heard: Parse, said: Sequence[Word]) -> str:
-    """Return the reason why documents cannot know."""
+    """Return the reason why documents cannot answer the question; empty if they may."""
     root = next((word for word in said if word.dep == "ROOT" or word.head == word.index), None)
     modal = next((word for word in said if word.tag == "MD" and word.dep in ("aux", "ROOT")), None)
     if any(word.low in THE_TWO and not _is_anybody(heard, word) for word in said):
@@ -208,7 +208,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
     avoids: list[str] = []
     tree, ranks = heard.tree, words_of("ranks")
     named = {i for e in heard.entities if e.label in (*_NAMES, "DATE", "TIME") for i in range(e.start, e.end)}
-    decides = heard.kind is QuestionWord.YES_NO  # what is so may have another name: "The capital of Germany is Berlin."
+    decides = heard.kind is QuestionWord.YES_NO  # a passage that says no has another name: "The capital is Berlin."
     asked_ranks = {word.low for word in heard.asked if word.low in ranks}
     for word in heard.asked:
         if word.dep == "neg" or word.low in ("no", "never"):
@@ -239,7 +239,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
-    """Return whether it is a superlative; *most people* without *the* is none."""
+    """Return whether a word is a superlative. In *most people*, without *the*, it is not."""
     before = tree.before(word)
     quantity = (
         word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
@@ -248,7 +248,7 @@ def _is_superlative(tree: Tree, word: Word) -> bool:
 
 
 def _picks_largest(tree: Tree, rank: Word) -> bool:
-    """Return whether a superlative follows a rank: *third longest*; a list of the ten longest names it as well."""
+    """Return whether a superlative follows a rank, as in *third longest*. A list of the longest then also has the answer."""
     after = tree.after(rank)
     return after is not None and after.tag in ("JJS", "RBS")
 
@@ -276,14 +276,14 @@ def is_vague(question: Question) -> bool:
 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:
-    """Return why an utterance does not ask for anything, from its parse and acts; empty if it may."""
+    """Return the reason, from its parse and acts, why an utterance asks for nothing; empty if it may be a question."""
     if any(word.lemma == "mean" and word.head == word.index for word in heard.asked):  # "no, I meant ..."
         return ""
     if len(analysis.text) > LONGEST:
         return "it is too long for a question"
     words = [word for word in heard.asked if word.pos != "PUNCT"]
     if len(words) == 1 and not words[0].index and words[0].tag not in WH and len(analysis.sentences) > 1:
-        return "it only repeats a word"  # Holiday? In this weather?
+        return "it only repeats a word"  # "Holiday? In this weather?"
     if scaled(analysis.text):
         return ""
     told = (

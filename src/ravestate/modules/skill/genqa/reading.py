@@ -16,7 +16,7 @@ from .document import Document
 from .passages import passages_of
 
 LARGEST = 64 << 20
-"""Bytes of a text or a page, which is held in memory."""
+"""The maximum number of bytes of a text or a page, because it is held in memory."""
 _MARKS = {
     codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF32_LE: "utf-32-le", codecs.BOM_UTF32_BE: "utf-32-be", codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",
@@ -37,16 +37,16 @@ class Unreadable(Exception):
 
 
 def kind_of(path: Path) -> str | None:
-    """Return the ending of a file that can be read; None for others."""
+    """Return the ending of a file's name if files of this kind can be read; None if they cannot."""
     ending = path.suffix.lower()
     return ending if ending in KINDS else None
 
 
 def read(path: Path, source: str) -> Iterator[Document]:
-    """Yield the documents of a file, while it is read.
+    """Yield the documents of a file while reading it.
 
     Args:
-        path: The file; its ending names its kind.
+        path: The file; the ending of its name gives its kind.
         source: The source that answers name.
 
     Raises:
@@ -54,7 +54,7 @@ def read(path: Path, source: str) -> Iterator[Document]:
     """
     kind = kind_of(path)
     if kind is None:
-        raise Unreadable(f"nothing reads files that end in {path.suffix!r}: it must be one of {', '.join(KINDS)}")
+        raise Unreadable(f"a file must end in one of {', '.join(KINDS)}, not in {path.suffix!r}")
     try:
         yield from KINDS[kind](path, source)
     except OSError as error:
@@ -76,7 +76,7 @@ def _library(name: str, package: str, kind: str, why: str = "pip install 'ravest
 
 def _content(path: Path) -> bytes:
     if (size := path.stat().st_size) > LARGEST:
-        raise Unreadable(f"it has {size >> 20} MB, and a text may have {LARGEST >> 20}: split it")
+        raise Unreadable(f"it has {size >> 20} MB, and a text may have at most {LARGEST >> 20} MB: split it")
     return path.read_bytes()
 
 
@@ -127,9 +127,9 @@ def documents_in(content: bytes | str, title: str, source: str, top: str | None 
         Unreadable: beautifulsoup4 is not installed.
     """
     bs4 = _library("bs4", "beautifulsoup4", "HTML")
-    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # its warnings about characters do not name the file
+    logging.getLogger("bs4.dammit").setLevel(logging.ERROR)  # bs4's warnings about characters do not name the file
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it warns about XML, and about texts that look like file names
+        warnings.simplefilter("ignore")  # bs4 warns about XML, and about texts that look like file names
         page: Any = bs4.BeautifulSoup(content, "html.parser")
     for hidden in [*page.find_all(_UNSEEN), *page.find_all(hidden=True)]:
         hidden.decompose()
@@ -146,7 +146,7 @@ def documents_in(content: bytes | str, title: str, source: str, top: str | None 
 
     for node in (page.body or page).descendants:
         if isinstance(node, bs4.element.PreformattedString) or (node.parent and node.parent.name == "title"):
-            continue  # comments, declarations
+            continue  # skip comments and declarations
         if isinstance(node, bs4.element.NavigableString):
             if not any(parent.name in _HEADINGS for parent in node.parents):
                 pieces.append(" ".join(node.split("\n")) if node.strip() else " ")
@@ -163,9 +163,9 @@ def documents_in(content: bytes | str, title: str, source: str, top: str | None 
 
 
 def _pdf(path: Path, source: str) -> Iterator[Document]:
-    """Yield a document for each page; its source names the page."""
+    """Yield a document for each page; the document's source names the page."""
     library = _library("pypdf", "pypdf", "PDF")
-    logging.getLogger("pypdf").setLevel(logging.ERROR)  # it warns about every oddity that it can handle
+    logging.getLogger("pypdf").setLevel(logging.ERROR)  # pypdf warns about every oddity that it can handle
     try:
         reader = library.PdfReader(path)
         if reader.is_encrypted and not reader.decrypt(""):
@@ -194,7 +194,7 @@ def _jsonl(path: Path, source: str) -> Iterator[Document]:
                 continue
             try:
                 said: Any = json.loads(line)
-            except ValueError as error:  # of JSON, of UTF-8
+            except ValueError as error:  # the line is not JSON, or not UTF-8
                 raise Unreadable(f"line {number} is not JSON ({error})") from error
             entry = cast("dict[str, Any]", said) if isinstance(said, dict) else {}
             text = entry.get("text", entry.get("contents"))
@@ -205,7 +205,7 @@ def _jsonl(path: Path, source: str) -> Iterator[Document]:
 
 
 def _zim(path: Path, source: str) -> Iterator[Document]:
-    """Yield the documents of each article in a file of Kiwix; skip redirects and pictures."""
+    """Yield the documents of each article in a ZIM file, the format of Kiwix; skip redirects and pictures."""
     why = "pip install libzim (it is under the GPL, so you install it yourself)"
     reader = _library("libzim.reader", "libzim", "ZIM", why)
     try:
@@ -215,7 +215,7 @@ def _zim(path: Path, source: str) -> Iterator[Document]:
         raise Unreadable(f"it is not a ZIM file, or damaged ({error})") from error
     for number in range(count):
         try:
-            entry = archive._get_entry_by_id(number)  # libzim has no other way to go through all of them
+            entry = archive._get_entry_by_id(number)  # libzim has no other way to go through all entries
             item = None if entry.is_redirect else entry.get_item()
             if item is None or not item.mimetype.startswith("text/html"):
                 continue

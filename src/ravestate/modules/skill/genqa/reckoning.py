@@ -1,4 +1,4 @@
-"""Sums, units and dates, worked out by simpleeval, pint and dateutil; words such as *that* refer to the thread."""
+"""Work out sums, units and dates with simpleeval, pint and dateutil; words such as *that* refer to earlier answers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any
 from .lexicon import lexicon, variants_of
 
 LONGEST = 200
-"""Characters of a sum."""
+"""The maximum number of characters of a sum."""
 DIGITS = 30
 """The maximum number of digits of a result."""
 _MONEY = "money:"
@@ -43,7 +43,7 @@ _SCALED = (
         rf"\D*\b(?P<amount>\d[\d.,]*) ?(?P<word>[a-z]+)\b\D*\bfor (?P<few>\d+){_HEADS}(?:\W| and| but| what| how)\D*\bfor (?P<many>\d+){_HEADS}"
     ),
 )
-"""An amount for some, and the number for which it is wanted: *300 g rice for 4, and for 6?*."""
+"""An amount for a number of people, and the number of people for whom to compute it: *300 g rice for 4, and for 6?*."""
 _DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
 
 
@@ -53,12 +53,12 @@ class Unanswerable(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number with its unit, in pint's name; empty for none."""
+    """A number with its unit, by its name in pint; the name is empty if there is no unit."""
 
     value: float
     unit: str
     word: str
-    """The unit as written."""
+    """The unit as the text has it."""
 
     def beside(self, other: Quantity) -> tuple[float, float] | None:
         """Return both values in this unit; None if they measure different things."""
@@ -75,9 +75,9 @@ class Dated:
 
     day: date
     exact: bool
-    """Whether day and month are known."""
+    """Whether the day and the month are known."""
     shown: str
-    """As written."""
+    """The date as the text has it."""
     has_year: bool = True
 
     def __str__(self) -> str:
@@ -92,17 +92,17 @@ def words_for(name: str) -> frozenset[str]:
 def reckon(
     text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None, now: time | None = None
 ) -> str:
-    """Return the result of a sum in words; empty if the text is none.
+    """Return the result of a sum in words; empty if the text is no sum.
 
     Args:
         text: The utterance.
-        told: The latest answers, oldest first, for *that*.
-        today: The date, for *how long ago*.
-        rates: The value of one unit of each currency, in any common unit.
-        now: The time of day, for *how long till noon*.
+        told: The latest answers, oldest first; *that* refers to them.
+        today: The date; *how long ago* counts from it.
+        rates: Currency → its value; all values are in one currency.
+        now: The time of day; *how long till noon* counts from it.
 
     Raises:
-        Unanswerable: It is a sum without a result.
+        Unanswerable: The sum has no result.
 
     Example:
         >>> reckon("what is 17 percent of 80", (), date(2026, 1, 1))
@@ -113,7 +113,7 @@ def reckon(
     if len(text) > LONGEST:
         return ""
     two = re.fullmatch(r"(.*\d.*),? and (.+ (?:that|it)\b.*)", text, re.IGNORECASE)
-    if two and (first := reckon(two[1].rstrip(","), told, today, rates, now)):  # 7 percent of 1300, and half of that
+    if two and (first := reckon(two[1].rstrip(","), told, today, rates, now)):  # "7 percent of 1300, and half of that"
         second = reckon(two[2], (*told, first), today, rates)
         return f"{first} {second}" if second else ""
     spoken = _in_digits(text.strip(" ?!."))
@@ -140,7 +140,7 @@ def scaled(text: str) -> str:
 
 
 def _times(spoken: str, told: Sequence[str]) -> str:
-    """Return the price for several: *and for 5 people?*, *how much for 2 adults and 3 children?*."""
+    """Return the price for several people: *and for 5 people?*, *how much for 2 adults and 3 children?*."""
     counts = re.search(r"\b(?:for|of|do|does) (\d.*)$", spoken)
     several = re.findall(r"(\d+)(?: ([a-z]+))?", counts[1]) if counts and told and len(counts[1].split()) < 7 else []
     prices = [measured(focused(f"how {kind}", told[-1]))[:1] for _, kind in several]
@@ -155,7 +155,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
     Args:
         text: The text.
-        after: Earlier texts, whose numbers follow.
+        after: Earlier texts; their numbers come after those of `text`.
     """
     found: list[Quantity] = []
     spoken = re.sub(r"\bdegrees? (?=[cf])", "", _in_digits(text))
@@ -175,7 +175,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
 
 def focused(question: str, answer: str) -> str:
-    """Return an answer with those parts first that have most words of the question besides names.
+    """Return an answer in another order: the parts with most words of the question, names apart, come first.
 
     Example:
         >>> focused("How high is it?", "The bridge is 512 metres long and 63 metres high.")
@@ -191,7 +191,7 @@ def focused(question: str, answer: str) -> str:
 
 
 def of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
-    """Return the result for the first two numbers of two texts that measure the same; empty if there are none."""
+    """Return the result for a number of each text, if both measure the same; empty if there is no such pair."""
     pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
     found = next(((left, values) for left, values in pairs if values is not None), None)
     return "" if found is None else f"{_number(work_out(*found[1]))} {found[0].word}".strip() + "."
@@ -293,7 +293,7 @@ def _result(source: str, units: Sequence[str], target: str, word: str, rates: Ma
         raise Unanswerable("That number is too large for me.") from None
     except ValueError:
         raise Unanswerable("A negative number has no real root.") from None
-    except Exception as error:  # of simpleeval and pint
+    except Exception as error:  # simpleeval and pint have many kinds of errors
         if type(error).__name__ != "DimensionalityError":
             return ""
         raise Unanswerable("These measure different things, so I can't turn one into the other.") from None
@@ -337,7 +337,7 @@ def _registry() -> Any:
 
 
 def _in_pint(unit: str, rates: Mapping[str, float]) -> Any:
-    """Return one of a unit."""
+    """Return the quantity 1 of a unit."""
     if unit.startswith(_MONEY):
         return rates.get(unit.removeprefix(_MONEY), 1.0) * _registry().money
     return _registry().Quantity(1, unit) if unit else 1
@@ -362,13 +362,13 @@ def _currencies() -> dict[str, str]:
 
 
 def _unit(word: str, others: Sequence[str]) -> str:
-    """Return the unit of a word; *pounds* are money beside money."""
+    """Return the unit that a word stands for. Beside another currency, *pounds* are money, not a weight."""
     money = any(unit.startswith(_MONEY) for unit in others)
     return _currencies()[word] if word in _currencies() and (money or word not in _units()) else _units().get(word, "")
 
 
 def _number(value: Any, *, rounded: bool = False) -> str:
-    """Return a number in digits, rounded to what matters; `rounded` to what people say."""
+    """Return a number in digits, without needless digits; if `rounded`, as people would say it."""
     if not math.isfinite(value) or abs(value) >= 10**DIGITS:
         raise OverflowError
     if not isinstance(value, int):
@@ -388,7 +388,7 @@ def dates_in(text: str) -> list[Dated]:
 
     found: list[Dated] = []
     for match in _DATE.finditer(text.lower()):
-        try:  # parts that are missing come from the default
+        try:  # a part that the text lacks comes from the default
             one, other = (parse(match[0], default=default, dayfirst=True) for default in _DEFAULTS)
         except (ParserError, OverflowError, ValueError):
             continue
@@ -443,7 +443,7 @@ def apart(one: Dated, other: Dated, unit: str = "year") -> str:
 
 
 def _until(asked: re.Match[str], now: time) -> str:
-    """Return the minutes or hours until a time of day; without *am* and *pm* until the next such time."""
+    """Return the minutes or hours until a time of day. Without *am* or *pm*, take the next such time."""
     hour = int(asked["hour"] or (0 if asked["name"] == "midnight" else 12))
     if hour > 24:
         return ""

@@ -1,4 +1,4 @@
-"""The rules: when documents are searched, and when their answer is said."""
+"""The rules that search the documents and say their answer."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
             ctx.add_rule(wording_rule(settings))
         except (DeclarationError, DeclarationErrors) as error:
             raise PlatformError(
-                "genqa.wording=model needs the language model of wildtalk: make the module wildtalk a part of this "
+                "genqa.wording=model needs the language model of wildtalk: add the module wildtalk to this "
                 "agent, or write --set genqa.wording=sentence"
             ) from error
 
 
-# It runs for every utterance, question or not. A rule that waited for the signal of a question would hold each
-# statement for seconds, and `idle` would see no boredom meanwhile.
+# This rule runs for every utterance. A rule that waited for the signal of a question would hold the spikes of each
+# statement for seconds; until then, `idle` would not see the silence.
 @module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=(thread, rawio.output), writes=thread, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Search the documents."""

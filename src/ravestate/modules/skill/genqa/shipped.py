@@ -1,4 +1,4 @@
-"""The collection that comes with Ravestate, and its way into an index."""
+"""The collection that comes with Ravestate, and the functions that add it to an index."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _GENERAL = ("general.yaml", "people.yaml")
 def bring_up(index: Index, *, wanted: bool = True) -> bool:
     """Add this version of the collection to `index`, or remove it if it is not `wanted`.
 
-    Return whether there was anything to do; it takes about a second then.
+    Return whether the index has changed. A change takes about a second.
 
     Raises:
         PlatformError: See `Index.put`.
@@ -54,6 +54,6 @@ def documents(factbook: bytes, *general: bytes) -> Iterator[Document]:
         )
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     for file in general:
-        said: dict[str, list[str]] = yaml.load(file, loader)  # a safe loader, and our own file
+        said: dict[str, list[str]] = yaml.load(file, loader)  # the loader is safe, and the file is our own
         for title, sentences in said.items():
             yield Document(title, _OWN, [Passage(sentence) for sentence in sentences])

@@ -6,7 +6,7 @@ import sqlite3
 import threading
 
 TOKENIZER = "porter unicode61 remove_diacritics 2"
-"""Letters and digits, lower case, without accents and English endings."""
+"""The tokenizer keeps letters and digits, in lower case, without accents and without English endings."""
 
 
 class Stems:
@@ -35,5 +35,5 @@ class Stems:
         return [[term for _, term in sorted(stems)] for stems in found]
 
     def close(self) -> None:
-        """Close its database."""
+        """Close the tokenizer's database."""
         self._base.close()

@@ -1,7 +1,7 @@
-"""The thread of a talk: the latest questions with their answers, and later questions completed from them.
+"""The thread of a conversation: the latest questions with their answers, and follow-ups completed from them.
 
-A follow-up has several readings: *when was he born?* may mean anybody in view. `readings` yields them in order of
-likelihood, and the documents decide between them.
+A follow-up has several readings: in *when was he born?*, *he* may be any man in the thread. `readings` returns them in
+order of likelihood, and the documents decide between them.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from .lexicon import words_of
 from .question import FINITE, WH, Parse, is_name, parse
 
 NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL")
-"""The labels of entities that are no names."""
+"""The labels of entities that are numbers, not names."""
 PLACES = ("GPE", "LOC", "FAC")
 LONGEST = 200
-"""Characters of a question that may refer to another."""
+"""The maximum number of characters of a question that may refer to another question."""
 KEPT = 6
-"""The number of questions that stay in view."""
+"""The number of questions in the thread."""
 REMEMBERED = 120.0
-"""Seconds for which later questions may refer to one."""
+"""Seconds for which later questions may refer to a question."""
 LESS = -0.15
-"""The logarithm of odds that each reading loses to the one before."""
+"""The change in log odds from each reading to the next."""
 SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
 PRONOUNS = frozenset((*SEXES, *["it", "its", "they", "them", "their", "there", "this", "that"]))
 _ONES = ("one", "ones", "former", "latter")
@@ -46,7 +46,7 @@ _OWN = ("det", "amod", "compound", "nummod", "poss", "nmod", "quantmod")
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """Something that a question or an answer names."""
+    """A person, place or other thing that a question or an answer names."""
 
     text: str
     label: str
@@ -54,39 +54,39 @@ class Thing:
 
     @property
     def is_person(self) -> bool:
-        """Whether it is a person."""
+        """Whether the thing is a person."""
         return self.label == "PERSON"
 
     @property
     def is_name(self) -> bool:
-        """Whether it has a name of its own."""
+        """Whether the thing has a name of its own."""
         return self.label not in ("", *NUMBERS)
 
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """A question with its answer, in a form that can be understood alone."""
+    """A question with its answer. The question can be understood alone."""
 
     question: str
     answer: str
     title: str
     """The title of the document with the answer; empty for a sum."""
     at: float
-    """Its time, in seconds since the context began."""
+    """The time of the question, in seconds since the context began."""
     asked: tuple[Thing, ...] = ()
     """The things in the question, most likely first."""
     told: tuple[Thing, ...] = ()
-    """The things that only the answer names, most likely first."""
+    """The things that the answer names and the question does not, most likely first."""
     items: tuple[str, ...] = ()
     """The members of a list in the answer."""
     sexes: tuple[tuple[str, str], ...] = ()
-    """Names with their pronouns: ``he`` or ``she``."""
+    """Names, each with its pronoun: ``he`` or ``she``."""
     source: str = ""
     confidence: float = 1.0
 
     @property
     def subject(self) -> str:
-        """The name that the question is about; empty without one."""
+        """The name that the question is about; empty if there is none."""
         return next((thing.text for thing in self.asked if thing.is_name), "")
 
     @property
@@ -101,11 +101,11 @@ class Reading:
 
     text: str
     prior: float = 0.0
-    """How likely it is before the documents are asked, as a logarithm of odds."""
+    """How likely the reading is before the documents are asked (log odds)."""
     about: str = ""
-    """Its subject from the talk, which the text may name."""
+    """The subject, if it comes from the thread; the text may name it."""
     new: str = ""
-    """The words of the utterance that take the place of others; a passage must have them."""
+    """The words of the utterance that replace words of an earlier question; a passage must have them."""
 
 
 def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
@@ -134,19 +134,19 @@ def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
 
 
 def overheard(said: str, at: float) -> Turn:
-    """Return a turn of what the agent said by itself, for the names in it."""
+    """Return a turn for words that the agent said by itself, so that later questions may refer to the names in them."""
     return Turn("", said, "", at, told=tuple(thing for thing in things_of(parse(said)) if thing.is_name))
 
 
 def things_of(seen: Parse) -> list[Thing]:
-    """Return the noun phrases of a text; *the mayor of Tarm* also as a whole."""
+    """Return the noun phrases of a text; *the mayor of Tarm* is also one phrase as a whole."""
     found: dict[str, Thing] = {}
     for word in seen.tree.words:
         own = phrase_of(seen.tree, word) if _is_noun(word) else []
         if not own or any(other.tag in WH for other in own):
             continue
         if word.dep == "attr" and any(child.low in ("a", "an") for child in seen.tree.children(word, "det")):
-            continue  # it only says what something is
+            continue  # the noun only says what something is
         entity = next((e for e in seen.entities if e.start < word.end and word.start < e.end), None)
         label = entity.label if entity else ""
         text = entity.text.removesuffix("'s") if entity and label == "PERSON" else seen.tree.phrase(own)
@@ -178,7 +178,7 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
         members = [word]
         while nexts := tree.children(members[-1], "conj"):
             members.append(nexts[0])
-        if len(members) > 2 and tree.children(word, "nummod"):  # two moons, Ibo and Usk
+        if len(members) > 2 and tree.children(word, "nummod"):  # "two moons, Ibo and Usk"
             members = members[1:]
         if len(members) > 1 and _is_noun(word) and word.dep != "conj":
             yield tuple(tree.phrase(phrase_of(tree, member)) for member in members)
@@ -188,12 +188,12 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
 
 
 def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = lambda _: "") -> list[Reading]:
-    """Return the questions that an utterance may stand for; none if it refers to something that is not in view.
+    """Return the questions that an utterance may stand for; none if it refers to something outside the thread.
 
     Args:
         seen: The utterance.
         thread: The latest questions, oldest first.
-        titled: A function from a name in any case to the title of a document about it; empty if there is none.
+        titled: A function from a name, in upper or lower case, to the title of a document about it, or "".
     """
     if not seen.asked or len(seen.text) > LONGEST:
         return [Reading(seen.text)]
@@ -228,7 +228,7 @@ def refers(word: Word, words: Sequence[Word]) -> bool:
         return word.dep != "expl" and word.tag != "EX"
     if word.low in ("that", "this"):
         return word.dep in ("nsubj", "nsubjpass", "pobj", "dobj", "attr", "ROOT") and word.tag == "DT"
-    subjects = ("nsubj", "nsubjpass")  # how do plants make their food
+    subjects = ("nsubj", "nsubjpass")  # "how do plants make their food?"
     return not any(w.pos in ("NOUN", "PROPN") and w.index < word.index and w.dep in subjects for w in words)
 
 
@@ -265,7 +265,7 @@ def correction(seen: Parse) -> list[Word]:
 
 
 class _Follow:
-    """An utterance after others."""
+    """An utterance that follows others in a thread."""
 
     def __init__(self, seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> None:
         self.seen, self.tree, self.thread = seen, seen.tree, thread
@@ -293,11 +293,11 @@ class _Follow:
         elif one is not None:
             yield from self._chosen(one)
         elif rest and rest[0].tag in WH and all(word.tag in WH or word.lemma == "be" for word in rest):
-            yield from self._instead(rest[:1])  # and when was that?
+            yield from self._instead(rest[:1])  # "and when was that?"
             yield from self._resolved() if self.pronouns else ()
         elif words and not any(word.tag in FINITE for word in words):
             if not any(word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "X") or word.tag in WH for word in words):
-                return  # really?
+                return  # "really?"
             if self.pronouns:
                 yield from self._resolved()
             else:
@@ -308,7 +308,7 @@ class _Follow:
         elif self.pronouns:
             yield from self._resolved()
             if sum(word.pos in ("NOUN", "PROPN", "VERB") for word in words) > 1:
-                yield self._alone(-1.0)  # when did it start to rain
+                yield self._alone(-1.0)  # "when did it start to rain?"
         elif words:
             yield from ([] if self.named else self.about())
             yield self._alone(0.0 if self.named or self.leads else -1.0)
@@ -320,14 +320,14 @@ class _Follow:
         return Reading(f"{self.text}?" if self.seen.kind is not None else self.text, prior)
 
     def about(self) -> Iterator[Reading]:
-        """Yield the utterance about each name in view: *who was on board?*."""
+        """Yield the utterance as a question about each name in the thread: *who was on board?*."""
         for rank, thing in enumerate(self.names if self.words else ()):
             noun = not any(word.tag in (*FINITE, *WH) for word in self.words)
             of = f" of {thing.text}" if noun else ""
             yield Reading(f"{self.text}{of}?", LESS * rank, thing.text, self.text if noun else "")
 
     def _resolved(self) -> Iterator[Reading]:
-        """Yield the utterance with each thing that its pronoun may stand for."""
+        """Yield the utterance once for each thing that its pronoun may stand for, with the thing in its place."""
         less = 12 * LESS if self.pronouns[0].low == "there" else LESS
         for rank, thing in enumerate(referents(self.pronouns[0], self.thread)):
             yield Reading(self._with(self.words, thing.text), less * rank, thing.text)
@@ -350,7 +350,7 @@ class _Follow:
         before = self.tree.before(own[0])
         own = [before, *own] if before is not None and before.low == "the" else own
         rest = [word for word in self.words if word not in own]
-        if any(word.tag in WH for word in rest) and rest[0].index > one.index:  # the first one, who climbed it?
+        if any(word.tag in WH for word in rest) and rest[0].index > one.index:  # "the first one, who climbed it?"
             words = rest
         else:
             words = self.words if any(word.tag in FINITE for word in rest) else []
@@ -366,8 +366,8 @@ class _Follow:
     def _instead(self, new: Sequence[Word], text: str = "") -> Iterator[Reading]:
         """Yield earlier questions, latest first, with new words in place of a part of the same kind.
 
-        The parts are the question word (*and when?*), the rank (*and the second highest?*) and the names and nouns. Those
-        after the same preposition come first (*and of Spain?*).
+        A part is the question word (*and when?*), the rank (*and the second highest?*), a name or a noun. A noun after
+        the same preposition comes first (*and of Spain?*).
         """
         text = text or self.tree.phrase(new)
         first, last = new[0], new[-1]

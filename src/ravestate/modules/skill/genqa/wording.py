@@ -1,4 +1,4 @@
-"""The wording of an answer: the document's own, or a language model's, which is checked."""
+"""The wording of an answer: the document's own words, or those of a language model, after a check."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from .names import module as genqa
 TOLD = 3
 """The maximum number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""The maximum distance to the best score of a passage in the prompt."""
+"""A passage in the prompt has a score at most this far below the best score."""
 FAMILIAR = 0.6
-"""The minimum share of the model's words that the passages and the question have."""
+"""The minimum share of the model's words that the passages or the question must have."""
 
 _INSTRUCTION = (
     "You word answers. Answer the question in one short sentence, only with what the quotations between <<< and >>> say. "
@@ -31,7 +31,7 @@ _DENIAL = re.compile(r"\b(?:not|no|never|none|nobody|nothing|neither|nor|without
 
 
 def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Intent:
-    """Return the intent that says `text`, sure or with a doubt."""
+    """Return the intent that says `text`, with or without a doubt."""
     if not answer.source:
         return verbaliser.Intent("reckoned", {"answer": text}, package=__package__)
     name = "sure" if answer.confidence >= settings.sure else "unsure"
@@ -41,8 +41,8 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
     """Return a rule in which the language model words the answer; it resigns if the model adds something.
 
-    The rule is for a context with wildtalk. It outranks the rule that says the sentence itself, which speaks if this
-    one resigns or fails.
+    The rule is for a context with wildtalk. It outranks the rule that says the sentence itself. If this rule resigns or
+    fails, that rule speaks.
     """
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.backend import Message
@@ -73,7 +73,7 @@ def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
 
 
 def passages_for(answer: Answer) -> list[str]:
-    """Return the passages for the prompt: the answer's, and others about as good."""
+    """Return the passages for the prompt: the answer, and other passages with about the same score."""
     best = next((c for c in answer.candidates if c.text == answer.text), None)
     least = best.score - WORTH_TELLING if best is not None else 0.0
     texts = [answer.text, *(c.text for c in answer.candidates if c.score >= max(least, 0.0))]
@@ -89,8 +89,8 @@ def prompt(question: str, passages: Sequence[str]) -> list[tuple[str, str]]:
 def is_supported(text: str, passages: Sequence[str], question: str) -> bool:
     """Return whether `passages` support `text`: its numbers, its names, and most of its words.
 
-    Numbers must appear in the passages, and names in the passages or the question. The text must contain a denial if,
-    and only if, the first passage does, because that is the answer.
+    Numbers must appear in the passages, and names in the passages or the question. The text must contain a denial if
+    and only if the first passage, which is the answer, contains a denial.
 
     Example:
         >>> told = ["The capital of Peru is Lima."]

@@ -46,7 +46,8 @@ class Acquaintance:
         if found is None:
             return self.stranger()
         remembered = records.known(graph, found)
-        talk = replace(self.talk, met=True, newcomer=False, remembered=remembered)
+        returns = records.has_talked(graph, found)
+        talk = replace(self.talk, met=True, newcomer=False, returns=returns, remembered=remembered)
         free = {**records.remarks(graph, found), **self.told}
         return Acquaintance(found, merged(remembered, self.facts), talk, free)
 

@@ -23,7 +23,7 @@ def _before(name: str) -> re.Pattern[str]:
 
 _OPENERS, _CORRECTIONS = _before("openers"), _before("corrections")
 _PREPOSITIONS = re.compile(
-    r"^(?:(?:in|from|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE
+    r"^(?:(?:in|from|near|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE
 )
 _LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 _END = re.compile(rf"[.;:!?…\n()\"]|\s(?:{_any('closers')}|(?:and )?(?:what about|how about|and) you)\b", re.IGNORECASE)

@@ -18,6 +18,8 @@ FITTING = {
     "university": ("school",),
     "subject": ("studies",),
     "activity": ("activity",),
+    "trait": ("trait",),
+    "possession": ("possession",),
 }
 """The classes of `nouns.yaml` that are values of each kind of topic, or of one topic."""
 _FOLDER = files(__name__.rpartition(".")[0])

@@ -14,21 +14,30 @@ from ravestate.modules.meta.nlp.tree import Word
 from .kinds import likeness
 from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import gerund, is_gerund, number_in, value_of
-from .wording import Facts, among, without
+from .wording import Facts, alike, among, without
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics that the past tells as well: *I studied law*."""
 _CALLED = frozenset(["be", "be called", "be named"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
-_NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that"])
+_NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", ",", "who", "that", ":"])
 """Words between a relative and their name: *my mother's name is Anna*."""
-_TURN = re.compile(r", (?:and )?(not) |,? but (?!i\b)", re.IGNORECASE)
+_TURN = re.compile(
+    r"(?:, (?:and )?|(?<! am)(?<! is)(?<! are)(?<!'m)(?<!'s)(?<!'re) (?=not (?:an?|the|in|at|from) [\w ]+\W*$))(not) |"
+    r",? but (?!i\b)",
+    re.IGNORECASE,
+)
 _NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
-_HERE = re.compile(r"^(?:\w+[.!,;] )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)", re.IGNORECASE)
+_HERE = re.compile(
+    r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
+    re.IGNORECASE,
+)
 _OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.IGNORECASE)
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
 """Words before a correction of the speaker's own: *I'm Voss, no wait, I'm Claudia*."""
+_NONE = frozenset(["none", "neither", "nobody"])
+_TODAY = frozenset(["tonight", "today", "tomorrow", "now", "this"])
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 
@@ -55,10 +64,10 @@ class Reader:
 
     def __init__(self, seen: nlp.Analysis, asked: str = "", person: str = "") -> None:
         self.seen = seen
-        self.asked = asked
-        self.person = person
         self.tree = seen.tree
         self.words = {word.low for word in seen.tree.words}
+        self.asked = asked
+        self.person = person or self.without_name()
 
     def facts(self, known: Facts | None = None) -> list[Fact]:
         """Return the facts that the user states, one for each topic; `known` are those of before."""
@@ -72,19 +81,22 @@ class Reader:
             instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
             for link in [Link(denied, said.object)] if instead else self.links(said):
                 denied = link.topic if said.negated else ""
-                values = self._values(link)
+                values = self.values(link)
                 called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # his name was Joost
-                over = said.past and link.topic not in LASTING and not called
+                over = (said.past and link.topic not in LASTING and not called) or (
+                    link.topic == NAME and not self.words.isdisjoint({"was", "were"})
+                )
                 if self._denies(said, link.phrase) or (
                     over and values and among(values[0], (known or {}).get(link.topic, ()))
                 ):
                     if values or link.phrase is None or _ANY.match(link.phrase.text):
-                        gone.setdefault(link.topic, values)
+                        meant = tuple(one for one in (known or {}).get(link.topic, ()) if alike(one, values))
+                        gone.setdefault(link.topic, meant or values)
                 elif not over:
                     if values and _INSTEAD.search(self.tree.text):
                         told.pop(link.topic, None)
                     _add(told, link.topic, values)
-        for topic, values in self._named():
+        for topic, values in self.named():
             if topic not in gone and (topic != NAME or topic not in told):
                 _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
@@ -121,7 +133,7 @@ class Reader:
                     return Fact(topic)
             for link in self.links(said):
                 people = TOPICS[link.topic].kind == "people"
-                values = () if unknown else self._values(link)
+                values = () if unknown else self.values(link)
                 wanted = unknown in (kinds.PERSON, kinds.OBJECT, kinds.PLACE) or (unknown and said.verb == "call")
                 if values or wanted or (unknown is None and (people or link.phrase is None)):
                     return Fact(link.topic, values)
@@ -151,6 +163,8 @@ class Reader:
         if said.hearsay or said.conditional or said.question or (said.plan and not self._is_habit(said)):
             return False
         thing = said.object.text
+        if self.words & _NONE:
+            return False
         if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
             return False  # when I live in Paris, I will eat cheese
         return not said.request or said.subject.text.lower() == "i"
@@ -170,10 +184,14 @@ class Reader:
             yield from self._of_user(said)
         elif object.person == "I" and (found := SAYS.get(f"{predicate} me")):
             yield Link(found[0], subject, found[1])
+        elif subject.of("I") and (found := SAYS.get(f"my {subject.head} {predicate} {object.preposition}")):
+            yield Link(found[0], object, found[1])
         elif topic := self.noun(subject):
             if predicate in _CALLED and not object.preposition:
-                sure = bool(object.names) or subject.head == "name" or TOPICS[topic].kind != "people"
-                yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, sure)
+                sure = (
+                    bool(object.names) or (subject.head == "name" and subject.owner) or TOPICS[topic].kind != "people"
+                )
+                yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, bool(sure))
             elif TOPICS[topic].kind == "activity" and (verb := self.verb(said)):
                 yield Link(topic, subject, value=self._span(verb.text, object))
         elif said.verb == "be" and (topic := self.noun(object)):
@@ -182,10 +200,12 @@ class Reader:
     def noun(self, phrase: Phrase) -> str:
         """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
         owner = phrase.owner
+        if phrase.text.lower() == "name":  # name is Ada, the name's Ada
+            return NAME
         theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"
         if theirs or phrase.text.lower() in ("he", "she"):
             return self.person
-        if owner is None or not phrase.of("I") or _is_former(phrase.text):
+        if owner is None or not phrase.of("I") or is_former(phrase.text):
             return ""
         if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
             return self.noun(owner)  # my sister's name, one of my hobbies
@@ -196,22 +216,30 @@ class Reader:
 
     def _of_user(self, said: nlp.Statement) -> Iterator[Link]:
         predicate, object = _predicate(said), said.object
-        if self._has(said):
-            if (topic := NOUNS.get(object.head, "")) and (said.negated or object.names or said.question):
-                yield Link(topic, object if object.names else None)
-            return
-        if hobby := self._pursuit(said):
-            yield hobby
-            return
-        if predicate == "be":
-            yield from self._being(said)
+        verb = self.verb(said)
+        if verb is not None and verb.dep == "relcl":
+            return  # the film that I like
+        has = self._has(said)
+        if has and (topic := NOUNS.get(object.head, "")) and (said.negated or said.question):
+            yield Link(topic, object if object.names else None)
+        told = list(self._by_table(said, has=has))
+        hobby = self._pursuit(said) if all(link.topic == "liking" or not link.sure for link in told) else None
+        yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
+
+    def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
+        """Yield the topics that the predicate tells, with a preposition, and perhaps with its object: *have a job at*."""
+        predicate, object = _predicate(said), said.object
+        child = any(phrase.preposition == "as" and phrase.head in WORDS["young"] for phrase in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
             nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
-            key = f"{predicate} {object.head if nominal else ''} {phrase.preposition}"
-            verb = f"{self._word_before(phrase)} {phrase.preposition}"
-            if phrase.text and (found := SAYS.get(" ".join(key.split())) or SAYS.get(verb)):
-                yield Link(found[0], phrase, found[1])
-                if found[0] == "childhood" and "born" in self.tree.text:
+            before = f"{self._word_before(phrase)} {phrase.preposition}"
+            keys = [f"{'have' if has else predicate} {object.head} {phrase.preposition}"] if phrase != object else []
+            keys += [] if nominal else [f"{predicate} {phrase.preposition}".strip()]
+            found = next(filter(None, map(SAYS.get, (*keys, before))), None)
+            if phrase.text and found:
+                topic = "childhood" if child and found[0] == "home" else found[0]
+                yield Link(topic, phrase, found[1])
+                if topic == "childhood" and "born" in self.tree.text:
                     yield Link("birthplace", phrase)  # I was born and raised in Dresden
 
     def _pursuit(self, said: nlp.Statement) -> Link | None:
@@ -227,6 +255,8 @@ class Reader:
             written = re.sub(r"^\w+", verb.lemma, written)
         if verbs[0] in WORDS["likes"]:
             wanted = chained
+        elif verbs == ["do"] and direct and said.holds and likeness(object.text, "activity") > 0.2:
+            wanted, written = True, object.text  # I do judo
         elif verbs[0] in WORDS["pastimes"]:
             wanted = verb.tag != "VBD" and (chained or object.text.endswith("ing") if verbs[0] == "go" else direct)
         elif verb.tag == "VBG" and verb.dep == "conj":  # I love climbing and baking bread
@@ -234,8 +264,14 @@ class Reader:
         elif verbs[0] != "be" and _LEISURE.search(self.tree.text):
             wanted = direct or free
         else:
-            habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and direct and not chained
-            wanted = habit and likeness(gerund(written, self.seen), "activity") > 0.2
+            habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained
+            habit = (
+                habit
+                and not free
+                and not _TODAY & set(said.when.split())
+                and (direct or not (object.text or said.phrases))
+            )
+            wanted = habit and likeness(gerund(written, self.seen), "activity") > (0.2 if direct else 0.4)
         return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
     def _has(self, said: nlp.Statement) -> bool:
@@ -253,12 +289,21 @@ class Reader:
             yield Link(found[0], object.owner)
         elif object.head == "student":
             yield Link("occupation", object, value="student")
-            yield Link("subject", object.owner or object, sure=False, value=text.rpartition(" ")[0])
+            yield Link(
+                "subject", object.owner or object, sure=False, value="" if object.owner else text.rpartition(" ")[0]
+            )
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
         elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
             yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
+            ages = (word for word in self.tree.words if word.dep == "appos" and word.pos == "NUM")  # I'm Ada, 36
+            yield from (Link("age", object, value=word.text) for word in ages)
         elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half"):
-            yield Link("occupation", object, sure=self.asked == "occupation")
+            several = any(word.lemma == object.head and word.tag == "NNS" for word in self.tree.words)
+            if several and said.subject.text.lower() == "i":
+                return  # I'm all ears
+            bare = len(text.split()) == 1 and not re.match("(?:an?|the) ", self.written(object))
+            if not bare or self.asked == "occupation" or likeness(text, "work") > 0.3:  # I'm noor
+                yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
             yield from (Link("employer", phrase, sure=False) for phrase in places)
@@ -275,40 +320,49 @@ class Reader:
         ended = ENDS.get(f"{predicate} {said.object.head or said.object.text.lower()}".strip(), "")
         return ended if said.subject.person == "I" and not said.past else ""
 
-    def _named(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def named(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the relatives that the user names, and how they are called: *my sister Rosa*, *my mother's name is Anna*,
         *a son named Ben*, *call me Tom*.
 
         The parser often misses the second of two, so the words decide here."""
         unsaid: set[str] = set()
+        whole: list[tuple[str, tuple[str, ...]]] = []
         for said in self.seen.statements:
             phrases = (said.subject, said.object, *said.phrases)
-            open = said.question or said.conditional or said.hearsay or said.past or said.plan
+            allowed = said.verb == "call" and said.subject.person == "you"  # you may call me Fitz
+            open = (said.question or said.conditional or said.hearsay or said.plan) and not allowed
+            open = open or (said.past and not said.subject.names)
             if open or (said.negated and said.verb == "call"):
-                unsaid |= {said.verb, *(phrase.head for phrase in phrases)}
+                unsaid |= {said.verb, *said.object.text.split(), *(phrase.head for phrase in phrases)}
             for phrase in phrases if not open else ():
                 mine = phrase.of("I") or (self._has(said) and not said.negated)
-                if phrase.names and mine and not _is_former(phrase.text) and (topic := self.relative(phrase.head)):
-                    yield topic, self._fitting(topic, phrase.names)
+                if phrase.names and mine and not is_former(phrase.text) and (topic := self.relative(phrase.head)):
+                    whole.append((topic, self._fitting(topic, phrase.names)))
         words = self.tree.words
         if here := _HERE.search(self.tree.text):
             sure = any(word.text == here[1] and word.pos == "PROPN" for word in words)
             yield NAME, self._fitting(NAME, [here[1]], sure=sure)
+        beside: dict[str, str] = {}
         for before, word in itertools.pairwise(words):
             own = (before.low, word.low) == ("my", "name")  # my name's Tom
-            me = before.lemma == "call" and word.low == "me"
+            me = before.lemma == "call" and before.tag != "VBD" and word.low == "me"
             topic = NAME if own or me else self.relative(word.lemma)
-            if topic not in ("", NAME) and self._is_anothers(word):
+            if not topic or (topic != NAME and self._is_anothers(word)):
                 continue
             passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
             first = words[word.index + 1 + len(passed) :][:1]
+            if not first or unsaid & {word.lemma, before.lemma} or self.words & _NONE:
+                continue
             named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
-            named = named or (passed == [","] and word.tag == "NNS" and {one.pos for one in first} == {"PROPN"})
-            said = not unsaid & {word.lemma, before.lemma} and not _is_former(
-                f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"
-            )
-            if topic and first and named and said:
-                yield topic, self._fitting(topic, map(self._run, (*first, *self._joined(first[0]))))
+            if {one.pos for one in first} == {"PROPN"}:  # my sister Rosa; a dog, Rex, and a cat, Misty
+                named = named or (not passed and before.low in ("my", "our"))
+                named = named or (passed == [","] and (word.tag == "NNS" or before.low in ("a", "an", "my", "our")))
+            if named and not is_former(f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"):
+                values = self._fitting(topic, map(self._run, (*first, *self._joined(first[0]))))
+                beside |= dict.fromkeys(values, topic)
+                yield topic, values
+        for topic, values in whole:
+            yield topic, tuple(value for value in values if beside.get(value, topic) == topic)
 
     def _is_anothers(self, word: Word) -> bool:
         """Return whether a relative is somebody else's: *he's got a new girlfriend called Tamara*."""
@@ -324,7 +378,7 @@ class Reader:
 
     # ----------------------------------------------------------------------------------------------- words
 
-    def _values(self, link: Link) -> tuple[str, ...]:
+    def values(self, link: Link) -> tuple[str, ...]:
         topic, phrase = TOPICS[link.topic], link.phrase
         if phrase is None:
             return ()
@@ -373,14 +427,15 @@ class Reader:
         """Return a name of several words; empty if the word cannot begin one."""
         if word.pos not in (*_NOMINAL, "VERB"):
             return ""
-        run = [child for child in self.tree.children(word, "compound") if child.index < word.index] + [word]
+        first = (child for child in self.tree.children(word, "compound") if child.index < word.index)
+        run = [*(child for child in first if not self.relative(child.lemma)), word]
         while (after := self.tree.after(word)) and after.pos == "PROPN" and after.start == word.end + 1:
             run.append(after)
             word = after
         return " ".join(one.text for one in run)
 
 
-def _is_former(words: str) -> bool:
+def is_former(words: str) -> bool:
     return bool(WORDS["former"] & set(re.split(r"\W", words.lower())))
 
 

@@ -27,6 +27,12 @@ def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
     return graph.find("Person", {"name": name})
 
 
+def has_talked(graph: ontology.Graph, person: ontology.Node) -> bool:
+    """Return whether a person of memory has talked to the agent: others have only told of those who have not."""
+    relations = graph.relations(person)
+    return not relations or any(relation.source.id == person.id for relation in relations)
+
+
 def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, ...]]:
     """Return the values of a person by topic, in the order of the topics, without the name."""
     values = {topic: tuple(node["name"] for node in nodes) for topic, nodes in _related(graph, person).items()}

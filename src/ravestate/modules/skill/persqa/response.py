@@ -222,6 +222,8 @@ def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random
         topic = memorable(user.talk.remembered, chance)
         welcome = stating("welcome_back", topic, user.talk.remembered[topic], known)
         return Response(welcome, _with(user, reminded=True))
+    if user.talk.returns and not user.talk.newcomer:  # memory knows the name, and no facts
+        return Response(say("back", known), user)
     return Response(say("learned_name" if before.name is None else "renamed", known), user)
 
 

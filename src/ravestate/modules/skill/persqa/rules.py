@@ -213,6 +213,7 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
 
 def person_of(item: object) -> ontology.Node | None:
     """Return the person of an item of `interloc.users`; None for one without a name."""
+    item = getattr(item, "node", item)  # a platform that recognises the person gives their node
     if isinstance(item, ontology.Node):
         return item if item.get(NAME) else None
     return ontology.Node("Person", {NAME: item.strip()}) if isinstance(item, str) and item.strip() else None

@@ -68,6 +68,8 @@ class Talk:
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """All values of this conversation, also those that no longer hold."""
+    returns: bool = False
+    """Whether memory knows that they have talked to the agent before."""
     newcomer: bool = False
     """Whether memory did not know the user."""
     reminded: bool = False

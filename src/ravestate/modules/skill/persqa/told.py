@@ -13,7 +13,8 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from .answers import spelled_out
-from .reading import Reader
+from .kinds import likeness
+from .reading import Reader, is_former
 from .topics import NAME, NOUNS, TOPICS, WORDS
 from .values import value_of
 from .wording import Facts
@@ -46,6 +47,7 @@ _ADVICE = re.compile(
 )
 """Questions for advice or an opinion, not for memories."""
 _LABEL = re.compile(r"^be (?:called|named)$")
+_DEICTIC = re.compile(r"(?:this|that|these|those|it|here|there)\b", re.IGNORECASE)
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
 
@@ -78,24 +80,32 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
+    named = {topic: values[0] for topic, values in reader.named() if values}
     for said in reader.seen.statements:
         he = said.subject.text.lower() in ("he", "she", "they") and not _LABEL.search(said.triple.predicate)
         subject = last if he else _about(reader, said)
         if said.subject.names or reader.noun(said.subject) or WORDS["kin"] & {said.subject.head}:
             owner = said.subject.owner if said.subject.head == "name" else None  # my wife's name is..., and she...
-            last = (owner or said.subject).name or (owner or said.subject).text
+            last = (owner or said.subject).name or named.get(reader.noun(said.subject)) or (owner or said.subject).text
             last = last.removeprefix("ex ")
         elif said.subject.person == "I" and said.object.names and not said.object.preposition:
             last = said.object.names[0]
+        elif said.subject.person == "I" and reader.relative(said.object.head) in named:
+            last = named[reader.relative(said.object.head)]
         if said.question or said.request or said.subject.person == "you":
             continue
         top = reader.verb(said)
         if top is not None and top.dep == "relcl" and not subject and said.subject.text.islower():
             continue  # the main clause has it: there is a girl who waves at me
+        if top is not None and top.dep == "relcl" and said.subject.names:
+            subject = said.subject.name  # a sister called Eva who lives in Ghent
         text = _retold(reader, said)
         if he and last:
             text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)
-        one = Told(subject or said.subject.text, said.triple.predicate, said.object.text, text, who=last)
+        thing = said.object.text  # a parrot called Coco
+        if said.object.head and said.object.names and not reader.noun(said.object):
+            thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)
+        one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
         heard.append(one)
         if subject and (not he or last in [one.who for one in heard[:-1]]) and _is_worth_keeping(reader, said):
             free.append(one)
@@ -162,13 +172,29 @@ def _stems(text: str) -> set[str]:
 
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
+    if _DEICTIC.match(said.object.text) or is_former(said.subject.text):
+        return False
     if (
-        (said.verb in WORDS["passing"] and not called)
+        (said.verb in WORDS["passing"] and not (called or _gained(reader, said) or _noted(reader, said)))
         or " to " in said.triple.predicate
         or said.object.person != "other"
     ):
         return False
     return isinstance(said.triple.object, str) and not reader.ended(said) and (said.holds or _happened(reader, said))
+
+
+def _gained(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether somebody has, or got, a thing of their own: *a red bicycle*, but not *a headache*."""
+    verb = reader.verb(said)
+    gets = said.verb == "get" and verb is not None and verb.low == "got"
+    thing = reader.written(said.object)
+    return (gets or said.verb in ("have", "own")) and max(likeness(thing, "possession"), likeness(thing, "trait")) > 0.1
+
+
+def _noted(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether it is an event with a name or a time: *I went to Prague*, *I saw a fox yesterday*."""
+    content = said.object.text and (said.object.names or said.when)
+    return bool(content) and said.verb in WORDS["events"] and _happened(reader, said)
 
 
 def _happened(reader: Reader, said: nlp.Statement) -> bool:
@@ -183,21 +209,28 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     subject, object = said.subject, said.object
     if subject.person == "I":
         mine = "my" in object.text.lower().split() and not _happened(reader, said)
-        deictic = re.match(r"(?:this|that|these|those|it|here|there)\b", reader.written(object), re.IGNORECASE)
+        verb = reader.verb(said)
+        deictic = _DEICTIC.match(reader.written(object)) or (verb is not None and verb.dep == "relcl")
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
         there = (
             object.preposition and not object.text[:1].isupper()
         )  # I drive for Transkorn, but not I wait for the bus
-        fits = object.text and not there and said.verb not in ("be", "have") and not mine and not deictic
-        return "I" if spoken and fits and not list(reader.links(said)) else ""
+        fits = object.text and (not there or _happened(reader, said)) and not mine and not deictic
+        if said.verb == "be":
+            fits = fits and likeness(object.text, "trait") > 0.1
+        elif said.verb in ("have", "get", "own"):
+            fits = fits and _gained(reader, said)
+        return "I" if spoken and fits and not any(map(reader.values, reader.links(said))) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
         naming = said.verb == "be" and ((object.names and not object.preposition) or not object.text)
         return "" if naming or said.triple.predicate in ("be called", "be named") else subject.name or subject.text
     if WORDS["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
-        return " ".join(words[2:]) if len(words) == 3 else subject.text
-    dated = said.verb == "be" and said.when  # my birthday is in May
-    if words and dated and not reader.noun(subject):
+        return subject.name or subject.text
+    number = {"CARDINAL", "QUANTITY"} & {entity.label for entity in reader.seen.entities if object.text in entity.text}
+    dated = said.verb == "be" and (said.when or (object.text and number))  # my birthday is in May
+    thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # my car is a Fiat
+    if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
     return subject.text if person and not reader.noun(object) else ""

@@ -218,7 +218,8 @@ class _Hearing:
         if other or match is None or match.text.endswith("?"):  # me?
             return None
         name = Reader(self.seen).remaining_name()
-        return Meaning("identified", (Fact(NAME, (name,)),) if name else ())
+        known = not name or among(name, self.known.get(NAME, ()))
+        return Meaning("identified" if known else "told", (Fact(NAME, (name,)),) if name else ())
 
     def inquiry(self) -> Meaning | None:
         """Return a question about the user, or about what they told."""

@@ -19,9 +19,10 @@ LONGEST = {"name": 4, "people": 4, "place": 5}
 _LEADS = {
     **dict.fromkeys(("subject", "activity", "thing"), r"an? (?=\S)"),
     "work": r"(?:an?|the) (?=\S)",
-    "place": r"(?:the )?(?:city|town|village) of (?=\S)",
+    "place": r"(?:the )?(?:city|town|village) of (?=\S)|.*\b(?:called|named) (?=\S)",
 }
 """Words before a value that are no part of it."""
+_ANYTHING = re.compile(r"(?:any|some|every|no)(?:thing|one|body|where)\b", re.IGNORECASE)
 _DEICTIC = re.compile(
     r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|more|most|a|many|much|"
     r"(?:any|some|every|no)(?:thing|one|body))\b",
@@ -45,6 +46,10 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     text = re.sub(f"^(?:{_LEADS.get(kind, '')})", "", text, flags=re.IGNORECASE)
     words = text.lower().split()
     if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
+        return None
+    if kind in ("work", "subject") and any(word.low == words[0] and word.pos == "ADP" for word in seen.tree.words):
+        return None  # between jobs
+    if kind != "name" and (_DEICTIC if kind in ("activity", "thing") else _ANYTHING).match(text):
         return None
     if kind == "number":
         number = number_in(text)
@@ -82,7 +87,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
     """Return whether words are of the kind of a topic; `determined` means that a determiner begins them."""
     kind = topic.kind
     if kind in ("activity", "thing"):
-        return _DEICTIC.match(text) is None
+        return True
     labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
     if kind == "place":  # Sendai in Japan
         labels |= {entity.label for entity in seen.entities if f"{text} in {entity.text}" in seen.tree.text}
@@ -102,15 +107,25 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
                 return False
         case "place" if labels & _PLACES:
             return True
+        case "place" if _is_proper(text, seen):
+            least = -0.6
         case "place" if determined:
             least = 0.0
         case "organisation" if "ORG" in labels:
             return True
+        case "organisation" if _is_proper(text, seen) and "PERSON" not in labels:
+            least = -0.6
         case "work" | "subject" if determined:
             return False
         case _:
             pass
     return likeness(text, topic.name if topic.name in FITTING else kind) > least
+
+
+def _is_proper(text: str, seen: nlp.Analysis) -> bool:
+    """Return whether words are a name by the parse."""
+    found = {word.text: word.pos for word in seen.tree.words}
+    return text[:1].isupper() and all(found.get(word, "PROPN") == "PROPN" for word in text.split())
 
 
 def _trimmed(text: str) -> str:

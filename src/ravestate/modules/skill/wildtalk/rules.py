@@ -98,6 +98,23 @@ async def note(ctx: rs.RuleContext) -> None:
         remember(ctx, "assistant", said)
 
 
+@module.rule(when=rawio.heard.changed.max_age(None).detached(), writes=history, background=True)
+async def keep_heard(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Keep of a spoken utterance that was interrupted only the words that the user heard."""
+    heard = ctx.payload(rawio.heard.changed).strip()[:LONGEST]
+    said = [(key, message.text) for key, message in ctx[history].items() if message.role == "assistant"]
+    if any(text.strip() == heard for _, text in said[-4:]):
+        return rs.Resign("the user heard all of it")
+    for key, text in reversed(said):
+        if text.startswith(heard):
+            if heard:
+                ctx[history].add(key, Message("assistant", heard + INTERRUPTED))
+            else:
+                ctx[history].remove(key)
+            return None
+    return rs.Resign("the history has no such utterance")
+
+
 @module.rule(when=nlp.analysis.changed.max_age(None).detached(), reads=listening, writes=overheard, background=True)
 def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     """Notice the tone and the persons of an utterance, whichever module answers it."""

@@ -1,4 +1,4 @@
-"""Sound in both directions: the line between a user's microphone and loudspeaker and the agent."""
+"""Sound in both directions: the line that joins the agent to a user's microphone and loudspeaker."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ OUT_RATE = 24_000
 class Line(Protocol):
     """A microphone and a loudspeaker. All sound is mono PCM: 16 bits, signed, little-endian.
 
-    A platform that carries sound, such as a web page, puts a line into `rawio.sound`. A platform that understands and
-    makes speech uses it.
+    A platform that carries sound, such as a web page, puts a line into `rawio.sound`. A platform that recognises and
+    synthesises speech uses this line.
     """
 
     def blocks(self) -> AsyncIterator[bytes]:

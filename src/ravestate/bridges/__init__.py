@@ -1,0 +1,1 @@
+"""Ravestate inside other people's voice frameworks: Pipecat and LiveKit."""

@@ -1,0 +1,162 @@
+"""Ravestate inside a LiveKit session: an agent whose words come from rules instead of a language model."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncGenerator, Callable
+from contextlib import aclosing
+from typing import Any
+
+from ravestate.errors import PlatformError, RavestateError
+
+from .port import AnyAgent, Conversation, Utterance, contexts_of
+
+try:
+    from livekit.agents import (
+        Agent,
+        ConversationItemAddedEvent,
+        ErrorEvent,
+        FlushSentinel,
+        ModelSettings,
+        UserInputTranscribedEvent,
+        UserStateChangedEvent,
+        llm,
+    )
+except ImportError as error:
+    raise PlatformError("ravestate.bridges.livekit needs LiveKit: pip install 'ravestate[livekit]'") from error
+
+log = logging.getLogger("ravestate.livekit")
+
+
+class RavestateAgent(Agent):
+    """A LiveKit agent that answers with a Ravestate agent, in the place of a language model.
+
+    The session needs no ``llm``. The agent may also speak of its own accord. LiveKit's preemptive generation is off,
+    because it would say words to the agent that the user may not have finished.
+
+    Args:
+        agent: The Ravestate agent; see `AnyAgent`.
+        options: The arguments of LiveKit's `Agent` other than ``instructions`` and ``llm``, such as ``tts``.
+
+    Raises:
+        DeclarationErrors: The modules or the settings have faults.
+        DeclarationError: The agent can neither hear nor speak.
+
+    Example:
+        ```python
+        await AgentSession(stt=stt, vad=vad, tts=tts).start(RavestateAgent(policy), room=job.room)
+        ```
+    """
+
+    def __init__(self, agent: AnyAgent, **options: Any) -> None:
+        turns: Any = {**options.pop("turn_handling", {}), "preemptive_generation": {"enabled": False}}
+        super().__init__(instructions="", llm=_NoModel(), turn_handling=turns, **options)
+        self._contexts = contexts_of(agent)
+        self._conversation: Conversation | None = None
+        self._watching: asyncio.Task[None] | None = None
+        self._known: set[str] = set()  # the ids of messages of the user that the agent has heard
+
+    async def on_enter(self) -> None:
+        """Start the agent."""
+        self._known |= {item.id for item in self.chat_ctx.items}  # from before the agent's time
+        await self._begun()
+
+    async def on_exit(self) -> None:
+        """Stop the agent."""
+        conversation, self._conversation = self._conversation, None
+        for event, function in self._listeners().items():
+            self.session.off(event, function)
+        if self._watching is not None:
+            self._watching.cancel()
+        if conversation is not None:
+            await conversation.end()
+
+    async def llm_node(
+        self, chat_ctx: llm.ChatContext, tools: list[llm.Tool], model_settings: ModelSettings
+    ) -> AsyncGenerator[str | FlushSentinel, None]:
+        """Tell the agent what the user has said, and yield its answer."""
+        words = self._new_words(chat_ctx)
+        if not words:  # LiveKit asks for a reply without words of the user
+            return
+        conversation = await self._begun()
+        gap = ""
+        async with aclosing(conversation.answer(words)) as answer:
+            async for utterance in answer:
+                async for piece in utterance:
+                    yield gap + piece
+                    gap = ""
+                yield FlushSentinel()  # speak at once, though the rest of the answer may take long
+                gap = " "
+
+    async def _begun(self) -> Conversation:
+        """Return the conversation, which begins with the first call."""
+        if self._conversation is None:
+            self._conversation = Conversation(self._contexts(), self._say, "livekit")
+            for event, function in self._listeners().items():
+                self.session.on(event, function)
+            await self._conversation.begin()
+            self._watching = asyncio.create_task(self._watch(self._conversation))
+        return self._conversation
+
+    def _say(self, utterance: Utterance) -> None:
+        """Say an utterance for which LiveKit has not asked."""
+        if self._conversation is None:
+            return
+        try:
+            self.session.say(utterance)
+        except RuntimeError as error:  # the session is closing, or has no voice
+            log.warning("LiveKit does not say the agent's words: %s", error)
+
+    async def _watch(self, conversation: Conversation) -> None:
+        """End the session when the agent wants to leave, or has failed."""
+        failure = None
+        try:
+            await conversation.until_agent_leaves()
+        except RavestateError as error:
+            failure = error
+            log.error("the agent has failed: %s", failure)
+            self.session.emit("error", ErrorEvent(error=failure, source=self))
+        self.session.shutdown(drain=failure is None)
+
+    def _listeners(self) -> dict[Any, Callable[[Any], None]]:
+        return {
+            "conversation_item_added": self._on_item,
+            "user_state_changed": self._on_user_state,
+            "user_input_transcribed": self._on_transcript,
+        }
+
+    def _on_item(self, event: ConversationItemAddedEvent) -> None:
+        item = event.item
+        if self._conversation is not None and isinstance(item, llm.ChatMessage) and item.role == "assistant":
+            self._conversation.heard(item.text_content or "")  # if it was interrupted, only the words before
+
+    def _on_user_state(self, event: UserStateChangedEvent) -> None:
+        if self._conversation is not None and event.new_state == "speaking":
+            self._conversation.notice_speech()
+
+    def _on_transcript(self, event: UserInputTranscribedEvent) -> None:
+        if self._conversation is not None and not event.is_final:
+            self._conversation.notice_speech(event.transcript)
+
+    def _new_words(self, context: llm.ChatContext) -> str:
+        """Return what the user has said since the last call."""
+        said = [item for item in context.items if isinstance(item, llm.ChatMessage) and item.role == "user"]
+        words = [item.text_content or "" for item in said if item.id not in self._known]
+        self._known |= {item.id for item in said}
+        return " ".join(words).strip()
+
+
+class _NoModel(llm.LLM[Any]):
+    """The model that LiveKit demands before it calls `llm_node`; it is never asked."""
+
+    @property
+    def model(self) -> str:
+        return "rules"
+
+    @property
+    def provider(self) -> str:
+        return "ravestate"
+
+    def chat(self, **_: Any) -> llm.LLMStream:
+        raise NotImplementedError("RavestateAgent answers in llm_node")

@@ -1,0 +1,159 @@
+"""``ravestate voice``: check what speech needs, transcribe, speak, and hold a conversation with a recording."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ravestate.cli import complete
+from ravestate.cli.agent import load_agent
+from ravestate.errors import PlatformError, UsageError
+from ravestate.loading.spec import AgentSpec
+
+if TYPE_CHECKING:
+    from ravestate.modules.platform.voiceio import Settings
+    from ravestate.testing import Said
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    checking = actions.add_parser("check", help="show the devices, models and programs, and how to get missing ones")
+    getting = actions.add_parser("get", help="download a model for speech recognition, e.g. base or small.en")
+    getting.add_argument("name", metavar="MODEL", help="a name of faster-whisper, or a repository on the hub")
+    transcribing = actions.add_parser(
+        "transcribe",
+        help="print the words of recordings, one line for each file",
+        description="Print the words of recordings, one line for each file. Exit code 1: a file could not be read.",
+    )
+    transcribing.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a recording: WAV, OGG, MP3, ...")
+    saying = actions.add_parser("say", help="speak a text into a WAV file")
+    saying.add_argument("text", metavar="TEXT")
+    saying.add_argument("-o", "--output", type=Path, required=True, metavar="OUT.wav", help="the file to write")
+    talking = actions.add_parser(
+        "talk",
+        help="hold a conversation between a recording and an agent, faster than real time",
+        description="Hold a conversation between a recording, which is the user's microphone, and an agent. Time is "
+        "virtual: computing takes none of it. The transcript of both sides goes to standard output.",
+    )
+    talking.add_argument("recording", type=Path, metavar="IN.wav", help="the sound of the user's microphone")
+    talking.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT.wav",
+        help="the file for the sound of the loudspeaker, on the time line of the recording",
+    )  # fmt: skip
+    talking.add_argument(
+        "modules", nargs="*", metavar="MODULE",
+        help="the agent: modules or an agent file, by default the modules of `ravestate chat`",
+    )  # fmt: skip
+    talking.add_argument("-f", "--file", metavar="FILE", help="an agent file")
+    talking.add_argument("--seed", type=int, default=0, help="the seed of all random choices")
+    for action in (checking, transcribing, saying, talking):
+        action.add_argument(
+            "--set", dest="sets", action="append", default=[], metavar="MODULE.KEY=VALUE",
+            help="a setting, e.g. voiceio.model=base (may be repeated)",
+        )  # fmt: skip
+
+
+def run(options: argparse.Namespace) -> int:
+    match options.action:
+        case "check":
+            return _check(options)
+        case "get":
+            return _get(options)
+        case "transcribe":
+            return _transcribe(options)
+        case "say":
+            return _say(options)
+        case _:
+            return _talk(options)
+
+
+def settings_of(options: argparse.Namespace) -> Settings:
+    """Return the settings of voiceio: those of ``--set``, then the environment's."""
+    from ravestate.modules import voiceio
+    from ravestate.settings import load_settings
+
+    agent = AgentSpec()
+    agent.load([("voiceio", Path())])
+    for text in options.sets:
+        agent.set(text)
+    agent.check()
+    return load_settings([voiceio.module], {"voiceio": agent.settings.get("voiceio", {})})["voiceio"]
+
+
+def _check(options: argparse.Namespace) -> int:
+    from ravestate.modules.platform.voiceio.checking import check
+
+    lines = check(settings_of(options))
+    width = max(len(line.part) for line in lines)
+    for line in lines:
+        print(
+            f"{'ok     ' if line.present else 'MISSING' if line.needed else 'none   '}  {line.part:<{width}}  {line.text}"
+        )
+    return int(any(line.needed and not line.present for line in lines))
+
+
+def _get(options: argparse.Namespace) -> int:
+    from ravestate.modules.platform.voiceio.models import fetch_whisper
+
+    print(fetch_whisper(options.name, lambda text: print(f"ravestate voice: {text}", file=sys.stderr)))
+    return 0
+
+
+def _transcribe(options: argparse.Namespace) -> int:
+    from ravestate.modules import voiceio
+
+    settings = settings_of(options)
+    failed = 0
+    for file in options.files:
+        if not file.is_file():
+            print(f"ravestate voice: there is no file {file}", file=sys.stderr)
+            failed = 1
+            continue
+        try:
+            found = voiceio.transcribe(file, settings)
+        except PlatformError as error:
+            if len(options.files) == 1:
+                raise
+            print(f"ravestate voice: {error}", file=sys.stderr)
+            failed = 1
+            continue
+        print(found.text, flush=True)
+    return failed
+
+
+def _say(options: argparse.Namespace) -> int:
+    from ravestate.modules import rawio, voiceio
+    from ravestate.modules.platform.voiceio.sound import write_wav
+
+    _check_target(options.output)
+    write_wav(options.output, voiceio.speak(options.text, settings_of(options)), rawio.OUT_RATE)
+    return 0
+
+
+def _talk(options: argparse.Namespace) -> int:
+    from ravestate.testing import talk
+
+    if not options.recording.is_file():
+        raise UsageError(f"there is no file {options.recording}")
+    _check_target(options.output)
+    complete_agent = not options.modules and not options.file
+    if complete_agent:
+        options.without = []
+    agent = load_agent(options, ["voiceio", *(complete.names(options) if complete_agent else [])])
+    if complete_agent:
+        complete.leave_out_absent(agent, "voice")
+        complete.choose_small_talk(agent, "voice")
+    talk(options.recording, options.output, *agent.modules, settings=agent.settings, seed=agent.seed, show=_show)
+    return 0
+
+
+def _show(one: Said) -> None:
+    mark = " …" if one.cut else ""
+    print(f"{one.start:8.2f} {one.end:8.2f}  {one.speaker + ':':<6} {one.text}{mark}", flush=True)
+
+
+def _check_target(path: Path) -> None:
+    if not path.parent.is_dir():
+        raise UsageError(f"cannot write {path}: there is no folder {path.parent}")

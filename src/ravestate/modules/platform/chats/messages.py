@@ -1,0 +1,139 @@
+"""The records that pass between a messenger and its chats, and the error of a failed delivery."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+from ravestate.errors import PlatformError
+
+
+@dataclass(frozen=True, slots=True)
+class Person:
+    """A person on a messenger: the id there, and the name that they have there; None if they have none."""
+
+    id: str
+    name: str | None = None
+
+
+Said = Literal["text", "picture", "voice", "command", "edit", "reaction", "left"]
+"""The kinds of incoming messages. ``left`` tells that the agent is no longer in the chat."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Incoming:
+    """A message from a messenger to the agent.
+
+    Attributes:
+        key: The id of the event on the messenger; a message with a known key is ignored.
+        chat: The id of the chat.
+        id: The id of the message; for an ``edit`` or a ``reaction``, the id of the message that it concerns.
+        person: The person who sent the message.
+        kind: The kind of the message.
+        text: The words, the caption of a picture, or the emoji of a reaction. For a command, its name, without a slash.
+        file: The reference to a picture or a voice note, for `Carrier.fetch`.
+        group: Whether several people may be in the chat.
+    """
+
+    key: str
+    chat: str
+    id: str
+    person: Person
+    kind: Said = "text"
+    text: str = ""
+    file: str = ""
+    group: bool = False
+
+
+Sent = Literal["text", "picture", "voice", "edit", "reaction"]
+"""The kinds of outgoing messages. A ``voice`` message is spoken, if speech can be made; else it is sent as text."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outgoing:
+    """A message from the agent to a messenger.
+
+    Attributes:
+        key: An id that survives a restart, for messengers that ignore a repeated id.
+        chat: The id of the chat.
+        kind: The kind of the message.
+        text: The words, the caption of a picture, or the emoji of a reaction.
+        to: The id of the message to edit or to react to. For other kinds, the id of the message to reply to; or empty.
+        data: The bytes of a picture.
+        trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
+    """
+
+    key: str
+    chat: str
+    kind: Sent = "text"
+    text: str = ""
+    to: str = ""
+    data: bytes = b""
+    trace: str = ""
+
+
+class DeliveryError(PlatformError):
+    """A message could not be delivered.
+
+    Args:
+        reason: The reason, for the log.
+        wait: The seconds to wait before the next attempt, if the messenger has set a time; 0 otherwise.
+        unsure: Whether the message may have arrived, as after a time-out.
+        final: Whether any further attempt would fail too.
+        gone: Whether the chat is closed to the agent: it was blocked, or has left the group.
+        moved: The chat's new id, if it has one.
+    """
+
+    def __init__(
+        self,
+        reason: str,
+        *,
+        wait: float = 0.0,
+        unsure: bool = False,
+        final: bool = False,
+        gone: bool = False,
+        moved: str = "",
+    ) -> None:
+        super().__init__(reason)
+        self.wait = wait
+        self.unsure = unsure
+        self.final = final or gone
+        self.gone = gone
+        self.moved = moved
+
+
+class Carrier(Protocol):
+    """The connection to a messenger: what a platform implements, and `Room` uses. All calls come on one event loop."""
+
+    longest: int
+    """The maximum number of characters in a message; longer texts are sent as several messages."""
+    rate: float
+    """The maximum number of messages per second, over all chats."""
+
+    async def send(self, message: Outgoing, again: bool) -> str:
+        """Send a message, and return its id on the messenger.
+
+        Args:
+            message: The message.
+            again: Whether an earlier attempt may have arrived. Then the carrier must not send the message twice.
+
+        Raises:
+            DeliveryError: The message was not sent, or it is not known whether it was.
+        """
+        ...
+
+    def trace(self, chat: str) -> str:
+        """Return a text by which `send` can find the message later, if its attempt ends without an answer."""
+        ...
+
+    async def fetch(self, file: str) -> bytes:
+        """Return the bytes of a picture or a voice note. Raise a `DeliveryError` if that fails."""
+        ...
+
+    async def show_work(self, chat: str) -> None:
+        """Show in the chat for some seconds that the agent is writing. Raise a `DeliveryError` if that fails."""
+        ...
+
+    def can_react(self, emoji: str) -> bool:
+        """Return whether a message in a chat can get this emoji as a reaction."""
+        ...

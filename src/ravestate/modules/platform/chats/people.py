@@ -1,0 +1,110 @@
+"""The people in a chat: their names for the agent, and their accounts in its memory."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import TYPE_CHECKING
+
+from ravestate.errors import RavestateError
+from ravestate.modules import interloc
+
+from .messages import Person
+
+if TYPE_CHECKING:
+    from ravestate.modules.meta.ontology import Graph, Memory, Node
+    from ravestate.runtime.context import Context
+
+MEMORY = "ontology:memory"
+PATIENCE = 5.0
+"""The seconds to wait for memory; after that the conversation begins without it."""
+
+
+class Recognised(str):
+    """The name of a person, together with their node in memory (`node`). It is an item of ``interloc.users``."""
+
+    node: Node
+
+    def __new__(cls, name: str, node: Node) -> Recognised:
+        """Return the name with the node."""
+        self = super().__new__(cls, name)
+        self.node = node
+        return self
+
+
+async def welcome(context: Context, platform: str, person: Person, log: logging.Logger) -> None:
+    """Add a person to the users who are present, under the name by which memory knows their account."""
+    name: str | None = person.name
+    try:
+        async with asyncio.timeout(PATIENCE):
+            memory = await _memory(context)
+            if memory is not None:
+                account = _account(platform, person)
+                node = await memory.together(lambda graph: _known(graph, account, person.name))
+                name = Recognised(node["name"], node) if node.get("name") else name
+    except (RavestateError, TimeoutError) as error:
+        log.warning("memory was not asked about a person: %s", error or "it took too long")
+    users = context.read(interloc.users)
+    context.put(interloc.users, {**users, key(platform, person): name})
+
+
+def leave(context: Context, platform: str, person: Person) -> None:
+    """Remove a person from the users who are present."""
+    users = context.read(interloc.users)
+    context.put(interloc.users, {k: user for k, user in users.items() if k != key(platform, person)})
+
+
+def present(context: Context, platform: str, person: Person) -> bool:
+    """Return whether a person is among the users who are present."""
+    return key(platform, person) in context.read(interloc.users)
+
+
+async def forget(context: Context, platform: str, person: Person) -> None:
+    """Remove a person from memory, with all that only they need, and tell the other modules.
+
+    Raises:
+        RavestateError: Memory failed.
+    """
+    memory = await _memory(context)
+    account = _account(platform, person)
+    if memory is not None:
+        for known in await memory.find("Account", name=account):
+            for node in await memory.related(known, "has_account", back=True):
+                await memory.forget(node)
+    context.emit(interloc.forgotten)
+
+
+def key(platform: str, person: Person) -> str:
+    """Return the key of a person in ``interloc.users``."""
+    return f"{platform}-{person.id}"
+
+
+def _account(platform: str, person: Person) -> str:
+    return f"{platform}:{person.id}"
+
+
+async def _memory(context: Context) -> Memory | None:
+    """Return the agent's open memory; None if the agent has none."""
+    if MEMORY not in context.policy.slots:
+        return None
+    from ravestate.modules import ontology
+
+    for _ in range(3):  # the rule that opens memory needs a few turns of the loop
+        if (memory := context.read(ontology.memory)) is not None:
+            await memory.opened()
+            return memory
+        await asyncio.sleep(0)
+    return None
+
+
+def _known(graph: Graph, account: str, name: str | None) -> Node:
+    """Return the person with an account; a new one if memory knows none."""
+    from ravestate.modules.meta.ontology import Node
+
+    known = graph.find("Account", {"name": account})
+    people = graph.related(known[0], "has_account", back=True) if known else []
+    if people:
+        return people[0]
+    person = graph.save(Node("Person", {"name": name}))
+    graph.relate(person, "has_account", known[0] if known else graph.save(Node("Account", {"name": account})), {})
+    return person

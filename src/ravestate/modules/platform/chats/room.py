@@ -1,0 +1,139 @@
+"""The room: all chats of an agent on one messenger."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, cast
+
+from ravestate.folders import user_folder
+
+from .chat import Chat
+from .messages import Carrier, Incoming
+from .sender import Sender
+from .store import Store
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from .settings import ChatSettings
+
+LAST_WORDS = 5.0
+"""The seconds that the agent has to answer and to send when it ends. The rest is done at the next start."""
+
+
+class Room:
+    """All chats of an agent on a messenger: ``async with Room(agent, ...) as room``, then `receive` each message.
+
+    On entry, the room takes up the messages that were left when the last process ended.
+
+    Args:
+        agent: The agent, which makes a context for each chat.
+        name: The name of the platform's module, which has called `connect`, and has `ChatSettings`.
+        carrier: The connection to the messenger.
+        account: The agent's own id on the messenger: each account has a file of its own.
+
+    Raises:
+        PlatformError: The file with the messages cannot be used.
+    """
+
+    def __init__(self, agent: Agent, name: str, carrier: Carrier, account: str) -> None:
+        self.agent = agent
+        self.name = name
+        self.carrier = carrier
+        settings = cast("ChatSettings", agent.settings[name])
+        self.rest = settings.rest
+        self._limit = settings.chats
+        self.slot: Any = agent.policy.slots[f"{name}:chat"]
+        self.command: Any = agent.policy.signals[f"{name}:command"]
+        self.called: set[str] = set()
+        """The names by which the agent knows itself. In a group, a message with one of them is for the agent."""
+        plain = re.sub(r"[^\w.-]", "_", account)
+        self.store = Store(settings.path or user_folder("data") / "chats" / f"{name}-{plain}.sqlite")
+        self.log = logging.getLogger(f"ravestate.{name}")
+        self.closing = False
+        """Whether the agent is being switched off."""
+        self.sender = Sender(self.store, carrier, self._gone, self._moved, self.log)
+        self._chats: dict[str, Chat] = {}
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+
+    def __len__(self) -> int:
+        """Return the number of chats that do not rest."""
+        return len(self._tasks)
+
+    async def __aenter__(self) -> Room:
+        for chat in self.store.chats_to_send():
+            self.sender.wake(chat)
+        for entry in self.store.pending():
+            self._give(entry.message.chat).take(entry)
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        """Put all chats to rest, and deliver their last messages."""
+        self.closing = True
+        try:
+            for chat in self._chats.values():
+                chat.rest()
+            tasks = list(self._tasks.values())
+            if tasks:
+                await asyncio.wait(tasks, timeout=LAST_WORDS)
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            await self.sender.close(LAST_WORDS)
+        finally:
+            self.store.close()
+
+    def receive(self, messages: Iterable[Incoming], position: tuple[str, str] | None = None) -> None:
+        """Take messages from the messenger. After the call they are kept, and may be acknowledged.
+
+        Args:
+            messages: The messages, in order. The room ignores those that it got before.
+            position: A name and a text to note in the same transaction, e.g. the position in a stream of events.
+        """
+        with self.store.batch():
+            entries = [entry for message in messages if (entry := self.store.take(message)) is not None]
+            if position is not None:
+                self.store.note(*position)
+        for entry in entries:
+            if not self.closing:  # otherwise the next process takes it up
+                self._give(entry.message.chat).take(entry)
+
+    def _give(self, id: str) -> Chat:
+        """Return a chat that does not rest."""
+        chat = self._chats.get(id)
+        if chat is None:
+            self._make_room()
+            chat = self._chats[id] = Chat(self, id)
+            self._tasks[id] = asyncio.create_task(self._run(chat))
+        return chat
+
+    async def _run(self, chat: Chat) -> None:
+        try:
+            await chat.live()
+        except Exception:
+            self.log.exception("%r failed", chat)
+        finally:
+            if self._chats.get(chat.id) is chat:
+                del self._chats[chat.id], self._tasks[chat.id]
+
+    def _make_room(self) -> None:
+        if len(self._tasks) >= self._limit:
+            idle = [chat for chat in self._chats.values() if not chat.busy]
+            if idle:
+                min(idle, key=lambda chat: chat.last_active).rest()
+
+    def _gone(self, id: str) -> None:
+        self.log.warning("chat %s is closed to the agent", id)
+        self.store.forget(id)
+        if id in self._chats:
+            self._chats[id].close()
+
+    def _moved(self, id: str, to: str) -> None:
+        self.log.info("chat %s is now chat %s", id, to)
+        self.store.move(id, to)
+        if id in self._chats:
+            self._chats[id].rest()
+        self.sender.wake(to)

@@ -1,0 +1,125 @@
+"""The sender: it delivers the messages in a store, in order within each chat, and tries again after failures."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import random
+from collections.abc import Callable
+
+from .messages import Carrier, DeliveryError
+from .store import Item, Store
+
+IN_FLIGHT = 8
+"""The maximum number of attempts at a time. After a crash only these may have arrived unnoticed."""
+
+FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
+"""The seconds before the second attempt, and before the later ones at most. Each wait is twice the one before."""
+
+
+def back_off(attempt: int) -> float:
+    """Return the seconds to wait after attempt number `attempt`, the first being 0; chance spreads the attempts."""
+    return min(LONGEST_WAIT, FIRST_WAIT * 2 ** min(attempt, 16)) * random.uniform(0.75, 1.0)
+
+
+class Pace:
+    """A limit on a rate: ``await pace.turn()`` waits until the next turn, `rate` turns per second at most."""
+
+    def __init__(self, rate: float) -> None:
+        self._gap = 1.0 / rate
+        self._next = 0.0
+
+    async def turn(self) -> None:
+        """Wait for a turn. Up to a second's turns may come at once after a pause."""
+        now = asyncio.get_running_loop().time()
+        self._next = max(self._next + self._gap, now - 1.0)
+        if self._next > now:
+            await asyncio.sleep(self._next - now)
+
+
+class Sender:
+    """Delivers the messages of a store through a carrier. Each chat is a queue: a failure delays only its own chat.
+
+    Args:
+        store: The messages.
+        carrier: The connection to the messenger.
+        on_gone: Called with the id of a chat that is closed to the agent.
+        on_moved: Called with the old and the new id of a chat.
+        log: The logger of the platform.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        carrier: Carrier,
+        on_gone: Callable[[str], None],
+        on_moved: Callable[[str, str], None],
+        log: logging.Logger,
+    ) -> None:
+        self._store = store
+        self._carrier = carrier
+        self._on_gone = on_gone
+        self._on_moved = on_moved
+        self._log = log
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._attempts = asyncio.Semaphore(IN_FLIGHT)
+        self._pace = Pace(carrier.rate)
+
+    def wake(self, chat: str) -> None:
+        """Deliver the messages to a chat that the store has."""
+        if chat not in self._tasks:
+            task = self._tasks[chat] = asyncio.create_task(self._drain(chat))
+            task.add_done_callback(lambda task: self._ended(chat, task))
+
+    def _ended(self, chat: str, task: asyncio.Task[None]) -> None:
+        self._tasks.pop(chat, None)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self._log.error("a message was not sent: %s", error, exc_info=error)
+
+    async def close(self, grace: float) -> None:
+        """Deliver what can be delivered within `grace` seconds; the rest stays in the store."""
+        if self._tasks:
+            await asyncio.wait(list(self._tasks.values()), timeout=grace)
+        tasks = list(self._tasks.values())
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _drain(self, chat: str) -> None:
+        attempt = 0
+        while (item := self._store.next(chat)) is not None:
+            error = await self._attempt(item)
+            if error is None:
+                attempt = 0
+            elif error.gone:
+                self._on_gone(chat)
+                return
+            elif error.moved:
+                self._on_moved(chat, error.moved)
+                return
+            elif error.final:
+                self._log.error("a message was refused: %s", error)
+                self._store.drop(item)
+            else:
+                wait = error.wait or back_off(attempt)
+                attempt += 1
+                self._log.log(
+                    logging.WARNING if attempt == 3 else logging.INFO, "sending again in %.1f s: %s", wait, error
+                )
+                await asyncio.sleep(wait)
+
+    async def _attempt(self, item: Item) -> DeliveryError | None:
+        """Try to deliver an item once; return the error of a failure."""
+        async with self._attempts:
+            await self._pace.turn()
+            begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
+            try:
+                self._store.sent(begun, await self._carrier.send(begun.message, item.begun))
+            except DeliveryError as error:
+                if not (item.begun or error.unsure):
+                    self._store.undo(begun)
+                return error
+            except Exception as error:  # a mistake in the platform: the chat continues without the message
+                self._log.exception("a message was not sent")
+                return DeliveryError(repr(error), final=True)
+        return None

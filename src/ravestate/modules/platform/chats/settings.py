@@ -1,0 +1,31 @@
+"""The settings that all messengers have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pydantic
+
+import ravestate as rs
+
+
+class ChatSettings(rs.Settings):
+    """The settings of a platform with many chats: the people whom it answers, and the limits of its chats."""
+
+    allow: tuple[int | str, ...] = ()
+    """The people whom the agent answers: their ids or names, or ids of groups. Empty: everybody."""
+    rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
+    """The seconds of silence after which a chat is put to rest."""
+    chats: int = pydantic.Field(1000, ge=1)
+    """The maximum number of chats at a time that do not rest."""
+    path: Path | None = None
+    """The file with unanswered and undelivered messages. Default: one for each account in the user's data folder."""
+
+    def allows(self, *names: object) -> bool:
+        """Return whether one of the sender's ids and names is in `allow`, or `allow` is empty."""
+        known = {_plain(name) for name in self.allow}
+        return not known or any(_plain(name) in known for name in names if name)
+
+
+def _plain(name: object) -> str:
+    return str(name).removeprefix("@").casefold()

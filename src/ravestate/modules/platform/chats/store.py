@@ -1,0 +1,270 @@
+"""The store: messages that came and are not answered yet, and messages that are not delivered yet, in a file."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sqlite3
+import time
+from collections.abc import Generator, Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+from .messages import Incoming, Outgoing, Person
+
+SEEN = 3 * 24 * 3600.0
+"""The seconds for which the store remembers the keys of messages. Messengers repeat a message for a day at most."""
+
+TRIES = 3
+"""The number of starts after which a message is given up: it may be the cause of the crashes."""
+
+PARTING = ("stop", "forget")
+"""The commands after which the agent no longer counts the person as one whom it has met in the chat."""
+
+TABLES = """
+CREATE TABLE IF NOT EXISTS inbox (
+    n INTEGER PRIMARY KEY AUTOINCREMENT, key TEXT UNIQUE, chat TEXT, id TEXT, at REAL,
+    tries INTEGER DEFAULT 0, answer TEXT DEFAULT '', data TEXT);
+CREATE INDEX IF NOT EXISTS of_chat ON inbox (chat, id);
+CREATE TABLE IF NOT EXISTS outbox (
+    n INTEGER PRIMARY KEY AUTOINCREMENT, chat TEXT, cause INTEGER, state TEXT DEFAULT 'queued', message TEXT, data BLOB);
+CREATE INDEX IF NOT EXISTS to_send ON outbox (chat, state);
+CREATE TABLE IF NOT EXISTS people (chat TEXT, id TEXT, PRIMARY KEY (chat, id));
+CREATE TABLE IF NOT EXISTS notes (name TEXT PRIMARY KEY, value TEXT);
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """An incoming message with its number in the store."""
+
+    n: int
+    message: Incoming
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """An outgoing message with its number in the store; `begun` is true if an attempt may have delivered it."""
+
+    n: int
+    message: Outgoing
+    begun: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """A message that the agent wants to send, and the number of the message that caused it; None if none did."""
+
+    message: Outgoing
+    cause: int | None = None
+
+
+class Store:
+    """Messages in a SQLite file. One process at a time may open a file.
+
+    Each operation is one transaction, and survives the death of the process. The operations take some 0.1 ms, so they run
+    on the event loop. After a power failure the last transactions may be missing.
+
+    Args:
+        path: The file; the store makes it, and its folder. Only the user may read it.
+
+    Raises:
+        PlatformError: The file cannot be used: another process has it open, or it is no such file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
+            self._db = sqlite3.connect(path, isolation_level=None, timeout=0.0)
+            self._db.execute("PRAGMA locking_mode=EXCLUSIVE")
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA synchronous=NORMAL")
+            self._db.execute("PRAGMA secure_delete=ON")
+            with self._transaction():
+                for statement in TABLES.split(";"):
+                    self._db.execute(statement)
+                self._db.execute("DELETE FROM inbox WHERE data IS NULL AND at < ?", (time.time() - SEEN,))
+        except (sqlite3.Error, OSError) as error:
+            why = "another agent uses it: end that one first" if "locked" in str(error) else str(error)
+            raise PlatformError(f"the chats' file {path} cannot be opened: {why}") from None
+
+    def close(self) -> None:
+        """Close the file."""
+        self._db.close()
+
+    @contextlib.contextmanager
+    def _transaction(self) -> Generator[None]:
+        if self._db.in_transaction:  # the operation is part of a batch
+            yield
+            return
+        self._db.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+        except BaseException:
+            self._db.execute("ROLLBACK")
+            raise
+        self._db.execute("COMMIT")
+
+    batch = _transaction
+    """Make the operations in the body of a ``with`` one transaction."""
+
+    def _all(self, query: str, *values: object) -> list[Any]:
+        return self._db.execute(query, values).fetchall()
+
+    # ------------------------------------------------------------------------------------ messages that came
+
+    def take(self, message: Incoming) -> Entry | None:
+        """Keep a message until it is done; return None if a message of this key came before."""
+        with self._transaction():
+            data = json.dumps(asdict(message))
+            cursor = self._db.execute(
+                "INSERT OR IGNORE INTO inbox (key, chat, id, at, data) VALUES (?, ?, ?, ?, ?)",
+                (message.key, message.chat, message.id, time.time(), data),
+            )
+            return Entry(cursor.lastrowid or 0, message) if cursor.rowcount else None
+
+    def change(self, entry: Entry, text: str) -> Entry:
+        """Change the text of a message that is not done."""
+        message = replace(entry.message, text=text)
+        with self._transaction():
+            self._db.execute("UPDATE inbox SET data = ? WHERE n = ?", (json.dumps(asdict(message)), entry.n))
+        return Entry(entry.n, message)
+
+    def pending(self) -> list[Entry]:
+        """Return the messages that are not done, in order. Give up those that were returned several times before."""
+        with self._transaction():
+            self._db.execute("UPDATE inbox SET tries = tries + 1 WHERE data IS NOT NULL")
+            self._db.execute("UPDATE inbox SET data = NULL WHERE tries > ?", (TRIES,))
+            return [
+                Entry(n, _incoming(data, chat))
+                for n, data, chat in self._all("SELECT n, data, chat FROM inbox WHERE data IS NOT NULL ORDER BY n")
+            ]
+
+    def answer_to(self, edit: Entry) -> str | None:
+        """Return the id of the answer to the message that was edited; an empty text if there is none yet.
+
+        Return None unless that was the last message of its chat.
+        """
+        chat, id = edit.message.chat, edit.message.id
+        query = "SELECT id, answer FROM inbox WHERE chat = ? AND n < ? ORDER BY n DESC LIMIT 20"
+        rows = self._all(query, chat, edit.n)
+        if not rows or rows[0][0] != id:
+            return None
+        return next((answer for found, answer in rows if found == id and answer), "")
+
+    # ------------------------------------------------------------------------------------ messages to deliver
+
+    def commit(self, answers: Iterable[Answer], done: Sequence[Entry] = ()) -> None:
+        """Queue answers, and mark incoming messages as done: all or nothing."""
+        with self._transaction():
+            for answer in answers:
+                self._db.execute(
+                    "INSERT INTO outbox (chat, cause, message, data) VALUES (?, ?, ?, ?)",
+                    (answer.message.chat, answer.cause, _json(answer.message), answer.message.data),
+                )
+            for entry in done:
+                self._db.execute("UPDATE inbox SET data = NULL WHERE n = ?", (entry.n,))
+                self._db.execute("DELETE FROM outbox WHERE cause = ? AND state = 'sent'", (entry.n,))
+                message = entry.message
+                parting = message.kind == "command" and message.text in PARTING
+                change = (
+                    "DELETE FROM people WHERE chat = ? AND id = ?"
+                    if parting
+                    else "INSERT OR IGNORE INTO people VALUES (?, ?)"
+                )
+                self._db.execute(change, (message.chat, message.person.id))
+
+    def recorded(self, cause: int) -> list[Outgoing]:
+        """Return the answers to a message that is not done, whether delivered or not."""
+        return [_outgoing(*row) for row in self._all("SELECT message, data, chat FROM outbox WHERE cause = ?", cause)]
+
+    def chats_to_send(self) -> list[str]:
+        """Return the chats with messages that are not delivered."""
+        return [chat for (chat,) in self._all("SELECT DISTINCT chat FROM outbox WHERE state != 'sent' ORDER BY n")]
+
+    def next(self, chat: str) -> Item | None:
+        """Return the chat's oldest message that is not delivered."""
+        query = "SELECT n, message, data, state FROM outbox WHERE chat = ? AND state != 'sent' ORDER BY n LIMIT 1"
+        for n, message, data, state in self._all(query, chat):
+            return Item(n, _outgoing(message, data, chat), state == "begun")
+        return None
+
+    def begin(self, item: Item, trace: str) -> Item:
+        """Note that an attempt to deliver begins, with the carrier's trace; return the item with the trace."""
+        message = replace(item.message, trace=trace)
+        with self._transaction():
+            self._db.execute("UPDATE outbox SET state = 'begun', message = ? WHERE n = ?", (_json(message), item.n))
+        return Item(item.n, message, True)
+
+    def undo(self, item: Item) -> None:
+        """Note that no attempt has delivered the message."""
+        with self._transaction():
+            self._db.execute("UPDATE outbox SET state = 'queued' WHERE n = ?", (item.n,))
+
+    def sent(self, item: Item, id: str) -> None:
+        """Note that a message is delivered, and its id on the messenger."""
+        with self._transaction():
+            row = self._all("SELECT i.n, i.data FROM inbox i JOIN outbox o ON o.cause = i.n WHERE o.n = ?", item.n)
+            for cause, _ in row:
+                if item.message.kind in ("text", "voice", "edit"):
+                    self._db.execute("UPDATE inbox SET answer = ? WHERE n = ? AND answer = ''", (id, cause))
+            if row and row[0][1] is not None:  # the answer is compared if the message is heard again after a crash
+                self._db.execute("UPDATE outbox SET state = 'sent' WHERE n = ?", (item.n,))
+            else:
+                self.drop(item)
+
+    def drop(self, item: Item) -> None:
+        """Give up a message."""
+        with self._transaction():
+            self._db.execute("DELETE FROM outbox WHERE n = ?", (item.n,))
+
+    # ------------------------------------------------------------------------------------ chats, people and notes
+
+    def knows(self, chat: str, person: Person) -> bool:
+        """Return whether the agent has finished with a message of this person in this chat before."""
+        return bool(self._all("SELECT 1 FROM people WHERE chat = ? AND id = ?", chat, person.id))
+
+    def forget(self, chat: str) -> None:
+        """Delete all messages of a chat, and the people in it."""
+        with self._transaction():
+            self._db.execute("DELETE FROM people WHERE chat = ?", (chat,))
+            self._db.execute("DELETE FROM outbox WHERE chat = ?", (chat,))
+            self._db.execute("UPDATE inbox SET data = NULL WHERE chat = ?", (chat,))
+
+    def move(self, chat: str, to: str) -> None:
+        """Give a chat another id. The messages to it are sent there from the beginning."""
+        with self._transaction():
+            self._db.execute("UPDATE outbox SET state = 'queued' WHERE chat = ? AND state = 'begun'", (chat,))
+            for table in ("inbox", "outbox", "people"):
+                self._db.execute(f"UPDATE OR IGNORE {table} SET chat = ? WHERE chat = ?", (to, chat))
+
+    def note(self, name: str, value: str) -> None:
+        """Keep a text under a name, e.g. the position in the messenger's stream of events."""
+        with self._transaction():
+            self._db.execute("INSERT OR REPLACE INTO notes VALUES (?, ?)", (name, value))
+
+    def noted(self, name: str) -> str | None:
+        """Return the text under a name."""
+        return next((value for (value,) in self._all("SELECT value FROM notes WHERE name = ?", name)), None)
+
+
+def _incoming(data: str, chat: str) -> Incoming:
+    fields: dict[str, Any] = json.loads(data)
+    fields.update(chat=chat, person=Person(**fields["person"]))
+    return Incoming(**fields)
+
+
+def _json(message: Outgoing) -> str:
+    return json.dumps({name: value for name, value in asdict(message).items() if name != "data"})
+
+
+def _outgoing(message: str, data: bytes, chat: str) -> Outgoing:
+    fields: dict[str, Any] = json.loads(message)
+    fields.update(chat=chat, data=bytes(data))
+    return Outgoing(**fields)

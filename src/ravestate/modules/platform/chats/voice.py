@@ -1,0 +1,36 @@
+"""Voice notes: words in a recording, and words as a recording, where `voiceio` is installed."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+VOICE = "ravestate.modules.platform.voiceio"
+"""The module with the functions. It loads with the first voice note."""
+
+
+async def words_in(note: bytes) -> str:
+    """Return the words in a voice note: a file with sound, such as Ogg with Opus.
+
+    Raises:
+        PlatformError: Speech recognition is not installed, or the note is damaged.
+    """
+    return await asyncio.to_thread(lambda: str(_voiceio().transcribe(note).text))
+
+
+async def spoken(text: str) -> bytes | None:
+    """Return a text as a voice note: an Ogg file with Opus. Return None if it cannot be spoken."""
+    try:
+        return await asyncio.to_thread(lambda: bytes(_voiceio().synthesise(text)))
+    except PlatformError:
+        return None
+
+
+def _voiceio() -> Any:
+    try:
+        return importlib.import_module(VOICE)
+    except ImportError as error:
+        raise PlatformError("voice notes need voiceio: pip install 'ravestate[voice]'") from error

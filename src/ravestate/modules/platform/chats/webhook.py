@@ -1,0 +1,79 @@
+"""A webhook: a small web server to which a messenger sends its messages."""
+
+from __future__ import annotations
+
+import contextlib
+import hmac
+import json
+import socket
+from collections.abc import Awaitable, Callable, Generator
+from typing import Any
+from urllib.parse import urlsplit
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from ravestate.errors import PlatformError
+
+LARGEST = 1024 * 1024
+"""The maximum number of bytes of a request."""
+
+
+async def listen(
+    url: str,
+    address: tuple[str, int],
+    header: str,
+    secret: str,
+    take: Callable[[Any], None],
+    announce: Callable[[], Awaitable[object]],
+) -> None:
+    """Take what a messenger posts to an address, until cancelled. A request is acknowledged after `take` has returned.
+
+    Args:
+        url: The public address, of which the server needs the path.
+        address: The host and the port to listen on.
+        header: The name of the header by which the messenger shows the secret.
+        secret: The secret; a request without it is refused.
+        take: Called with the parsed JSON of each request.
+        announce: Called once the server listens.
+
+    Raises:
+        PlatformError: The port is in use.
+    """
+
+    async def post(request: Request) -> Response:
+        if not hmac.compare_digest(request.headers.get(header, "").encode(), secret.encode()):
+            return Response(status_code=403)
+        body = b""
+        async for block in request.stream():
+            body += block
+            if len(body) > LARGEST:
+                return Response(status_code=413)
+        try:
+            found = json.loads(body)
+        except ValueError:
+            return Response(status_code=400)
+        take(found)
+        return Response()
+
+    try:
+        listener = socket.create_server(address)
+    except OSError as error:
+        raise PlatformError(f"the webhook cannot listen on {address[0]}, port {address[1]}: {error.strerror}") from None
+    app = Starlette(routes=[Route(urlsplit(url).path or "/", post, methods=["POST"])])
+    server = _Server(uvicorn.Config(app, log_config=None, access_log=False, server_header=False, lifespan="off"))
+    with listener:
+        await announce()
+        await server.serve(sockets=[listener])
+
+
+class _Server(uvicorn.Server):
+    """A uvicorn server without signal handlers: the agent's runner has its own."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Generator[None]:
+        """Leave the signal handlers as they are."""
+        yield

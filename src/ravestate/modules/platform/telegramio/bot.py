@@ -1,0 +1,153 @@
+"""The bot: it logs in, gets updates by polling or by a webhook, and gives them to the room."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import logging
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from telegram import Bot, Update, User
+from telegram.error import Conflict, InvalidToken, TelegramError
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats import COMMANDS, Incoming, Room, back_off
+
+from .carrier import TelegramCarrier
+from .requests import FloodError, Requests
+from .updates import KINDS, incoming
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from .names import Settings
+
+POLL = 30
+"""The seconds for which the server holds a request for updates, if there are none."""
+
+CONFLICTS = 4
+"""The number of conflicts in a row after which the bot gives up: another program polls it all the time."""
+
+CONFLICT_WAIT = 2.0
+"""The seconds to wait after the first conflict. After a crash, the server still holds the old process's request."""
+
+SECRET = "x-telegram-bot-api-secret-token"
+
+log = logging.getLogger("ravestate.telegramio")
+
+
+async def run(agent: Agent, settings: Settings, token: str) -> None:
+    """Run the bot until cancelled."""
+    root = settings.base_url.rstrip("/").removesuffix("/bot")
+    requests = Requests(connection_pool_size=16, read_timeout=20.0, pool_timeout=20.0)
+    polls = Requests(connection_pool_size=1)
+    bot = Bot(token, f"{root}/bot", f"{root}/file/bot", request=requests, get_updates_request=polls)
+    try:
+        me = await _log_in(bot, root)
+        carrier = TelegramCarrier(bot, settings.rate)
+        async with Room(agent, "telegramio", carrier, str(me.id)) as room:
+            inlet = Inlet(bot, me, room, carrier, settings)
+            sys.stdout.write(f"@{me.username} is on Telegram (Ctrl-C ends it)\n")
+            sys.stdout.flush()
+            await (inlet.listen(settings.webhook, token) if settings.webhook else inlet.poll())
+    finally:
+        await bot.shutdown()
+
+
+async def _log_in(bot: Bot, root: str) -> User:
+    """Return the bot's own user; wait until the server answers."""
+    attempt = 0
+    while True:
+        try:
+            await bot.initialize()
+            await bot.set_my_commands(list(COMMANDS.items()))
+            return bot.bot
+        except InvalidToken:
+            raise PlatformError(
+                f"telegramio: {root} refuses the token: compare RAVESTATE_TELEGRAMIO_TOKEN with the one that @BotFather "
+                "shows (/mybots)"
+            ) from None
+        except TelegramError as error:
+            if attempt in (0, 5):
+                log.warning("%s does not answer (%s); trying again", root, error.message)
+            await asyncio.sleep(error.seconds if isinstance(error, FloodError) else back_off(attempt))
+            attempt += 1
+
+
+class Inlet:
+    """Takes updates from the server, and gives them to a room."""
+
+    def __init__(self, bot: Bot, me: User, room: Room, carrier: TelegramCarrier, settings: Settings) -> None:
+        self._bot = bot
+        self._me = me
+        self._room = room
+        self._carrier = carrier
+        self._settings = settings
+        self._refused: set[int] = set()
+
+    async def listen(self, url: str, token: str) -> None:
+        """Take the updates that the server sends to a webhook. It stays set, so that no update is lost afterwards."""
+        from ravestate.modules.platform.chats.webhook import listen
+
+        secret = hashlib.sha256(f"webhook {token}".encode()).hexdigest()
+        address = (self._settings.host, self._settings.port)
+
+        async def announce() -> None:
+            await self._bot.set_webhook(url, secret_token=secret, allowed_updates=KINDS)
+
+        await listen(url, address, SECRET, secret, lambda update: self.take([update]), announce)
+
+    async def poll(self) -> None:
+        """Ask the server for updates."""
+        offset, attempt, conflicts, ready = 0, 0, 0, False
+        # `Bot.get_updates` would fail for all updates of an answer if one of them is malformed.
+        post: Any = self._bot._post  # pyright: ignore[reportPrivateUsage]
+        while True:
+            try:
+                ready = ready or await self._bot.delete_webhook()
+                request: dict[str, Any] = {"timeout": POLL, "allowed_updates": KINDS, "offset": offset or None}
+                updates: list[Any] = await post("getUpdates", request, read_timeout=POLL + 10)
+                self.take(updates)
+                offset = max((int(each["update_id"]) + 1 for each in updates), default=offset)
+                attempt = conflicts = 0
+            except InvalidToken:
+                raise PlatformError("telegramio: the token is no longer valid: @BotFather has the new one") from None
+            except Conflict as error:
+                conflicts += 1
+                if conflicts >= CONFLICTS:
+                    raise PlatformError(
+                        "telegramio: another program gets the messages of this bot: end it, or make another bot "
+                        f"({error.message})"
+                    ) from None
+                await asyncio.sleep(CONFLICT_WAIT * conflicts)
+            except (TelegramError, TypeError, KeyError, ValueError) as error:
+                log.log(logging.WARNING if attempt == 3 else logging.INFO, "no updates: %s", error)
+                await asyncio.sleep(error.seconds if isinstance(error, FloodError) else back_off(attempt))
+                attempt += 1
+
+    def take(self, updates: Sequence[Mapping[str, Any]]) -> None:
+        """Give updates to the room. After the call they are kept, and may be acknowledged."""
+        messages: list[Incoming] = []
+        for data in updates:
+            try:
+                if (message := self._read(Update.de_json(dict(data), self._bot))) is not None:
+                    messages.append(message)
+            except Exception:
+                log.exception("an update cannot be read, and is left out")
+        self._room.receive(messages)
+
+    def _read(self, update: Update) -> Incoming | None:
+        if (known := update.effective_message) is not None:
+            self._carrier.note(str(known.chat.id), str(known.message_id))
+        message = incoming(update, self._me, {self._me.first_name, *self._room.called})
+        user, chat = update.effective_user, update.effective_chat
+        if message is None or user is None or chat is None or message.kind == "left":
+            return message
+        if self._settings.allows(user.id, user.username, chat.id, chat.username):
+            return message
+        if user.id not in self._refused:
+            self._refused.add(user.id)
+            log.warning("%s (%s) is not in telegramio.allow, and gets no answer", user.id, user.first_name)
+        return None

@@ -1,0 +1,149 @@
+"""The carrier: it sends messages to Telegram, and fetches files from it."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Generator
+
+import httpx
+from telegram import Bot, ReactionTypeEmoji, ReplyParameters
+from telegram.constants import ChatAction, MessageLimit, ReactionEmoji
+from telegram.error import BadRequest, ChatMigrated, Forbidden, InvalidToken, TelegramError, TimedOut
+
+from ravestate.modules.platform.chats import DeliveryError, Outgoing
+from ravestate.modules.platform.chats.voice import spoken
+
+from .requests import FloodError
+
+UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)
+"""The failures after which a request has certainly not reached the server."""
+
+AHEAD = 40
+"""The number of message ids among which a message is looked for, if the answer to its attempt got lost."""
+
+BIGGEST = 20 * 1024 * 1024
+"""The number of bytes of the largest file that the server hands out."""
+
+REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
+
+
+class TelegramCarrier:
+    """Sends messages as a bot; see `Carrier`.
+
+    Telegram has no id by which it would recognise a repeated message. Therefore `send` looks for a message whose attempt
+    has ended without an answer: the ids of a bot's messages grow, and Telegram says which of them the bot may edit.
+    """
+
+    longest: int = MessageLimit.MAX_TEXT_LENGTH
+
+    def __init__(self, bot: Bot, rate: float) -> None:
+        self._bot = bot
+        self.rate = rate
+        self.newest: dict[str, int] = {}
+        """The newest known message id, by the chat that counts its own ids, or "" for the bot's common count."""
+
+    def note(self, chat: str, id: str) -> None:
+        """Note the id of a message that has come or gone."""
+        if id.isdecimal():
+            count = _count(chat)
+            self.newest[count] = max(self.newest.get(count, 0), int(id))
+
+    def trace(self, chat: str) -> str:
+        """Return the newest message id before an attempt."""
+        return str(self.newest.get(_count(chat), 0) or "")
+
+    def can_react(self, emoji: str) -> bool:
+        """Return whether Telegram has a reaction of this emoji."""
+        return emoji in REACTIONS or emoji.replace("\ufe0f", "") in REACTIONS
+
+    async def send(self, message: Outgoing, again: bool) -> str:
+        """Send a message, unless an earlier attempt has sent it; return its id."""
+        with _delivery():
+            if again and message.kind in ("text", "voice", "picture"):
+                found = await self._find(message)
+                if found:
+                    return found
+            id = str(await self._send(message))
+        self.note(message.chat, id)
+        return id
+
+    async def _send(self, message: Outgoing) -> int:
+        bot, chat, text = self._bot, message.chat, message.text
+        if message.kind == "reaction":
+            emoji = text if text in REACTIONS else text.replace("\ufe0f", "")
+            await bot.set_message_reaction(chat, int(message.to), ReactionTypeEmoji(emoji))
+            return int(message.to)
+        if message.kind == "edit":
+            try:
+                await bot.edit_message_text(text, chat, int(message.to))
+                return int(message.to)
+            except BadRequest as error:
+                if "not modified" in error.message:
+                    return int(message.to)
+        reply = None
+        if message.to and message.kind != "edit":
+            reply = ReplyParameters(int(message.to), allow_sending_without_reply=True)
+        if message.kind == "picture":
+            caption = text[: MessageLimit.CAPTION_LENGTH]
+            return (await bot.send_photo(chat, message.data, caption=caption, reply_parameters=reply)).message_id
+        if message.kind == "voice" and (note := await spoken(text)) is not None:
+            caption = text[: MessageLimit.CAPTION_LENGTH]
+            return (await bot.send_voice(chat, note, caption=caption, reply_parameters=reply)).message_id
+        return (await bot.send_message(chat, text, reply_parameters=reply)).message_id
+
+    async def _find(self, message: Outgoing) -> str | None:
+        """Return the id of a message that an earlier attempt has sent; None if there is none."""
+        if not message.trace:
+            return None
+        first = int(message.trace) + 1
+        for id in range(first, first + AHEAD):
+            try:
+                await self._bot.edit_message_reply_markup(message.chat, id)
+            except BadRequest as error:
+                if "not modified" in error.message:  # it is the bot's own, in this chat, and newer than all others
+                    return str(id)
+            except InvalidToken:  # a server without this method
+                return None
+        return None
+
+    async def fetch(self, file: str) -> bytes:
+        """Return the bytes of a file."""
+        with _delivery():
+            found = await self._bot.get_file(file)
+            if (found.file_size or 0) > BIGGEST:
+                raise DeliveryError("the file is too big", final=True)
+            return bytes(await found.download_as_bytearray())
+
+    async def show_work(self, chat: str) -> None:
+        """Show in the chat that the agent is writing."""
+        with _delivery():
+            await self._bot.send_chat_action(chat, ChatAction.TYPING)
+
+
+def _count(chat: str) -> str:
+    """Return the name of the count of a chat's message ids: supergroups and channels have counts of their own."""
+    return chat if chat.startswith("-100") else ""
+
+
+@contextlib.contextmanager
+def _delivery() -> Generator[None]:
+    """Turn the errors of Telegram into a `DeliveryError`."""
+    try:
+        yield
+    except FloodError as error:
+        raise DeliveryError(error.message, wait=error.seconds) from None
+    except ChatMigrated as error:
+        raise DeliveryError("the group has another id", moved=str(error.new_chat_id)) from None
+    except Forbidden as error:
+        raise DeliveryError(error.message, gone=True) from None
+    except BadRequest as error:
+        gone = "chat not found" in error.message.casefold()
+        raise DeliveryError(error.message, final=True, gone=gone) from None
+    except InvalidToken:
+        raise DeliveryError("Telegram refuses the token, or does not know the method", wait=30.0) from None
+    except TelegramError as error:
+        unsure = not isinstance(error.__cause__, UNSENT)
+        reason = "no answer in time" if isinstance(error, TimedOut) else error.message
+        raise DeliveryError(reason, unsure=unsure) from None
+    except (TimeoutError, TypeError, KeyError, ValueError) as error:  # an answer that cannot be read
+        raise DeliveryError(f"the answer is malformed: {type(error).__name__}", unsure=True) from None

@@ -1,0 +1,34 @@
+"""The names of `telegramio`: its settings, its module, its slot and its signal."""
+
+from __future__ import annotations
+
+import pydantic
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+from ravestate.modules.platform.chats import ChatSettings, connect
+
+from .serving import serve
+
+
+class Settings(ChatSettings):
+    """The settings of telegramio: the bot, the people whom it answers, and the way in which messages come."""
+
+    token: pydantic.SecretStr | None = None
+    """The bot's token from @BotFather. Set it as ``RAVESTATE_TELEGRAMIO_TOKEN``."""
+    base_url: str = "https://api.telegram.org/bot"
+    """The address of the Bot API server, up to the token."""
+    webhook: str | None = None
+    """The public address, with ``https://``, at which Telegram delivers messages. None: the bot asks for them."""
+    host: str = "127.0.0.1"
+    """The address to listen on for the webhook."""
+    port: int = pydantic.Field(8443, ge=0, le=65535)
+    """The port to listen on for the webhook."""
+    rate: float = pydantic.Field(25.0, gt=0, allow_inf_nan=False)
+    """The maximum number of messages per second. Telegram allows a bot 30; a server of your own may allow more."""
+
+
+module = rs.Module("telegramio", requires=(rawio, interloc), settings=Settings, serve=serve)
+
+chat, command = connect(module)
+"""The slot with the chat of this context, and the signal for the commands ``/start`` and ``/help``."""

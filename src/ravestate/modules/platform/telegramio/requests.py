@@ -1,0 +1,40 @@
+"""Requests to the Bot API: flood waits, and failures of the server, as errors of their own."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from telegram.error import NetworkError, TelegramError
+from telegram.request import HTTPXRequest
+
+WAIT = 5.0
+"""The seconds to wait if the server asks to wait, but does not say how long."""
+
+
+class FloodError(TelegramError):
+    """The server asks to wait for some seconds."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(f"too many messages: the server asks to wait {seconds:g} s")
+        self.seconds = seconds
+
+
+class Requests(HTTPXRequest):
+    """Requests that tell a flood wait from other refusals, without a warning of the library."""
+
+    async def do_request(self, *values: Any, **named: Any) -> tuple[int, bytes]:
+        """Make a request; return the status and the body of the answer."""
+        code, body = await super().do_request(*values, **named)
+        if code == 429:
+            raise FloodError(_seconds(body))
+        if code >= 500:
+            raise NetworkError(f"the server has failed (status {code})")
+        return code, body
+
+
+def _seconds(body: bytes) -> float:
+    try:
+        return float(json.loads(body)["parameters"]["retry_after"])
+    except (ValueError, KeyError, TypeError):
+        return WAIT

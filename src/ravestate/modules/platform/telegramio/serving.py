@@ -1,0 +1,38 @@
+"""Serving an agent on Telegram, from the start of its bot to its end."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+from typing import TYPE_CHECKING, cast
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats import secret
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from .names import Settings
+
+
+async def serve(agent: Agent) -> None:
+    """Serve the agent to the users of its Telegram bot, until cancelled; then end the conversations in order.
+
+    Raises:
+        PlatformError: The token is missing or wrong, another program polls the bot, or a package is missing.
+    """
+    settings = cast("Settings", agent.settings["telegramio"])
+    token = settings.token.get_secret_value() if settings.token else ""
+    if not token:
+        raise PlatformError(
+            "telegramio needs a bot's token: @BotFather on Telegram makes a bot and shows its token; then "
+            "export RAVESTATE_TELEGRAMIO_TOKEN=..."
+        )
+    try:
+        await asyncio.to_thread(importlib.import_module, "telegram")
+    except ImportError as error:
+        raise PlatformError(f"telegramio needs {error.name}: pip install 'ravestate[telegram]'") from error
+    from .bot import run
+
+    with secret(token, token.rpartition(":")[2]):
+        await run(agent, settings, token)

@@ -1,0 +1,75 @@
+"""The backend of synthesis by the library of espeak-ng. `serve` runs this file."""
+
+# pyright: basic
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+from typing import Any
+
+SYNCHRONOUS, UTF8, CHARACTERS = 2, 1, 1
+RATE, PITCH, RANGE = 1, 3, 4  # numbers of parameters
+WORD, END = 1, 0  # kinds of events
+NORMAL_RATE = 165  # words a minute
+
+
+class Event(ctypes.Structure):
+    """An event of the library: where a word begins in the text and in the sound."""
+
+    _fields_ = (
+        ("type", ctypes.c_int),
+        ("unique_identifier", ctypes.c_uint),
+        ("text_position", ctypes.c_int),
+        ("length", ctypes.c_int),
+        ("audio_position", ctypes.c_int),
+        ("sample", ctypes.c_int),
+        ("user_data", ctypes.c_void_p),
+        ("id", ctypes.c_char * 8),
+    )
+
+
+CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.POINTER(Event))
+
+
+def load(config: dict[str, Any]) -> Any:
+    """Open the library with the voice ``voice``; return the function that synthesises."""
+    name = ctypes.util.find_library("espeak-ng") or "libespeak-ng.so.1"
+    try:
+        library = ctypes.CDLL(name)
+    except OSError:
+        raise OSError("espeak-ng is not installed") from None
+    rate = library.espeak_Initialize(SYNCHRONOUS, 0, None, 1 << 15)
+    if rate <= 0:
+        raise OSError("espeak-ng has no data: install the package espeak-ng-data")
+    if library.espeak_SetVoiceByName(config["voice"].encode()) != 0:
+        raise ValueError(f"espeak-ng has no voice {config['voice']!r}: espeak-ng --voices lists them")
+    sound = bytearray()
+    places: list[tuple[int, float]] = []
+
+    @CALLBACK
+    def take(samples: Any, count: int, events: Any) -> int:
+        if samples and count > 0:
+            sound.extend(ctypes.string_at(samples, 2 * count))
+        number = 0
+        while events[number].type != END:
+            event = events[number]
+            if event.type == WORD:
+                places.append((event.text_position - 1, event.audio_position / 1000))
+            number += 1
+        return 0
+
+    library.espeak_SetSynthCallback(take)
+
+    def handle(header: dict[str, Any], _: bytes) -> tuple[dict[str, Any], bytes]:
+        sound.clear()
+        places.clear()
+        library.espeak_SetParameter(RATE, round(NORMAL_RATE * header["rate"]), 0)
+        library.espeak_SetParameter(PITCH, min(99, max(0, round(50 + 60 * (header["pitch"] - 1)))), 0)
+        library.espeak_SetParameter(RANGE, min(99, max(0, round(50 * header["range"]))), 0)
+        text = header["text"].encode() + b"\0"
+        library.espeak_Synth(text, ctypes.c_size_t(len(text)), 0, CHARACTERS, 0, UTF8, None, None)
+        return {"rate": rate, "places": list(places)}, bytes(sound)
+
+    handle.callback = take  # pyright: ignore[reportFunctionMemberAccess]  # the library keeps no reference to it
+    handle({"text": "ready", "rate": 1.0, "pitch": 1.0, "range": 1.0}, b"")
+    return handle

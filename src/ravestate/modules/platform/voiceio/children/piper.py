@@ -1,0 +1,43 @@
+"""The backend of synthesis by Piper. `serve` runs this file with the interpreter of Piper's own environment."""
+
+# pyright: basic
+from __future__ import annotations
+
+from typing import Any
+
+STRESS = "ˈˌː"
+"""Marks of stress and length: no sounds of their own."""
+
+
+def load(config: dict[str, Any]) -> Any:
+    """Load the voice file ``voice``; return the function that synthesises."""
+    from piper import PiperVoice, SynthesisConfig  # pyright: ignore[reportMissingImports]
+
+    voice = PiperVoice.load(config["voice"], include_alignments=True)
+
+    def handle(header: dict[str, Any], _: bytes) -> tuple[dict[str, Any], bytes]:
+        normal = voice.config.length_scale or 1.0
+        style = SynthesisConfig(
+            length_scale=normal / header["rate"],
+            noise_scale=min(1.0, 0.667 * header["range"]),
+            noise_w_scale=0.8,
+        )
+        sound = bytearray()
+        spoken: list[list[float]] = []
+        for chunk in voice.synthesize(header["text"], style, include_alignments=True):
+            here = len(sound) / 2 / chunk.sample_rate
+            within = False
+            for part in chunk.phoneme_alignments or ():
+                if part.phoneme == " ":
+                    within = False
+                elif part.phoneme.isalpha() or part.phoneme in STRESS:
+                    if not within:
+                        spoken.append([here, 0])
+                    within = True
+                    spoken[-1][1] += part.phoneme not in STRESS
+                here += part.num_samples / chunk.sample_rate
+            sound += chunk.audio_int16_bytes
+        return {"rate": voice.config.sample_rate, "spoken": spoken}, bytes(sound)
+
+    handle({"text": "Ready.", "rate": 1.0, "range": 1.0}, b"")
+    return handle

@@ -1,0 +1,104 @@
+"""The backend of speech recognition by faster-whisper. `serve` runs this file.
+
+Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So sounds of up to 28 seconds
+are not filled up with silence: a sentence then takes a quarter of the time.
+"""
+
+# pyright: basic
+from __future__ import annotations
+
+import math
+import zlib
+from typing import Any
+
+WINDOW = 28.0
+"""The longest sound (seconds) that is recognised in one shortened window."""
+TAIL = 0.6
+"""The seconds of silence behind the sound. Without silence, the last word suffers."""
+POOR = -1.0
+"""The mean log probability of a token below which the sound is recognised once more, in the usual window."""
+REPEATED = 2.4
+"""The ratio of compression above which a text repeats itself, as a confused model does."""
+
+
+def load(config: dict[str, Any]) -> Any:
+    """Load the model in the folder ``path``; return the function that recognises."""
+    import numpy as np
+    from faster_whisper import WhisperModel
+    from faster_whisper.audio import pad_or_trim
+    from faster_whisper.tokenizer import Tokenizer
+    from faster_whisper.transcribe import get_suppressed_tokens
+
+    model = WhisperModel(config["path"], device="auto", compute_type="default" if config["exact"] else "int8",
+                         cpu_threads=config["threads"], local_files_only=True)  # fmt: skip
+    tokenizers: dict[str, Tokenizer] = {}
+
+    def tokenizer_of(language: str) -> Tokenizer:
+        if language not in tokenizers:
+            tokenizers[language] = Tokenizer(
+                model.hf_tokenizer, model.model.is_multilingual, task="transcribe", language=language
+            )
+        return tokenizers[language]
+
+    def quick(sound: Any, language: str) -> dict[str, Any]:
+        features = model.feature_extractor(sound, padding=int(TAIL * 16000))
+        features = pad_or_trim(features, features.shape[-1] // 2 * 2)
+        encoded = model.encode(features)
+        if not language:
+            language = "en"
+            if model.model.is_multilingual:
+                whole = model.feature_extractor(sound[: 10 * 16000])
+                language = model.model.detect_language(model.encode(pad_or_trim(whole)))[0][0][0][2:-2]
+        tokenizer = tokenizer_of(language)
+        result = model.model.generate(
+            encoded,
+            [model.get_prompt(tokenizer, [], without_timestamps=True)],
+            beam_size=1,
+            max_length=224,
+            return_scores=True,
+            return_no_speech_prob=True,
+            suppress_tokens=get_suppressed_tokens(tokenizer, [-1]),
+        )[0]
+        tokens = result.sequences_ids[0]
+        return {
+            "text": tokenizer.decode(tokens).strip(),
+            "logprob": result.scores[0] * len(tokens) / (len(tokens) + 1),
+            "no_speech": result.no_speech_prob,
+        }
+
+    def whole(sound: Any, language: str) -> dict[str, Any]:
+        found, _ = model.transcribe(
+            sound, language=language or (None if model.model.is_multilingual else "en"), beam_size=5,
+            condition_on_previous_text=False, without_timestamps=len(sound) < WINDOW * 16000,
+        )  # fmt: skip
+        segments = list(found)
+        if not segments:
+            return {"text": "", "logprob": -10.0, "no_speech": 1.0}
+        lengths = [max(1, len(segment.tokens)) for segment in segments]
+        mean = sum(s.avg_logprob * n for s, n in zip(segments, lengths, strict=True)) / sum(lengths)
+        return {
+            "text": " ".join(segment.text.strip() for segment in segments),
+            "logprob": mean,
+            "no_speech": min(segment.no_speech_prob for segment in segments),
+        }
+
+    def handle(header: dict[str, Any], data: bytes) -> tuple[dict[str, Any], bytes]:
+        sound = np.frombuffer(data, "<i2").astype(np.float32) / 32768
+        language = header["language"] if model.model.is_multilingual else "en"
+        if len(sound) > WINDOW * 16000:
+            found = whole(sound, language)
+        else:
+            found = quick(sound, language)
+            if not header["partial"] and (found["logprob"] < POOR or _repeats(found["text"])):
+                again = whole(sound, language)
+                found = again if again["logprob"] > found["logprob"] or _repeats(found["text"]) else found
+        found["confidence"] = math.exp(min(0.0, found.pop("logprob")))
+        return found, b""
+
+    handle({"language": "en", "partial": True}, bytes(32000))  # the first run is slow
+    return handle
+
+
+def _repeats(text: str) -> bool:
+    raw = text.encode()
+    return len(raw) > 40 and len(raw) / len(zlib.compress(raw)) > REPEATED

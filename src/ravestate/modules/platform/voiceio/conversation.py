@@ -1,0 +1,128 @@
+"""The parts of a spoken conversation, and how they are opened: line, ear, mouth, models."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+from ravestate.modules.modality.rawio.line import Line
+
+from .ear import Ear, Turn
+from .echo import EchoCanceller
+from .models import smart_turn
+from .mouth import Mouth
+from .names import Settings
+from .recogniser import Recognised, Recogniser
+from .synthesiser import Synthesiser
+from .turn import Melody, is_back_channel, is_echo, wanted_silence
+from .wav_line import WavLine
+
+
+@dataclass(slots=True)
+class Conversation:
+    """The open parts of a conversation on one line."""
+
+    line: Line
+    ear: Ear
+    mouth: Mouth
+    recogniser: Recogniser
+    melody: Melody | None
+    settings: Settings
+
+    def close(self) -> None:
+        """Close the line, and let go of the models."""
+        self.line.close()
+        self.recogniser.close()
+        self.mouth.voice.close()
+
+    async def judge(self, turn: Turn) -> tuple[Recognised, float]:
+        """Return the words of a turn, and the seconds of silence after which it is over.
+
+        Raises:
+            PlatformError: The recogniser fails.
+        """
+        sound, melody = turn.sound, self.melody
+        hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
+        complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
+        found = await hearing
+        return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings)
+
+    def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
+        """Return what a turn is: ``utterance``, ``back_channel`` or ``false_alarm``, and the words or the reason."""
+        if not found.text:
+            return "false_alarm", "there are no words in the sound"
+        if turn.agent_spoke:
+            if is_echo(found.text, self.mouth.said):
+                return "false_alarm", f"the agent's own voice: {found.text}"
+            if is_back_channel(found.text, self.settings.language):
+                return "back_channel", found.text
+            if found.confidence < self.settings.ask_back_below:
+                return "false_alarm", f"hardly words: {found.text}"
+        return "utterance", found.text
+
+
+async def open_conversation(line: Line | None, settings: Settings, warn: Callable[[str], None]) -> Conversation:
+    """Load the models and open the line.
+
+    Args:
+        line: A platform's line; None to open the files or devices that the settings name.
+        settings: The module's settings.
+        warn: Called with a sentence for each part that is left out.
+
+    Raises:
+        PlatformError: A model, a program or a device is missing; the message says how to get it.
+    """
+    recogniser = await asyncio.to_thread(Recogniser, settings)
+    voice = None
+    try:
+        voice = await asyncio.to_thread(Synthesiser, settings)
+        await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
+        melody = await asyncio.to_thread(_melody, warn)
+        ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(settings, warn))
+        line = line or await asyncio.to_thread(_read, settings) or _device(settings)
+    except BaseException:
+        recogniser.close()
+        if voice is not None:
+            voice.close()
+        raise
+    return Conversation(line, ear, Mouth(line, voice), recogniser, melody, settings)
+
+
+def is_file(name: str) -> bool:
+    """Return whether the setting of a source or a sink names a file rather than a device."""
+    return Path(name).suffix.lower() in (".wav", ".ogg", ".mp3", ".flac", ".m4a", ".opus")
+
+
+def _read(settings: Settings) -> WavLine | None:
+    if is_file(settings.source):
+        return WavLine(Path(settings.source).expanduser(), Path(settings.sink) if is_file(settings.sink) else None)
+    return None
+
+
+def _device(settings: Settings) -> Line:
+    from .device_line import DeviceLine
+
+    if is_file(settings.sink):
+        raise PlatformError(f"voiceio.sink={settings.sink!r} is a file: name a file in voiceio.source as well")
+    return DeviceLine(settings.source, settings.sink)
+
+
+def _melody(warn: Callable[[str], None]) -> Melody | None:
+    file = smart_turn()
+    if file is None:
+        warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")
+        return None
+    return Melody(file)
+
+
+def _canceller(settings: Settings, warn: Callable[[str], None]) -> EchoCanceller | None:
+    if settings.half_duplex or not settings.echo_cancellation:
+        return None
+    try:
+        return EchoCanceller()
+    except OSError:
+        warn("there is no echo cancellation: apt-get install libspeexdsp1, or use headphones")
+        return None

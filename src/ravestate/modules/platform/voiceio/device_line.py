@@ -1,0 +1,182 @@
+"""A line to the machine's microphone and loudspeaker, by PortAudio."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import threading
+from collections.abc import AsyncIterator
+from typing import Any
+
+from ravestate.errors import PlatformError
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
+
+BLOCK = 0.02
+"""The seconds of a block."""
+WAITING = 200
+"""The blocks of sound that wait for a slow agent; older ones are dropped."""
+GONE = 2.0
+"""The seconds without a block after which the microphone counts as unplugged."""
+AGAIN = 2.0
+"""The seconds between two attempts to open a device that was unplugged."""
+
+
+class DeviceLine:
+    """A microphone and a loudspeaker.
+
+    Args:
+        source, sink: The devices' names, or parts of them; ``default`` for the system's choice.
+
+    Raises:
+        PlatformError: PortAudio is missing, or a device cannot be opened.
+    """
+
+    def __init__(self, source: str = "default", sink: str = "default") -> None:
+        self._names = source, sink
+        self._loop = asyncio.get_running_loop()
+        self._blocks: asyncio.Queue[bytes | None] = asyncio.Queue(WAITING)
+        self._lock = threading.Lock()
+        self._queue = bytearray()
+        self._played = 0
+        self._empty = asyncio.Event()
+        self._empty.set()
+        self._closed = False
+        self._streams: list[Any] = []
+        self.lost = 0
+        """How often a device was unplugged."""
+        self._open()
+
+    def _open(self) -> None:
+        sound = portaudio()
+        source, sink = (None if name == "default" else name for name in self._names)
+        common = {"channels": 1, "dtype": "int16"}
+        streams: list[Any] = []
+        try:
+            streams.append(
+                sound.RawInputStream(IN_RATE, round(BLOCK * IN_RATE), device=source, callback=self._take, **common)
+            )
+            streams.append(
+                sound.RawOutputStream(OUT_RATE, round(BLOCK * OUT_RATE), device=sink, callback=self._give, **common)
+            )
+            for stream in streams:
+                stream.start()
+        except (sound.PortAudioError, ValueError) as error:
+            for stream in streams:
+                stream.close()
+            what = ("loudspeaker", "sink") if streams else ("microphone", "source")
+            raise PlatformError(
+                f"voiceio cannot open the {what[0]} ({error}): choose one with --set voiceio.{what[1]}=NAME; "
+                "`ravestate voice check` lists the devices"
+            ) from error
+        self._streams = streams
+
+    async def blocks(self) -> AsyncIterator[bytes]:
+        """Yield the microphone's sound. An unplugged device is opened again when it is back."""
+        while not self._closed:
+            try:
+                async with asyncio.timeout(GONE):
+                    block = await self._blocks.get()
+            except TimeoutError:
+                await self._reopen()
+                continue
+            if block is None:
+                return
+            yield block
+
+    async def _reopen(self) -> None:
+        self.lost += 1
+        self._shut()
+        while not self._closed:
+            with contextlib.suppress(PlatformError):
+                await asyncio.to_thread(restart)
+                self._open()
+                return
+            await asyncio.sleep(AGAIN)
+
+    def play(self, sound: bytes) -> None:
+        """Queue sound for the loudspeaker."""
+        with self._lock:
+            if sound and not self._closed:
+                self._queue += sound
+                self._empty.clear()
+
+    def stop(self) -> None:
+        """Drop the queued sound."""
+        with self._lock:
+            self._queue.clear()
+        self._empty.set()
+
+    @property
+    def played(self) -> float:
+        """The seconds of sound that the loudspeaker has taken."""
+        return self._played / 2 / OUT_RATE
+
+    async def drained(self) -> None:
+        """Wait until the queued sound has been played or dropped."""
+        await self._empty.wait()
+
+    def close(self) -> None:
+        """Close the devices."""
+        self._closed = True
+        self._shut()
+        self.stop()
+        self._put(None)
+
+    def _shut(self) -> None:
+        streams, self._streams = self._streams, []
+        for stream in streams:
+            with contextlib.suppress(Exception):  # an unplugged device may refuse
+                stream.abort()
+                stream.close()
+
+    # The following methods run in PortAudio's threads.
+
+    def _take(self, data: Any, *_: Any) -> None:
+        with contextlib.suppress(RuntimeError):  # the loop is closed
+            self._loop.call_soon_threadsafe(self._put, bytes(data))
+
+    def _give(self, data: Any, *_: Any) -> None:
+        with self._lock:
+            part = bytes(self._queue[: len(data)])
+            del self._queue[: len(data)]
+            self._played += len(part)
+            done = bool(part) and not self._queue
+        data[:] = part.ljust(len(data), b"\0")
+        if done:
+            with contextlib.suppress(RuntimeError):  # the loop is closed
+                self._loop.call_soon_threadsafe(self._drained)
+
+    # The following methods run on the loop.
+
+    def _put(self, block: bytes | None) -> None:
+        if self._blocks.full():
+            self._blocks.get_nowait()
+        self._blocks.put_nowait(block)
+
+    def _drained(self) -> None:
+        if not self._queue:
+            self._empty.set()
+
+
+def portaudio() -> Any:
+    """Return the package sounddevice.
+
+    Raises:
+        PlatformError: The package or the library PortAudio is missing.
+    """
+    try:
+        import sounddevice
+    except ImportError as error:
+        raise PlatformError("voiceio needs sounddevice: pip install 'ravestate[voice]'") from error
+    except OSError as error:
+        raise PlatformError(
+            "voiceio needs PortAudio: apt-get install libportaudio2 (or brew install portaudio)"
+        ) from error
+    return sounddevice
+
+
+def restart() -> None:
+    """Make PortAudio look for devices again: it knows those that were there at its start."""
+    sound = portaudio()
+    sound._terminate()
+    sound._initialize()

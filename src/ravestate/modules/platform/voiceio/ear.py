@@ -1,0 +1,184 @@
+"""The user's sound: where speech begins and pauses, and the sound of the turn so far."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from ravestate.modules.modality.rawio.line import IN_RATE
+
+from .activity import CHUNK, Activity
+from .echo import FRAME
+from .sound import Samples, samples
+
+BEFORE = 12
+"""Chunks before the onset that belong to the turn: a soft beginning is not cut off."""
+ONSET = 2
+"""Chunks of speech in a row that make an onset: a click is none."""
+STAY = 0.7
+"""The share of the threshold of speech above which speech goes on."""
+ARTICULATE = 3
+"""Articulate chunks since the onset that make sure that it is speech, not a hum or a cough."""
+LONG = 16
+"""Chunks of speech since the onset that make sure in any case: half a second."""
+LONGEST = 60.0
+"""The longest turn (seconds). A longer one is taken in parts."""
+CLIPPED = 0.02
+"""The share of samples at the limit above which a second of speech counts as clipped."""
+
+Event = Literal["onset", "articulate", "pause"]
+
+
+class Canceller(Protocol):
+    """The part of an echo canceller that an ear uses."""
+
+    def clean(self, near: bytes, far: bytes) -> bytes: ...
+
+
+@dataclass(slots=True, eq=False)
+class Turn:
+    """The user's turn so far.
+
+    Attributes:
+        start: The time of the onset (seconds).
+        end: The time at which speech ended last.
+        agent_spoke: Whether the agent was speaking at the onset.
+        full: Whether the turn has reached its greatest length, and is taken at once.
+    """
+
+    start: float
+    end: float
+    agent_spoke: bool = False
+    full: bool = False
+    chunks: list[bytes] = field(default_factory=list[bytes])
+
+    @property
+    def sound(self) -> bytes:
+        """The sound (PCM at `IN_RATE`) with a little silence on both sides."""
+        return b"".join(self.chunks)
+
+
+class Ear:
+    """The ear of one line. It takes blocks of sound and yields what happens: onsets, pauses.
+
+    Args:
+        speech: The probability above which a chunk counts as speech.
+        pause: The seconds of silence that make a pause.
+        canceller: Takes out the echo; None for a line without echo.
+    """
+
+    def __init__(self, speech: float = 0.5, pause: float = 0.2, canceller: Canceller | None = None) -> None:
+        self.turn: Turn | None = None
+        """The turn that is under way, also during a pause; None before the next onset."""
+        self.speaking = False
+        """Whether the user speaks."""
+        self.clipped = False
+        """Whether the sound is so loud that it is cut off at the limit."""
+        self._activity = Activity()
+        self._speech = speech
+        self._pause = round(pause * IN_RATE / CHUNK)
+        self._canceller = canceller
+        self._frames = bytearray()
+        self._far = bytearray()
+        self._clean = bytearray()
+        self._before: deque[bytes] = deque(maxlen=BEFORE)
+        self._in_a_row = self._silent = self._spoken = self._articulate = self._at_limit = 0
+        self._sure = False
+
+    def feed(self, block: bytes, now: float, far: bytes = b"", *, agent_speaks: bool = False) -> Iterator[Event]:
+        """Take a block of sound; yield the events in it.
+
+        Args:
+            block: The sound (PCM at `IN_RATE`), of any length.
+            now: The time at its end (seconds).
+            far: The loudspeaker's sound in the same time, as long as `block`; none for silence.
+            agent_speaks: Whether the agent is speaking.
+        """
+        self._clean += self._without_echo(block, far)
+        while len(self._clean) >= 2 * CHUNK:
+            chunk, self._clean = bytes(self._clean[: 2 * CHUNK]), self._clean[2 * CHUNK :]
+            yield from self._hear(chunk, now - len(self._clean) / 2 / IN_RATE, agent_speaks)
+
+    def take(self) -> Turn | None:
+        """End the turn, and return it."""
+        turn, self.turn = self.turn, None
+        return turn
+
+    def reset(self) -> None:
+        """Forget the turn that is under way, and all that was heard."""
+        self.take()
+        self.speaking = False
+        self._in_a_row = self._silent = 0
+        self._before.clear()
+        self._activity.reset()
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _without_echo(self, block: bytes, far: bytes) -> bytes:
+        if self._canceller is None:
+            return block
+        self._frames += block
+        self._far += far if len(far) == len(block) else bytes(len(block))
+        clean = bytearray()
+        while len(self._frames) >= 2 * FRAME:
+            clean += self._canceller.clean(bytes(self._frames[: 2 * FRAME]), bytes(self._far[: 2 * FRAME]))
+            del self._frames[: 2 * FRAME], self._far[: 2 * FRAME]
+        return bytes(clean)
+
+    def _hear(self, chunk: bytes, now: float, agent_speaks: bool) -> Iterator[Event]:
+        sound = samples(chunk)
+        likely = self._activity.probability(sound)
+        length = CHUNK / IN_RATE
+        is_speech = likely >= (self._speech * STAY if self.speaking else self._speech)
+        self._in_a_row = self._in_a_row + 1 if is_speech else 0
+        if self.turn is not None:
+            self.turn.chunks.append(chunk)
+        else:
+            self._before.append(chunk)
+        if not self.speaking:
+            if self._in_a_row >= ONSET:
+                self._begin(now - ONSET * length, agent_speaks)
+                yield "onset"
+            return
+        assert self.turn is not None
+        self._spoken += 1
+        self._articulate += is_speech and is_articulate(sound)
+        self._note_clipping(sound)
+        if not self._sure and (self._articulate >= ARTICULATE or self._spoken >= LONG):
+            self._sure = True
+            yield "articulate"
+        if is_speech:
+            self._silent = 0
+            self.turn.end = now
+        else:
+            self._silent += 1
+        self.turn.full = now - self.turn.start > LONGEST
+        if self._silent >= self._pause or self.turn.full:
+            self.speaking = False
+            yield "pause"
+
+    def _begin(self, now: float, agent_speaks: bool) -> None:
+        self.speaking, self._sure = True, False
+        self._silent = self._spoken = self._articulate = 0
+        if self.turn is None:
+            self.turn = Turn(now, now, agent_speaks, chunks=list(self._before))
+            self._before.clear()
+
+    def _note_clipping(self, sound: Samples) -> None:
+        self._at_limit += int(np.count_nonzero(np.abs(sound.astype(np.int32)) >= 32700))
+        if self._spoken % round(IN_RATE / CHUNK) == 0:
+            self.clipped = self.clipped or self._at_limit > CLIPPED * IN_RATE
+            self._at_limit = 0
+
+
+def is_articulate(sound: Samples) -> bool:
+    """Return whether a chunk of speech has the sounds of an open mouth. A hum has hardly any above 600 Hz."""
+    power = np.abs(np.fft.rfft(sound * np.hanning(len(sound)))) ** 2
+    per_hertz = len(sound) / IN_RATE
+    low = power[round(80 * per_hertz) : round(600 * per_hertz)].sum() + 1e-9
+    high = power[round(600 * per_hertz) :].sum()
+    return bool(high > 0.1 * low)

@@ -1,0 +1,242 @@
+"""A model in a process of its own, which all contexts of this process share.
+
+A model that hangs or crashes ends its process alone: the next request gets a fresh one. In a thread, a model would also
+hold Python's lock while it loads, and stop every event loop.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import os
+import selectors
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from time import monotonic
+from typing import IO, Any
+
+from ravestate.errors import PlatformError
+
+LOADING = 120.0
+"""The longest time (seconds) that a model may take to load."""
+
+CHILDREN = Path(__file__).with_name("children")
+
+
+class ModelProcess:
+    """The process of one model. All methods block and are thread-safe; requests are answered one after another."""
+
+    def __init__(self, kind: str, config: Mapping[str, Any], python: str = sys.executable) -> None:
+        """Nothing is started yet.
+
+        Args:
+            kind: The backend: the name of a file in the folder `CHILDREN`.
+            config: Its configuration, as data for JSON.
+            python: The interpreter that has the backend's packages.
+        """
+        self.kind = kind
+        self.restarts = 0
+        """The number of processes that replaced a dead or hanging one."""
+        self._config = dict(config)
+        self._python = python
+        self._turn = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._errors: IO[bytes] | None = None
+        self._rest = b""
+        self._closed = False
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number, if it runs."""
+        return self._process.pid if self._process is not None and self._process.poll() is None else None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request is under way."""
+        return self._turn.locked()
+
+    def start(self) -> None:
+        """Load the model, unless it is loaded.
+
+        Raises:
+            PlatformError: The model cannot be loaded; the message has the backend's reason.
+        """
+        with self._turn:
+            self._start()
+
+    def request(self, header: Mapping[str, Any], data: bytes = b"", *, seconds: float) -> tuple[dict[str, Any], bytes]:
+        """Send a request, and return its answer. The first request loads the model.
+
+        Raises:
+            PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within
+                `seconds`. In the last two cases, the next request starts a fresh process.
+        """
+        with self._turn:
+            self._start()
+            answer, sound = self._exchange(header, data, seconds)
+        if "error" in answer:
+            raise PlatformError(f"voiceio: {self.kind} failed: {answer['error']}")
+        return answer, sound
+
+    def close(self) -> None:
+        """Kill the process. It has nothing to save."""
+        self._closed = True
+        if (process := self._process) is not None:
+            process.kill()  # a request that is under way reads the end of its pipe, and fails
+        with self._turn:
+            self._end()
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _start(self) -> None:
+        if self._closed:
+            raise PlatformError(f"voiceio: {self.kind} is closed")
+        if self.pid is not None:
+            return
+        if self._process is not None:
+            self.restarts += 1
+            self._end()
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
+        try:
+            # -P: the files beside the program must not be imported in place of packages with their names.
+            self._process = subprocess.Popen(
+                [self._python, "-P", str(CHILDREN / "serve.py"), self.kind],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._errors,
+                bufsize=0,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise PlatformError(f"voiceio: cannot start {self._python!r} for {self.kind}: {error}") from error
+        assert self._process.stdin is not None and self._process.stdout is not None
+        os.set_blocking(self._process.stdin.fileno(), False)
+        os.set_blocking(self._process.stdout.fileno(), False)
+        self._rest = b""
+        answer, _ = self._exchange(self._config, b"", LOADING)
+        if "error" in answer:
+            self._end()
+            raise PlatformError(f"voiceio: cannot load {self.kind}: {answer['error']}. {_remedy(self.kind)}")
+
+    def _exchange(self, header: Mapping[str, Any], data: bytes, seconds: float) -> tuple[dict[str, Any], bytes]:
+        end = monotonic() + seconds
+        try:
+            self._send(json.dumps({**header, "size": len(data)}).encode() + b"\n" + data, end)
+            while b"\n" not in self._rest:
+                self._receive(end)
+            line, _, self._rest = self._rest.partition(b"\n")
+            answer: dict[str, Any] = json.loads(line)
+            size = answer.pop("size")
+            while len(self._rest) < size:
+                self._receive(end)
+            sound, self._rest = self._rest[:size], self._rest[size:]
+            return answer, sound
+        except TimeoutError:
+            self._end()
+            raise PlatformError(f"voiceio: {self.kind} did not answer within {seconds:g} s, and starts again") from None
+        except (EOFError, OSError):
+            how = self._obituary()
+            self._end()
+            raise PlatformError(f"voiceio: the process of {self.kind} ended ({how})") from None
+
+    def _send(self, data: bytes, end: float) -> None:
+        assert self._process is not None and self._process.stdin is not None
+        pipe = self._process.stdin.fileno()
+        rest = memoryview(data)
+        while rest:
+            _wait(pipe, selectors.EVENT_WRITE, end)
+            with contextlib.suppress(BlockingIOError):
+                rest = rest[os.write(pipe, rest) :]
+
+    def _receive(self, end: float) -> None:
+        assert self._process is not None and self._process.stdout is not None
+        pipe = self._process.stdout.fileno()
+        _wait(pipe, selectors.EVENT_READ, end)
+        block = os.read(pipe, 1 << 20)
+        if not block:
+            raise EOFError
+        self._rest += block
+
+    def _obituary(self) -> str:
+        if self._process is None:
+            return "closed"
+        try:
+            code = self._process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            return "its pipe is closed"
+        how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        if self._errors is not None:
+            self._errors.seek(0)
+            said = self._errors.read(1 << 16).decode("utf-8", "replace").strip().splitlines()
+            how += f": {said[-1]}" if said else ""
+        return how
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    with contextlib.suppress(OSError):
+                        pipe.close()
+        if self._errors is not None:
+            self._errors.close()
+            self._errors = None
+
+
+def _wait(pipe: int, event: int, end: float) -> None:
+    with selectors.DefaultSelector() as selector:
+        selector.register(pipe, event)
+        if not selector.select(max(0.0, end - monotonic())):
+            raise TimeoutError
+
+
+def _remedy(kind: str) -> str:
+    if kind == "espeak":
+        return "Install it: apt-get install espeak-ng (or brew install espeak-ng)"
+    if kind == "piper":
+        return "Set it up with `make voice`, or take another voice: --set voiceio.voice=espeak"
+    return "See what is missing: ravestate voice check"
+
+
+# ------------------------------------------------------------------------------------- sharing
+
+_processes: dict[str, ModelProcess] = {}
+_users: dict[str, int] = {}
+_sharing = threading.Lock()
+
+
+def take(kind: str, config: Mapping[str, Any], python: str = sys.executable) -> ModelProcess:
+    """Return the process for this backend and configuration, started or not, with one more user. Pair it with `drop`."""
+    key = json.dumps([kind, dict(config), python], sort_keys=True)
+    with _sharing:
+        process = _processes.get(key)
+        if process is None:
+            process = _processes[key] = ModelProcess(kind, config, python)
+        _users[key] = _users.get(key, 0) + 1
+        return process
+
+
+def drop(process: ModelProcess, *, linger: Callable[[], bool] = bool) -> None:
+    """Remove one user of `process`; without users it ends, unless `linger()` is true."""
+    with _sharing:
+        key = next((key for key, known in _processes.items() if known is process), None)
+        if key is None:
+            return
+        _users[key] -= 1
+        if _users[key] or linger():
+            return
+        del _processes[key], _users[key]
+    process.close()
+
+
+@atexit.register
+def _close_all() -> None:
+    for process in list(_processes.values()):
+        process.close()

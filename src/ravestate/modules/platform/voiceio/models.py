@@ -1,0 +1,102 @@
+"""The models on this machine: folders, files, and how to get the missing ones."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+from ravestate.folders import user_folder
+
+PREFERRED = ("base", "base.en", "small.en", "small", "tiny.en", "tiny")
+"""The order in which models of speech recognition are taken if the settings name none."""
+
+SMART_TURN = "smart-turn-*.onnx"
+
+
+def folders() -> tuple[Path, ...]:
+    """Return the folders that may hold models: the user's, and that of this Python environment."""
+    return user_folder("data") / "voice", Path(sys.prefix) / "share" / "ravestate" / "voice"
+
+
+def whisper_model(name: str) -> Path:
+    """Return the folder of a model for faster-whisper.
+
+    Args:
+        name: A folder's path, or the name of a folder within `folders`; empty for the best that is there.
+
+    Raises:
+        PlatformError: There is no such model; the message says how to get one.
+    """
+    if name and (Path(name).expanduser() / "model.bin").is_file():
+        return Path(name).expanduser().absolute()
+    found = dict(whisper_models())
+    if not name:
+        for preferred in (*PREFERRED, *found):
+            if preferred in found:
+                return found[preferred]
+        raise PlatformError("voiceio has no model for speech recognition: `make voice` or `ravestate voice get base`")
+    if name not in found:
+        known = f"; there are: {', '.join(found)}" if found else ""
+        raise PlatformError(f"voiceio has no model {name!r}{known}. To fetch it: ravestate voice get {name}")
+    return found[name]
+
+
+def whisper_models() -> Iterator[tuple[str, Path]]:
+    """Yield the name and the folder of each model for faster-whisper."""
+    for folder in folders():
+        for file in sorted(folder.glob("*/model.bin")):
+            yield file.parent.name, file.parent
+
+
+def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
+    """Download a model for faster-whisper by its name (``base``, ``small.en``) or repository into the user's folder.
+
+    Raises:
+        PlatformError: The package is missing, the name is unknown, or the download fails.
+    """
+    if find_spec("faster_whisper") is None:
+        raise PlatformError("voiceio needs faster-whisper: pip install 'ravestate[voice]'")
+    from faster_whisper import download_model  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
+
+    folder = folders()[0] / name.replace("/", "--")
+    progress(f"fetching {name} into {folder}")
+    partial = folder.with_name(folder.name + ".part")
+    try:
+        partial.mkdir(parents=True, exist_ok=True)
+        download_model(name, output_dir=str(partial))
+        os.replace(partial, folder)
+    except Exception as error:
+        raise PlatformError(f"voiceio: cannot fetch {name!r}: {error}") from error
+    return folder
+
+
+def piper_voice(name: str) -> Path | None:
+    """Return the file of a voice for Piper, by its path, or its name within `folders`; an empty name means any."""
+    if name and Path(name).expanduser().suffix == ".onnx" and Path(name).expanduser().is_file():
+        return Path(name).expanduser().absolute()
+    for folder in folders():
+        for file in sorted(folder.glob("*.onnx")):
+            if file.with_suffix(".onnx.json").is_file() and (not name or file.stem == name):
+                return file
+    return None
+
+
+def piper_python(setting: Path | None) -> str | None:
+    """Return the interpreter that has Piper: the setting's, this one, or that of the environment of ``make voice``."""
+    if setting is not None:
+        return str(setting.expanduser())
+    if find_spec("piper") is not None:
+        return sys.executable
+    for place in (Path(sys.prefix).parent / ".venvs" / "piper", user_folder("data") / "piper"):
+        if (python := place / "bin" / "python").is_file():
+            return str(python)
+    return None
+
+
+def smart_turn() -> Path | None:
+    """Return the file of the model for the end of a turn; None if there is none."""
+    return next((file for folder in folders() for file in sorted(folder.glob(SMART_TURN), reverse=True)), None)

@@ -1,0 +1,254 @@
+"""The agent's sound: utterances as they grow, and how far they have been heard."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE, Line
+
+from .playout import SECOND
+from .sentences import sentences, speakable
+from .sound import samples
+
+if TYPE_CHECKING:
+    from .synthesiser import Spoken, Synthesiser
+
+HEARD = 0.6
+"""The share of a word that must have sounded for the word to count as heard."""
+QUIET = 200
+"""The level of a sample below which the end of a sentence counts as silence."""
+DRIFT = 0.06
+"""Seconds by which the play-out may differ from its regular course before the echo's reference jumps there."""
+KEPT = 30.0
+"""Seconds of sound that are kept as the echo's reference."""
+
+
+class Speech:
+    """An utterance of the agent, which may still grow.
+
+    Args:
+        text: The text so far.
+        whole: Whether the text is complete.
+        counts: Whether it is an utterance, so that ``rawio.heard`` reports it; a filler is none.
+    """
+
+    def __init__(self, text: str = "", *, whole: bool = False, counts: bool = True) -> None:
+        self.text = text
+        self.whole = whole
+        self.counts = counts
+        self.start = self.end = 0.0
+        """The times at which its sound began and ended (seconds on the context's clock)."""
+        self.over = False
+        """Whether it has been spoken, or cut."""
+        self.heard = ""
+        """The part that the user heard, once it is over."""
+        self._given = 0
+        self._grown = asyncio.Event()
+
+    def __repr__(self) -> str:
+        return f"Speech({self.text!r})"
+
+    def grow(self, piece: str) -> None:
+        """Add a piece of text."""
+        self.text += piece
+        self._grown.set()
+
+    def finish(self, text: str | None = None) -> None:
+        """End the text; `text` is the complete one."""
+        if text is not None:
+            if not text.startswith(self.text[: self._given]):
+                self._given = 0  # it is another text: speak it from its beginning
+            self.text = text
+        self.whole = True
+        self._grown.set()
+
+    async def sentences(self) -> AsyncIterator[tuple[int, str]]:
+        """Yield the place and the text of each sentence as soon as it is complete."""
+        whole = False
+        while not whole:
+            self._grown.clear()
+            whole = self.whole
+            for at, sentence in sentences(self.text, self._given, whole=whole):
+                self._given = at + len(sentence)
+                yield at, sentence
+            if not whole:
+                await self._grown.wait()
+
+
+@dataclass(slots=True)
+class _Queued:
+    """A sentence in the loudspeaker's queue; its sound begins at `start` on the line's scale of played seconds."""
+
+    start: float
+    spoken: Spoken
+    place: int
+
+    @property
+    def end(self) -> float:
+        return self.start + len(self.spoken.sound) / SECOND
+
+
+class Mouth:
+    """The mouth of one line. It speaks one utterance after another."""
+
+    def __init__(self, line: Line, voice: Synthesiser) -> None:
+        self.line = line
+        self.voice = voice
+        self.turn = asyncio.Lock()
+        """One utterance at a time holds it."""
+        self.growing: Speech | None = None
+        """The utterance that still grows."""
+        self.said = ""
+        """The last sentences that were queued, to know one's own voice."""
+        self.speaking = False
+        """Whether an utterance is under way, also while it is held."""
+        self.silent_since: float | None = None
+        """The time since which the speech is held; None if it is not."""
+        self._queue: list[_Queued] = []
+        self._end = 0.0
+        self._held_at: float | None = None
+        self._released = asyncio.Event()
+        self._track: list[tuple[float, bytes]] = []
+        self._at = self._before = 0.0
+
+    @property
+    def held(self) -> bool:
+        """Whether the speech is held."""
+        return self._held_at is not None
+
+    @property
+    def position(self) -> float:
+        """The seconds that the line has played; while the speech is held, those at which it stopped."""
+        return self.line.played if self._held_at is None else self._held_at
+
+    @property
+    def lead(self) -> float:
+        """The seconds of sound that wait in the queue."""
+        return max(0.0, self._end - self.position)
+
+    @property
+    def sounding(self) -> bool:
+        """Whether sound comes out of the loudspeaker."""
+        return self.speaking and self._held_at is None
+
+    @staticmethod
+    def words(sentence: str) -> str:
+        """Return a sentence as the voice can speak it; empty if it has no words."""
+        return speakable(sentence)
+
+    def begin(self) -> None:
+        """Begin a new utterance."""
+        self._queue.clear()
+        self._held_at = None
+        self._end = self.line.played
+
+    def queue(self, spoken: Spoken, place: int) -> None:
+        """Queue a sentence, which begins at the character `place` of the utterance."""
+        self.said = f"{self.said} {spoken.text}"[-600:]
+        if self._held_at is None:
+            self._end = max(self._end, self.line.played)
+            self.line.play(spoken.sound)
+            self._note(spoken.reference, self._end)
+        self._queue.append(_Queued(self._end, spoken, place))
+        self._end += len(spoken.sound) / SECOND
+
+    def hold(self, now: float) -> None:
+        """Silence the loudspeaker at once, at the time `now`, and keep the rest of the speech."""
+        if self._held_at is None:
+            self._held_at = self.line.played
+            self.silent_since = now
+            self._released.clear()
+            self.line.stop()
+            self._cut_track(self._held_at)
+
+    def release(self) -> None:
+        """Go on where `hold` stopped, at the beginning of the word that was cut."""
+        if self._held_at is None:
+            return
+        stopped, self._held_at, self.silent_since = self._held_at, None, None
+        at = self.line.played
+        left = [part for part in self._queue if part.end > stopped]
+        for part in left:
+            skip = 0.0
+            if part.start < stopped:
+                skip = max([word.time for word in part.spoken.words if part.start + word.time <= stopped], default=0.0)
+                if stopped - part.start - skip > 1.0:  # in the silence after the last word
+                    skip = stopped - part.start
+            rest = part.spoken.sound[2 * round(skip * OUT_RATE) :]
+            part.start = at - skip
+            self.line.play(rest)
+            self._note(part.spoken.reference[2 * round(skip * IN_RATE) :], at)
+            at += len(rest) / SECOND
+        self._end = at
+        self._released.set()
+
+    async def played_out(self) -> None:
+        """Wait until everything has been played, also after holds."""
+        while True:
+            await self.line.drained()
+            if self._held_at is None:
+                return
+            await self._released.wait()
+
+    def stop(self) -> None:
+        """Silence the loudspeaker, and drop the rest of the utterance."""
+        if self._held_at is None:
+            self.line.stop()
+            self._cut_track(self.line.played)
+        self._held_at = self.silent_since = None
+        self.speaking = False
+        self._queue.clear()
+
+    def heard(self, text: str) -> str:
+        """Return the part of the utterance `text` that the user has heard, to the word."""
+        position, end = self.position, 0
+        for part in self._queue:
+            words = part.spoken.words
+            last = _speech_end(part.spoken.sound)
+            for number, word in enumerate(words):
+                over = words[number + 1].time if number + 1 < len(words) else max(last, word.time)
+                if part.start + word.time + HEARD * (over - word.time) <= position:
+                    end = max(end, part.place + word.end)
+        return text[:end].strip()
+
+    # ------------------------------------------------------------------------------- the echo's reference
+
+    def reference(self, size: int) -> bytes:
+        """Return the sound (PCM at `IN_RATE`) that the loudspeaker played in the last `size` bytes of microphone sound."""
+        now, length = self.line.played, size / 2 / IN_RATE
+        advances, self._before = now > self._before + 1e-6, now
+        if not advances:
+            self._at = now
+            return bytes(size)
+        if abs(self._at + length - now) > DRIFT:
+            self._at = max(0.0, now - length)
+        begin, self._at = self._at, self._at + length
+        return self._slice(begin, size)
+
+    def _slice(self, begin: float, size: int) -> bytes:
+        out = bytearray(size)
+        for start, sound in self._track:
+            offset = 2 * round((start - begin) * IN_RATE)
+            if -len(sound) < offset < size:
+                part = sound[max(0, -offset) : max(0, -offset) + size - max(0, offset)]
+                out[max(0, offset) : max(0, offset) + len(part)] = part
+        return bytes(out)
+
+    def _note(self, sound: bytes, at: float) -> None:
+        self._track = [(start, old) for start, old in self._track if start > at - KEPT]
+        self._track.append((at, sound))
+
+    def _cut_track(self, at: float) -> None:
+        self._track = [
+            (start, sound[: 2 * max(0, round((at - start) * IN_RATE))]) for start, sound in self._track if start < at
+        ]
+
+
+def _speech_end(pcm: bytes) -> float:
+    loud = np.flatnonzero(np.abs(samples(pcm).astype(np.int32)) > QUIET)
+    return float(loud[-1]) / OUT_RATE if len(loud) else 0.0

@@ -1,0 +1,56 @@
+"""A play-out clock: which part of queued sound has been played at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ravestate.modules.modality.rawio.line import OUT_RATE
+
+SECOND = 2 * OUT_RATE
+"""The bytes of a second of sound."""
+
+
+@dataclass(slots=True)
+class _Part:
+    begin: float
+    sound: bytes
+
+    @property
+    def end(self) -> float:
+        return self.begin + len(self.sound) / SECOND
+
+
+class PlayOut:
+    """A loudspeaker that plays by the clock. Times are seconds on any clock that does not run backwards."""
+
+    def __init__(self) -> None:
+        self._parts: list[_Part] = []
+
+    def play(self, sound: bytes, now: float) -> None:
+        """Queue sound at `OUT_RATE`; it begins at once, or after the queued sound."""
+        if sound:
+            self._parts.append(_Part(max(now, self.end), sound))
+
+    def stop(self, now: float) -> None:
+        """Drop the sound after `now`."""
+        kept: list[_Part] = []
+        for part in self._parts:
+            if part.end > now:
+                part.sound = part.sound[: 2 * max(0, round((now - part.begin) * OUT_RATE))]
+            if part.sound:
+                kept.append(part)
+        self._parts = kept
+
+    @property
+    def end(self) -> float:
+        """The time at which the queued sound ends; minus infinity before the first sound."""
+        return self._parts[-1].end if self._parts else float("-inf")
+
+    def played(self, now: float) -> float:
+        """Return the seconds of sound that were played until `now`, without pauses."""
+        return sum(min(part.end, max(part.begin, now)) - part.begin for part in self._parts)
+
+    def parts(self) -> Iterator[tuple[float, bytes]]:
+        """Yield the times at which sounds began, and the sounds."""
+        return ((part.begin, part.sound) for part in self._parts)

@@ -1,0 +1,108 @@
+"""Speech recognition, in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+
+from . import model_process
+from .models import whisper_model
+from .names import Settings
+
+_MARKS = re.compile(r"\[[^\]]*\]|\([^)]*\)|\*[^*]*\*|[♪♫]+")
+"""Notes of a recogniser about sounds other than speech, such as ``[Music]`` or ``(coughs)``."""
+
+# Whisper has learnt these from the ends of films: it writes them for noise and silence.
+_PHANTOMS = frozenset({"you", "thank you", "thanks for watching", "thank you for watching", "bye", "the end", "so"})
+
+
+@dataclass(frozen=True, slots=True)
+class Recognised:
+    """The recognised words of a sound, with the confidence from 0 to 1; empty words if there are none."""
+
+    text: str
+    confidence: float
+
+
+class Recogniser:
+    """The recogniser that the settings name. All methods block and are thread-safe.
+
+    Raises:
+        PlatformError: A package or the model is missing; the message says how to get it.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._language = settings.language
+        self._patience = settings.recogniser_timeout
+        if settings.recogniser == "grammar":
+            if find_spec("pocketsphinx") is None:
+                raise PlatformError("voiceio.recogniser=grammar needs pocketsphinx: pip install 'ravestate[voice]'")
+            grammar = Path(settings.model).expanduser().absolute()
+            if not settings.model or not grammar.is_file():
+                raise PlatformError(
+                    f"voiceio.recogniser=grammar needs a grammar file (JSGF), not {settings.model!r}: "
+                    "--set voiceio.model=commands.gram"
+                )
+            self._process = model_process.take("grammar", {"path": str(grammar)})
+        else:
+            if find_spec("faster_whisper") is None:
+                raise PlatformError("voiceio needs faster-whisper: pip install 'ravestate[voice]'")
+            config = {
+                "path": str(whisper_model(settings.model)),
+                "threads": settings.threads or max(1, min(4, os.cpu_count() or 1)),
+                "exact": False,
+            }
+            self._process = model_process.take("whisper", config)
+
+    @property
+    def process(self) -> model_process.ModelProcess:
+        """The model's process."""
+        return self._process
+
+    @property
+    def busy(self) -> bool:
+        """Whether the recogniser is working on a sound."""
+        return self._process.busy
+
+    def load(self) -> None:
+        """Load the model, unless it is loaded."""
+        self._process.start()
+
+    def recognise(self, pcm: bytes, *, partial: bool = False) -> Recognised:
+        """Return the words of a sound (16 kHz).
+
+        Args:
+            pcm: The sound.
+            partial: Whether the sound is the beginning of an utterance, for a caption: quicker, and less exact.
+
+        Raises:
+            PlatformError: The recogniser fails, or does not answer in time, also at the second attempt.
+        """
+        header = {"language": self._language, "partial": partial}
+        try:
+            answer, _ = self._process.request(header, pcm, seconds=self._patience)
+        except PlatformError:
+            if partial:
+                raise
+            answer, _ = self._process.request(header, pcm, seconds=self._patience)
+        return _cleaned(answer["text"], answer["confidence"], answer["no_speech"])
+
+    def close(self) -> None:
+        """Let go of the model; its last user ends the process."""
+        model_process.drop(self._process)
+
+
+def _cleaned(text: str, confidence: float, no_speech: float) -> Recognised:
+    """Return recognised words without notes about sounds, and none for a sound that is hardly speech."""
+    text = " ".join(_MARKS.sub(" ", text).split())
+    bare = "".join(c for c in text.casefold() if c.isalnum() or c == " ").strip()
+    if not any(c.isalnum() for c in text) or (no_speech > 0.6 and confidence < 0.6):
+        return Recognised("", confidence)
+    if bare in _PHANTOMS and (no_speech > 0.3 or confidence < 0.4):
+        return Recognised("", confidence)
+    return Recognised(text, confidence)

@@ -1,0 +1,374 @@
+"""The rules of a spoken conversation: listening, turns, speaking, interruptions."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+from typing import TYPE_CHECKING
+
+import ravestate as rs
+from ravestate.errors import PlatformError
+from ravestate.modules import rawio, verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+from .feelings import add_feelings
+from .names import (
+    Settings,
+    agent_speaking,
+    back_channel,
+    barge_in,
+    conversation,
+    false_alarm,
+    held,
+    module,
+    prosody,
+    speech,
+    spoke_up,
+    user_speaking,
+    utterance,
+)
+from .utterance import Utterance
+
+if TYPE_CHECKING:
+    from .conversation import Conversation
+
+DEAF = 0.25
+"""half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
+LEAD = 4.0
+"""Seconds of sound in the loudspeaker's queue that are enough: no more text is made into sound."""
+LONGEST_END = 300.0
+"""The greatest number of seconds for which an agent may go on after the end of a recording."""
+
+
+# ------------------------------------------------------------------------------------ listening
+
+
+@module.rule(
+    when=rs.startup.detached() | rawio.sound.changed.max_age(None).detached(),
+    reads=rawio.sound,
+    writes=(conversation, user_speaking),
+    emits=spoke_up,
+    until=rawio.sound.changed,
+    detached=True,  # each onset is a cause of its own
+    background=True,
+)
+async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Open the line, and follow the user's sound: speech begins, is articulate, pauses."""
+    settings: Settings = ctx.settings
+    line = ctx[rawio.sound]
+    if line is None and _is_served(ctx):
+        return rs.Resign("this user has no line: their platform brings one in rawio.sound")
+    if ctx[conversation] is not None:
+        return rs.Resign("the line is open already")
+    try:
+        parts = await asyncio.to_thread(importlib.import_module, f"{__package__}.conversation")
+        talk: Conversation = await parts.open_conversation(line, settings, lambda text: ctx.log.warning("%s", text))
+    except (PlatformError, ImportError) as error:
+        fault = error if isinstance(error, PlatformError) else PlatformError(f"{error}: pip install 'ravestate[voice]'")
+        if line is None:
+            ctx.stop(fault)  # nobody could talk to the agent
+        else:
+            ctx.log.error("%s", fault)
+        return None
+    add_feelings(ctx)
+    ctx[conversation] = talk
+    try:
+        await _follow(ctx, talk)
+    finally:
+        ctx[user_speaking] = False
+        ctx[conversation] = None
+        talk.close()
+    if line is None:
+        ctx.stop()
+    return None
+
+
+async def _follow(ctx: rs.RuleContext, talk: Conversation) -> None:
+    """Feed the ear until the line is closed, or until the agent has finished after the end of a recording."""
+    settings, line, ear, mouth = talk.settings, talk.line, talk.ear, talk.mouth
+    spoke_at, ended_at, clipped = float("-inf"), float("inf"), False
+    quiet: asyncio.Future[None] | None = None
+    try:
+        async for block in line.blocks():
+            far = mouth.reference(len(block))
+            if mouth.sounding:
+                spoke_at = ctx.now
+            if settings.half_duplex and ctx.now - spoke_at < DEAF:
+                block = bytes(len(block))
+            for event in ear.feed(block, ctx.now, far, agent_speaks=mouth.speaking):
+                if event == "articulate":
+                    ctx.emit(spoke_up)
+                else:
+                    ctx[user_speaking] = event == "onset"
+            if ear.clipped and not clipped:
+                clipped = True
+                ctx.log.warning("the microphone's sound is too loud and is clipped: lower its level")
+            if getattr(line, "ended", False):
+                ended_at = min(ended_at, ctx.now)
+                if quiet is None and ctx.now - ended_at > settings.longest_pause + 0.5:
+                    quiet = asyncio.ensure_future(ctx.quiet())
+                if (quiet is not None and quiet.done()) or ctx.now - ended_at > LONGEST_END:
+                    return
+    finally:
+        if quiet is not None:
+            quiet.cancel()
+
+
+def _is_served(ctx: rs.RuleContext) -> bool:
+    """Return whether a platform with many users runs this context, so that the machine's devices are not for it."""
+    return any(each.serve is not None for each in ctx.policy.modules)
+
+
+@module.rule(
+    when=user_speaking.true.detached(),
+    reads=conversation,
+    emits=rawio.hearing,
+    until=user_speaking.false,
+    detached=True,
+    background=True,
+)
+async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Show the words so far while the user speaks."""
+    settings: Settings = ctx.settings
+    talk = ctx[conversation]
+    if talk is None or not settings.captions:
+        return rs.Resign("captions are off")
+    while True:
+        await ctx.sleep(settings.captions)
+        if (turn := talk.ear.turn) is None or talk.recogniser.busy:
+            continue
+        try:
+            found = await asyncio.to_thread(talk.recogniser.recognise, turn.sound, partial=True)
+        except PlatformError as error:
+            ctx.log.warning("%s", error)
+            continue
+        if found.text:
+            ctx.emit(rawio.hearing, found.text)
+
+
+@module.rule(
+    when=user_speaking.false.detached(),
+    reads=conversation,
+    emits=(utterance, back_channel, false_alarm, rawio.hearing),
+    until=user_speaking.true,
+)
+async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Recognise the words at a pause, and wait until the turn is over; more speech continues the turn."""
+    talk = ctx[conversation]
+    if talk is None or (turn := talk.ear.turn) is None:
+        return rs.Resign("the line is closed")
+    from .recogniser import Recognised
+
+    try:
+        found, silence = await talk.judge(turn)
+    except PlatformError as error:
+        ctx.log.error("%s", error)
+        found, silence = Recognised("", 0.0), 0.0
+        talk.ear.take()
+        ctx.emit(utterance, Utterance("", 0.0, turn.start, turn.end))
+        return None
+    await ctx.sleep(turn.end + silence - ctx.now)
+    talk.ear.take()
+    what, text = talk.verdict(turn, found)
+    if what == "utterance":
+        ctx.emit(rawio.hearing, text)
+        ctx.emit(utterance, Utterance(text, found.confidence, turn.start, turn.end))
+    elif what == "back_channel":
+        ctx.emit(back_channel, text)
+    else:
+        ctx.emit(false_alarm, text)
+    return None
+
+
+@module.rule(when=utterance, writes=rawio.input)
+async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Pass the user's words on, if the recogniser is confident."""
+    said = ctx.payload(utterance)
+    if said.confidence < ctx.settings.ask_back_below:
+        return rs.Resign(f"the recogniser's confidence is {said.confidence:.2f}")
+    ctx[rawio.input] = said.text
+    return None
+
+
+@module.rule(when=utterance, writes=verbaliser.intent)
+async def ask_back(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Ask the user to say it again, if the recogniser is not confident."""
+    said = ctx.payload(utterance)
+    if said.confidence >= ctx.settings.ask_back_below:
+        return rs.Resign("the words are clear")
+    ctx[verbaliser.intent] = Intent("unclear", package=__package__)
+    return None
+
+
+# ------------------------------------------------------------------------------------ speaking
+
+
+@module.rule(when=rawio.piece.max_age(None).detached(), reads=conversation, emits=speech, background=True)
+async def speak_early(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Speak an utterance while it grows: each sentence as soon as it is complete."""
+    from .mouth import Speech
+
+    if (talk := ctx[conversation]) is None:
+        return rs.Resign("the line is closed")
+    growing = talk.mouth.growing
+    if growing is None:
+        growing = talk.mouth.growing = Speech()
+        ctx.emit(speech, growing)
+    growing.grow(ctx.payload(rawio.piece))
+    return None
+
+
+@module.rule(
+    when=rawio.output.changed.max_age(None).detached(),
+    reads=conversation,
+    writes=rawio.heard,
+    emits=speech,
+    background=True,
+)
+async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Speak a complete utterance, or the rest of one that grew."""
+    from .mouth import Speech
+    from .sentences import speakable
+
+    text = ctx.payload(rawio.output.changed)
+    if (talk := ctx[conversation]) is None:
+        return rs.Resign("the line is closed")
+    growing = talk.mouth.growing
+    if growing is not None and text.startswith(growing.text):
+        talk.mouth.growing = None
+        growing.finish(text)
+        if growing.over:  # it was cut while it grew: its history is complete only now
+            ctx[rawio.heard] = growing.heard
+    elif speakable(text):
+        ctx.emit(speech, Speech(text, whole=True))
+    return None
+
+
+@module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=conversation, background=True)
+async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
+    """End an utterance that was given up while it grew."""
+    talk = ctx[conversation]
+    if talk is None or talk.mouth.growing is None:
+        return rs.Resign("no utterance grows")
+    talk.mouth.growing.finish()
+    talk.mouth.growing = None
+    return None
+
+
+@module.rule(
+    when=speech.max_age(None).detached(),
+    reads=(conversation, prosody),
+    writes=(agent_speaking, held, rawio.heard),
+    until=barge_in | utterance | rs.shutdown,
+)
+async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Speak an utterance sentence by sentence. An interruption cuts it; then the user has heard a part."""
+    talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
+    if talk is None:
+        return rs.Resign("the line is closed")
+    mouth = talk.mouth
+    try:
+        async with mouth.turn:
+            try:
+                mouth.begin()
+                async for place, sentence in saying.sentences():
+                    if not (words := mouth.words(sentence)):
+                        continue
+                    spoken = await asyncio.to_thread(mouth.voice.speak, words, manner)
+                    mouth.queue(spoken, place)
+                    if not mouth.speaking:
+                        mouth.speaking, saying.start = True, ctx.now
+                        if talk.ear.speaking:  # the user has begun first
+                            mouth.hold(ctx.now)
+                            ctx[held] = True
+                        else:
+                            ctx[agent_speaking] = True
+                    while (lead := mouth.lead) > LEAD:
+                        await ctx.sleep(lead - LEAD)
+                await mouth.played_out()
+                saying.heard = saying.text
+            except PlatformError as error:
+                ctx.log.error("%s", error)
+                saying.heard = saying.text  # the text is on the screen, if there is one
+            except asyncio.CancelledError:
+                saying.heard = mouth.heard(saying.text)
+                raise
+            finally:
+                saying.end = mouth.silent_since or ctx.now
+                mouth.stop()
+                ctx[agent_speaking] = False
+                ctx[held] = False
+    finally:
+        saying.over = True
+        if saying.counts:
+            ctx[rawio.heard] = saying.heard
+    return None
+
+
+# ------------------------------------------------------------------------------------ interruptions
+
+
+@module.rule(
+    when=spoke_up.max_age(0.0).detached() & agent_speaking.holds(bool),
+    reads=conversation,
+    writes=(held, agent_speaking),
+    background=True,
+)
+async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Hold the agent's speech when the user speaks up."""
+    talk = ctx[conversation]
+    if talk is None or not talk.mouth.speaking:
+        return rs.Resign("the agent does not speak")
+    talk.mouth.hold(ctx.now)
+    ctx[agent_speaking] = False
+    ctx[held] = True
+    return None
+
+
+@module.rule(
+    when=held.true.max_age(None).detached() | spoke_up.max_age(0.0).detached() & held.holds(bool),
+    emits=barge_in,
+    until=held.false | user_speaking.false,
+    background=True,
+)
+async def give_way(ctx: rs.RuleContext) -> None:
+    """Stop for good when the user goes on speaking: that is no mere "mhm"."""
+    await ctx.sleep(ctx.settings.back_channel)
+    ctx.emit(barge_in)
+
+
+@module.rule(
+    when=(back_channel.max_age(0.0).detached() | false_alarm.max_age(0.0).detached()) & held.holds(bool),
+    reads=conversation,
+    writes=(held, agent_speaking),
+    background=True,
+)
+async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Go on with the speech where it stopped: it was no interruption."""
+    talk = ctx[conversation]
+    if talk is None or not talk.mouth.held:
+        return rs.Resign("nothing is held")
+    talk.mouth.release()
+    ctx[held] = False
+    ctx[agent_speaking] = True
+    return None
+
+
+@module.rule(
+    when=utterance.max_age(0.0).detached(),
+    reads=conversation,
+    emits=speech,
+    until=speech | user_speaking.true | rs.activity.false,
+    background=True,
+)
+async def fill_pause(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Say a filler when the answer takes long."""
+    settings: Settings = ctx.settings
+    if not settings.filler_after or not settings.fillers or (talk := ctx[conversation]) is None:
+        return rs.Resign("fillers are off")
+    from .mouth import Speech
+
+    await ctx.sleep(settings.filler_after)
+    if not talk.mouth.speaking:
+        ctx.emit(speech, Speech(ctx.random.choice(settings.fillers), whole=True, counts=False))
+    return None

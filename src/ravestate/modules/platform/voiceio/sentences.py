@@ -1,0 +1,41 @@
+"""Sentences of a text that may still grow, and the words in them that a voice can speak."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+_END = re.compile(r"[.!?…。！？]+[\"”’')\]]*(?=\s)|\n+")
+_ABBREVIATION = re.compile(r"\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|e\.g|i\.e|etc|[A-Z])\.$")
+_UNSPEAKABLE = re.compile(
+    "[\U0001f000-\U0001faff\u2600-\u27bf\u2b00-\u2bff\u2300-\u23ff\u200d\u20e3\ufe0e\ufe0f\U000e0020-\U000e007f*_`#]"
+)
+SHORTEST = 12
+"""The characters below which a sentence is spoken together with the next one, unless nothing follows."""
+
+
+def sentences(text: str, begin: int = 0, *, whole: bool) -> Iterator[tuple[int, str]]:
+    """Yield the place and the text of each complete sentence from the character `begin` on.
+
+    Args:
+        text: The text so far.
+        begin: The character where the first sentence begins.
+        whole: Whether the text is complete, so that its rest counts as a sentence as well.
+
+    Example:
+        >>> list(sentences("Once there was a robot. It li", whole=False))
+        [(0, 'Once there was a robot.')]
+    """
+    for end in _END.finditer(text, begin):
+        if end.end() - begin < SHORTEST or _ABBREVIATION.search(text[begin : end.end()]):
+            continue
+        yield begin, text[begin : end.end()]
+        begin = end.end()
+    if whole and text[begin:].strip():
+        yield begin, text[begin:]
+
+
+def speakable(text: str) -> str:
+    """Return `text` with spaces in place of emoji and marks, so that its places stay; empty if it has no words."""
+    plain = _UNSPEAKABLE.sub(lambda mark: " " * len(mark[0]), text)
+    return plain if any(c.isalnum() for c in plain) else ""

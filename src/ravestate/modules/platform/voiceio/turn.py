@@ -1,0 +1,128 @@
+"""The end of a turn: by its melody, by its words, and by silence."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ravestate.modules.modality.rawio.line import IN_RATE
+
+from .names import Settings
+
+WINDOW = 8.0
+"""The last seconds of a turn, which the model of the melody hears."""
+
+_LAUGH = re.compile(r"(?:a?(?:ha|he|hi|ho|heh|hah)+h?)")
+_EDGES = ".,!?…;:\"'“”‘’()-–— "
+
+
+class Melody:
+    """The model that tells from the sound whether a turn is complete (smart-turn)."""
+
+    def __init__(self, file: Path) -> None:
+        """Raises:
+        PlatformError: The file cannot be loaded.
+        """
+        from faster_whisper.feature_extractor import FeatureExtractor  # pyright: ignore[reportMissingTypeStubs]
+
+        from .activity import session
+
+        self._session = session(file)
+        self._input: str = self._session.get_inputs()[0].name
+        self._features: Any = FeatureExtractor(chunk_length=int(WINDOW))
+
+    def complete(self, pcm: bytes) -> float:
+        """Return the probability that the turn with this sound (16 kHz, with 0.2 s of silence at its end) is complete."""
+        import numpy as np
+
+        wanted = int(WINDOW * IN_RATE)
+        sound = np.frombuffer(pcm[-2 * wanted :], "<i2").astype(np.float32) / 32768
+        sound = np.pad(sound, (wanted - len(sound), 0))
+        sound = (sound - sound.mean()) / np.sqrt(sound.var() + 1e-7)
+        features = self._features(sound, padding=0)[:, : int(WINDOW * 100)]
+        features = np.pad(features, ((0, 0), (0, int(WINDOW * 100) - features.shape[1])), mode="edge")
+        (found,) = self._session.run(None, {self._input: features[None].astype(np.float32)})
+        return float(found.reshape(-1)[0])
+
+
+def wanted_silence(text: str, complete: float | None, settings: Settings) -> float:
+    """Return the seconds of silence after which a turn is over.
+
+    Args:
+        text: The words so far.
+        complete: The probability of a complete melody; None without the model.
+        settings: The limits.
+    """
+    signs = [is_complete(text, settings.language), complete is not None and complete >= settings.complete]
+    wanted = (settings.longest_pause, settings.doubtful_pause, settings.pause)[sum(signs)]
+    return min(wanted, settings.longest_pause)
+
+
+def is_complete(text: str, language: str = "en") -> bool:
+    """Return whether words sound complete: they end neither with a comma nor with a word that needs another one.
+
+    Example:
+        >>> is_complete("I would like to go to the"), is_complete("I would like to go home.")
+        (False, True)
+    """
+    text = text.strip()
+    if not text or text.endswith((",", "...", "…", "-", "—", ":")):
+        return False
+    return _bare(text.split()[-1]) not in _words(language)["unfinished"] or text.endswith(("?", "!"))
+
+
+def is_back_channel(text: str, language: str = "en") -> bool:
+    """Return whether words only show that the user listens, or laughs.
+
+    Example:
+        >>> is_back_channel("Yeah, I see."), is_back_channel("Ha ha ha!"), is_back_channel("Yes, but why?")
+        (True, True, False)
+    """
+    known = _words(language)["back_channels"]
+    words = [bare for word in text.split() if (bare := _bare(word))]
+    at = 0
+    while at < len(words):
+        for length in (3, 2, 1):
+            phrase = " ".join(words[at : at + length])
+            if phrase in known or (length == 1 and _LAUGH.fullmatch(phrase)):
+                at += length
+                break
+        else:
+            return False
+    return bool(words) and len(words) <= 6
+
+
+def is_echo(text: str, spoken: str) -> bool:
+    """Return whether at least two recognised words are a part of the agent's own words.
+
+    Example:
+        >>> is_echo("lived in a museum", "Once there was a robot. It lived in a museum.")
+        True
+    """
+    heard = [bare for word in text.split() if (bare := _bare(word))]
+    own = [bare for word in spoken.split() if (bare := _bare(word))]
+    if len(heard) < 2 or not own:
+        return False
+    blocks = difflib.SequenceMatcher(None, heard, own, autojunk=False).get_matching_blocks()
+    longest = max(block.size for block in blocks)
+    return sum(block.size for block in blocks) >= 0.75 * len(heard) and longest >= min(3, len(heard))
+
+
+def _bare(word: str) -> str:
+    return word.casefold().strip(_EDGES).replace("’", "'")
+
+
+@lru_cache(maxsize=16)
+def _words(language: str) -> Mapping[str, frozenset[str]]:
+    book: Mapping[str, Mapping[str, Sequence[str]]] = yaml.safe_load(
+        (files(__package__ or "") / "words.yaml").read_text(encoding="utf-8")
+    )
+    found = book.get(language.partition("-")[0] or "en", book["en"])
+    return {role: frozenset(_bare(word) for word in words) for role, words in found.items()}

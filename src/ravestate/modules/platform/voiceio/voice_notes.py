@@ -1,0 +1,90 @@
+"""Voice notes: a recording as text, and a text as a recording."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
+
+from .names import Settings, module
+from .utterance import Utterance
+
+if TYPE_CHECKING:
+    from .recogniser import Recogniser
+    from .synthesiser import Synthesiser
+
+
+def transcribe(sound: bytes | Path, settings: Settings | None = None) -> Utterance:
+    """Return the words of a recording. This blocks: call it in a thread.
+
+    Args:
+        sound: A file or its bytes, in any usual format: WAV, OGG with Opus, MP3, M4A.
+        settings: The recogniser and its model, by default those of the environment.
+
+    Returns:
+        The utterance, with seconds from the beginning of the recording; with empty words if nobody speaks.
+
+    Raises:
+        PlatformError: The recording cannot be read, or a package or a model is missing.
+    """
+    from .activity import speech_spans
+    from .sound import decode
+
+    settings = settings or settings_here()
+    pcm = decode(sound, IN_RATE)
+    spans = speech_spans(pcm, settings.speech)
+    if not spans:
+        return Utterance("", 0.0, 0.0, len(pcm) / 2 / IN_RATE)
+    found = _recogniser(settings).recognise(pcm)
+    return Utterance(found.text, found.confidence, spans[0][0], spans[-1][1])
+
+
+def synthesise(text: str, settings: Settings | None = None) -> bytes:
+    """Return a text as a voice note: an OGG file with Opus. This blocks: call it in a thread.
+
+    Raises:
+        PlatformError: A program or a voice is missing, or the text has no words.
+    """
+    from .sound import encode_ogg
+
+    return encode_ogg(speak(text, settings), OUT_RATE)
+
+
+def speak(text: str, settings: Settings | None = None) -> bytes:
+    """Return a text as PCM (mono, 16 bits, `OUT_RATE`). This blocks.
+
+    Raises:
+        PlatformError: A program or a voice is missing, or the text has no words.
+    """
+    from ravestate.errors import PlatformError
+
+    from .sentences import sentences, speakable
+
+    spoken = [speakable(sentence) for _, sentence in sentences(text, whole=True)]
+    if not any(spoken):
+        raise PlatformError(f"there are no words to speak in {text[:40]!r}")
+    voice = _synthesiser(settings or settings_here())
+    return b"".join(voice.speak(sentence).sound for sentence in spoken if sentence)
+
+
+def settings_here() -> Settings:
+    """Return the module's settings, as the environment has them."""
+    from ravestate.settings import load_settings
+
+    return load_settings([module])[module.name]
+
+
+@lru_cache(maxsize=4)
+def _recogniser(settings: Settings) -> Recogniser:
+    from .recogniser import Recogniser
+
+    return Recogniser(settings)
+
+
+@lru_cache(maxsize=4)
+def _synthesiser(settings: Settings) -> Synthesiser:
+    from .synthesiser import Synthesiser
+
+    return Synthesiser(settings)

@@ -1,0 +1,96 @@
+"""A line between files: a recording is the microphone, and a WAV file the loudspeaker."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
+
+from .playout import PlayOut
+from .sound import decode, silence, write_wav
+
+BLOCK = 0.02
+"""The seconds of a block."""
+
+
+class WavLine:
+    """A recording as the microphone, at the speed of the loop's clock. After its end there is silence.
+
+    Args:
+        source: The recording, in any usual format; None for silence.
+        sink: The WAV file for the loudspeaker's sound, on the time line of the recording; None to drop the sound.
+
+    Raises:
+        PlatformError: The recording cannot be read.
+    """
+
+    def __init__(self, source: Path | None, sink: Path | None = None) -> None:
+        self._sound = b"" if source is None else decode(source, IN_RATE)
+        self._sink = sink
+        self._out = PlayOut()
+        self._changed = asyncio.Event()
+        self._begun: float | None = None
+        self._closed = False
+        self.ended = False
+        """Whether the recording has ended."""
+
+    async def blocks(self) -> AsyncIterator[bytes]:
+        """Yield the recording in blocks of 20 ms, and then silence."""
+        loop = asyncio.get_running_loop()
+        begun = self._begun = loop.time()
+        size = 2 * round(BLOCK * IN_RATE)
+        number = 0
+        while not self._closed:
+            block = self._sound[number * size : (number + 1) * size]
+            number += 1
+            await asyncio.sleep(begun + number * BLOCK - loop.time())
+            self.ended = number * size >= len(self._sound)
+            yield block.ljust(size, b"\0")
+
+    def play(self, sound: bytes) -> None:
+        """Queue sound for the loudspeaker."""
+        if not self._closed:
+            self._out.play(sound, _now())
+            self._changed.set()
+
+    def stop(self) -> None:
+        """Drop the queued sound."""
+        self._out.stop(_now())
+        self._changed.set()
+
+    @property
+    def played(self) -> float:
+        """The seconds of sound that have been played."""
+        return self._out.played(_now())
+
+    async def drained(self) -> None:
+        """Wait until the queued sound has been played or dropped."""
+        while (left := self._out.end - _now()) > 1e-9:
+            self._changed.clear()
+            try:
+                async with asyncio.timeout(left):
+                    await self._changed.wait()
+            except TimeoutError:
+                pass
+
+    def close(self) -> None:
+        """End the line, and write the file."""
+        if self._closed:
+            return
+        self._closed = True
+        self._out.stop(_now())
+        if self._sink is not None and self._begun is not None:
+            write_wav(self._sink, self._on_time_line(self._begun, _now()), OUT_RATE)
+
+    def _on_time_line(self, begin: float, end: float) -> bytes:
+        sound = bytearray(silence(end - begin, OUT_RATE))
+        for time, part in self._out.parts():
+            at = 2 * round((time - begin) * OUT_RATE)
+            sound[at : at + len(part)] = part
+        return bytes(sound)
+
+
+def _now() -> float:
+    return asyncio.get_running_loop().time()

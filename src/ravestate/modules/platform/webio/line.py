@@ -1,0 +1,241 @@
+"""The line between a visitor's microphone and loudspeaker, which are in a browser, and the agent."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import AsyncGenerator, Callable
+from typing import TYPE_CHECKING, Protocol
+
+from ravestate.modules import rawio
+
+if TYPE_CHECKING:
+    from ravestate.policy.policy import Policy
+
+SAMPLE = 2  # the bytes of a sample
+
+BLOCK = rawio.IN_RATE // 50 * SAMPLE
+"""The bytes of a block of the visitor's sound: 20 ms."""
+
+MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
+"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. Beyond that, the oldest go."""
+
+TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
+"""The silence that the agent hears when the microphone goes off, so that the visitor's utterance ends: 2 s."""
+
+CHUNK = rawio.OUT_RATE // 5 * SAMPLE
+"""The maximum number of bytes of the agent's sound in one frame: 0.2 s."""
+
+AHEAD = rawio.OUT_RATE
+"""The maximum number of samples that a window gets before it has played them: 1 s. So little is left to drop."""
+
+BETWEEN = 0.2
+"""The seconds after a report for which `played` assumes that the loudspeaker goes on."""
+
+STALL = 5.0
+"""The seconds after which a window that plays nothing of its sound loses the line."""
+
+DEAF = 30.0
+"""The seconds after which a window loses the line if no rule takes its sound. Models may take long to load."""
+
+
+class Window(Protocol):
+    """A window of the visitor, which can have the line."""
+
+    def wake(self) -> None:
+        """Note that there is sound to fetch, or that sound was dropped."""
+        ...
+
+    def lose_sound(self, why: str) -> None:
+        """Note that the window has lost the line, and why."""
+        ...
+
+
+def hears(policy: Policy) -> bool:
+    """Return whether a rule of a policy uses `rawio.sound`, so that the agent can hear and speak."""
+    if any(rawio.sound in rule.reads for rule in policy.rules.values()):
+        return True
+    return any(rawio.sound.changed in clause.signals for clause in policy.clause_plans.values())
+
+
+class PageLine:
+    """A `rawio.Line` whose microphone and loudspeaker are in at most one window of the visitor at a time.
+
+    The agent's sound is a row of streams: dropping the sound, and giving the line to a window, begin a new one. The
+    window reports how much of the present stream it has played. Without a window, sound counts as played at once: the
+    visitor reads the words.
+
+    Args:
+        on_left: Called when no window has the line any more.
+    """
+
+    def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
+        self.window: Window | None = None
+        """The window that has the line; None if none has it."""
+        self.stream = 0
+        """The number of the present stream."""
+        self._heard = bytearray()
+        self._arrived = asyncio.Event()
+        self.closed = False
+        """Whether the line is closed."""
+        self._on_left = on_left
+        self._taken_up = False  # whether a rule has begun to take the sound
+        self._waiting: deque[memoryview] = deque()
+        self._queued = self._sent = self._reported = 0  # samples of the present stream
+        self._earlier = 0  # samples played of the earlier streams
+        self._most = 0  # the greatest number of samples that `played` has told
+        self._moved: float | None = None  # the time of the last report, if the loudspeaker played since the one before
+        self._drained = asyncio.Event()
+        self._drained.set()
+        self._watch: asyncio.TimerHandle | None = None
+
+    def __repr__(self) -> str:
+        return f"line to a web page, {'off' if self.window is None else 'on'}"
+
+    # -------------------------------------------------------------------------------- the agent's side
+
+    async def blocks(self) -> AsyncGenerator[bytes]:
+        """Yield the visitor's sound in blocks of 20 ms, until the line is closed; while the microphone is off, none."""
+        self._taken_up = True
+        while not self.closed:
+            if len(self._heard) >= BLOCK:
+                block = bytes(self._heard[:BLOCK])
+                del self._heard[:BLOCK]
+                yield block
+            else:
+                self._arrived.clear()
+                await self._arrived.wait()
+
+    def play(self, sound: bytes) -> None:
+        """Queue sound for the window that has the line."""
+        samples = len(sound) // SAMPLE
+        if self.closed or samples == 0:
+            return
+        if self.window is None:
+            self._earlier += samples
+            return
+        self._waiting.append(memoryview(sound)[: samples * SAMPLE])
+        self._queued += samples
+        self._drained.clear()
+        if self._watch is None:
+            self._expect(STALL, self._find_stalled)
+        self.window.wake()
+
+    def stop(self) -> None:
+        """Drop all queued sound here and in the window, and begin a new stream."""
+        self._earlier = round(self.played * rawio.OUT_RATE)
+        self.stream += 1
+        self._waiting.clear()
+        self._queued = self._sent = self._reported = 0
+        self._moved = None
+        self._stop_watch()
+        self._drained.set()
+        if self.window is not None:
+            self.window.wake()
+
+    @property
+    def played(self) -> float:
+        """The seconds of sound that the loudspeaker has played. Between two reports of the window, an estimate."""
+        since = 0.0
+        if self._moved is not None:
+            since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
+        here = min(self._sent, self._reported + int(since * rawio.OUT_RATE))
+        self._most = max(self._most, self._earlier + here)
+        return self._most / rawio.OUT_RATE
+
+    async def drained(self) -> None:
+        """Wait until all queued sound has been played or dropped."""
+        await self._drained.wait()
+
+    def close(self) -> None:
+        """Close the line; the window that has it loses it."""
+        self.closed = True
+        self._arrived.set()
+        self._lose("the agent does not listen any more")
+
+    # -------------------------------------------------------------------------------- the window's side
+
+    def take(self, window: Window) -> None:
+        """Give the line to a window; the window that had it loses it."""
+        if self.window is window:
+            return
+        if self.window is not None:
+            self.window.lose_sound("the microphone is on in another window")
+        self.window = window
+        self.stop()
+        if not self._taken_up:
+            self._expect(DEAF, self._find_deaf)
+
+    def leave(self, window: Window) -> None:
+        """Take the line from a window, if it has it; its queued sound is dropped."""
+        if self.window is not window:
+            return
+        self.window = None
+        self.stop()
+        self._listen(TRAIL)
+        self._on_left()
+
+    def hear(self, window: Window, sound: bytes) -> None:
+        """Take sound of the visitor; ignore it if the window does not have the line (any longer)."""
+        if self.window is window:
+            self._listen(sound)
+
+    def _listen(self, sound: bytes) -> None:
+        self._heard += sound
+        if len(self._heard) > MOST_HEARD:
+            del self._heard[: len(self._heard) - MOST_HEARD]
+        self._arrived.set()
+
+    def fetch(self, window: Window) -> memoryview | None:
+        """Return the next sound for a window: at most `CHUNK` bytes, and none while it is `AHEAD`."""
+        if self.window is not window or not self._waiting or self._sent - self._reported >= AHEAD:
+            return None
+        first = self._waiting.popleft()
+        if len(first) > CHUNK:
+            self._waiting.appendleft(first[CHUNK:])
+            first = first[:CHUNK]
+        self._sent += len(first) // SAMPLE
+        return first
+
+    def report(self, window: Window, stream: int, samples: int) -> None:
+        """Note how many samples of a stream a window has played; ignore a report on an earlier stream."""
+        if self.window is not window or stream != self.stream:
+            return
+        samples = min(samples, self._sent)
+        if samples <= self._reported:
+            self._moved = None
+            return
+        self._reported = samples
+        self._moved = asyncio.get_running_loop().time()
+        self._stop_watch()
+        if samples == self._queued:
+            self._drained.set()
+        else:
+            self._expect(STALL, self._find_stalled)
+        window.wake()
+
+    def _expect(self, seconds: float, late: Callable[[], None]) -> None:
+        self._stop_watch()
+        self._watch = asyncio.get_running_loop().call_later(seconds, self._find_late, late)
+
+    def _find_late(self, late: Callable[[], None]) -> None:
+        self._watch = None
+        late()
+
+    def _stop_watch(self) -> None:
+        if self._watch is not None:
+            self._watch.cancel()
+            self._watch = None
+
+    def _find_stalled(self) -> None:
+        self._lose("the sound does not play")
+
+    def _find_deaf(self) -> None:
+        if not self._taken_up:
+            self._lose("the agent cannot hear at the moment")
+
+    def _lose(self, why: str) -> None:
+        if self.window is not None:
+            window = self.window
+            self.leave(window)
+            window.lose_sound(why)

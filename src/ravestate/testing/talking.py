@@ -1,0 +1,134 @@
+"""Spoken conversations in virtual time: a recording is the user's microphone."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Literal
+
+from ravestate.declare.module import Module
+from ravestate.errors import EngineError
+from ravestate.runtime.context import Context
+from ravestate.runtime.rule_context import RuleContext
+from ravestate.testing.virtual_loop import VirtualLoop
+
+if TYPE_CHECKING:
+    from ravestate.modules.platform.voiceio.mouth import Speech
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """An utterance of one side, as the other side heard it.
+
+    Attributes:
+        speaker: ``user`` or ``agent``.
+        text: The recognised words of the user; the words of the agent that the user heard.
+        start, end: The times at which its sound began and ended (seconds on the recording's time line).
+        cut: Whether the user interrupted it.
+        filler: Whether it only filled a pause.
+    """
+
+    speaker: Literal["user", "agent"]
+    text: str
+    start: float
+    end: float
+    cut: bool = False
+    filler: bool = False
+
+
+def talk(
+    recording: str | Path,
+    output: str | Path | None,
+    *modules: Module | ModuleType,
+    settings: Mapping[str, Any] | None = None,
+    seed: int | None = 0,
+    show: Callable[[Said], None] | None = None,
+    record: Callable[[Any], None] | None = None,
+) -> list[Said]:
+    """Hold a conversation between a recording and an agent, as fast as the machine can; return what was said.
+
+    Time is virtual: recognition, synthesis and plain functions take none of it. So the same recording gives the same
+    conversation on any machine.
+
+    Args:
+        recording: The sound of the user's microphone, in any usual format.
+        output: The WAV file for the loudspeaker's sound, on the time line of the recording; None for no file.
+        modules: The agent's modules; `voiceio` is added.
+        settings: Module's name → its settings, as for `Context`.
+        seed: The seed of random choices.
+        show: Called with each utterance as soon as it is over.
+        record: Called with each record of the trace.
+
+    Raises:
+        PlatformError: The recording cannot be read, or a model or a program is missing.
+        EngineError: An event loop runs in this thread already.
+    """
+    from ravestate.modules import voiceio
+
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        pass
+    else:
+        raise EngineError("talk runs a loop of its own: use it in a plain function, not in an async one")
+    said: list[Said] = []
+
+    def note(one: Said) -> None:
+        said.append(one)
+        if show is not None:
+            show(one)
+
+    given = {name: dict(values) for name, values in (settings or {}).items()}
+    files = {"source": str(Path(recording).absolute())} | ({"sink": str(Path(output).absolute())} if output else {})
+    given["voiceio"] = {**given.get("voiceio", {}), **files}
+    context = Context(*modules, voiceio, _witness(note), settings=given, seed=seed, trace=record or False)
+    loop = VirtualLoop()
+
+    async def hold() -> None:
+        async with context:
+            loop.busy = context.plain_functions
+            await context.until_stopped()
+
+    try:
+        loop.run_until_complete(hold())
+        loop.run_until_complete(loop.shutdown_asyncgens())
+    finally:
+        loop.close()
+    return said
+
+
+def _witness(note: Callable[[Said], None]) -> Module:
+    """Return a module that notes the utterances of both sides."""
+    from ravestate.modules import rawio, voiceio
+
+    witness = Module("transcript", requires=[voiceio])
+    begun: list[Speech] = []
+
+    @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
+    async def hear_user(ctx: RuleContext) -> None:
+        """Note an utterance of the user."""
+        one = ctx.payload(voiceio.utterance)
+        note(Said("user", one.text, one.start, one.end))
+
+    @witness.rule(when=voiceio.speech.max_age(None).detached(), background=True)
+    async def wait_for_agent(ctx: RuleContext) -> None:
+        """Keep an utterance of the agent until it is over."""
+        begun.append(ctx.payload(voiceio.speech))
+
+    @witness.rule(
+        when=voiceio.agent_speaking.false.max_age(None).detached() | rawio.heard.changed.max_age(None).detached(),
+        background=True,
+    )
+    async def hear_agent(ctx: RuleContext) -> None:
+        """Note the utterances of the agent that are over."""
+        for one in [one for one in begun if one.over]:
+            begun.remove(one)
+            if one.heard.strip():
+                cut = one.heard.strip() != one.text.strip()
+                note(Said("agent", one.heard.strip(), one.start, one.end, cut, not one.counts))
+
+    del hear_user, wait_for_agent, hear_agent
+    return witness

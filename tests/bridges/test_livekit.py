@@ -1,0 +1,17 @@
+"""The tests of `ravestate.bridges.livekit`, which run in LiveKit's environment: see `cases/livekit_cases.py`."""
+
+import pytest
+
+from bridges.apart import Failures, names_in, run_apart
+
+
+@pytest.fixture(scope="module")
+def failures(tmp_path_factory: pytest.TempPathFactory) -> Failures:
+    return run_apart("livekit", tmp_path_factory.mktemp("livekit"))
+
+
+@pytest.mark.parametrize("name", names_in("livekit"))
+def test_livekit(name: str, failures: Failures) -> None:
+    runs = failures.get(name, ["it did not run"])
+    if any(runs):
+        pytest.fail("\n".join(filter(None, runs)), pytrace=False)

@@ -1,0 +1,17 @@
+"""The tests of `ravestate.bridges.pipecat`, which run in Pipecat's environment: see `cases/pipecat_cases.py`."""
+
+import pytest
+
+from bridges.apart import Failures, names_in, run_apart
+
+
+@pytest.fixture(scope="module")
+def failures(tmp_path_factory: pytest.TempPathFactory) -> Failures:
+    return run_apart("pipecat", tmp_path_factory.mktemp("pipecat"))
+
+
+@pytest.mark.parametrize("name", names_in("pipecat"))
+def test_pipecat(name: str, failures: Failures) -> None:
+    runs = failures.get(name, ["it did not run"])
+    if any(runs):
+        pytest.fail("\n".join(filter(None, runs)), pytrace=False)

@@ -1,0 +1,307 @@
+"""The port of the bridges, in virtual time."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from contextlib import aclosing
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from ravestate.bridges.port import FAREWELL, LONGEST, Conversation, Utterance, contexts_of
+from ravestate.errors import DeclarationError, DeclarationErrors, UsageError
+from ravestate.modules import interloc, rawio
+from ravestate.runtime.agent import Agent
+from ravestate.testing.virtual_loop import VirtualLoop
+
+echo = rs.Module("echo", requires=[rawio])
+
+
+@echo.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = ctx.payload(rawio.input.changed).upper()
+
+
+talker = rs.Module("talker", requires=[rawio])
+
+
+@talker.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece, until=rawio.input.changed)
+async def talk(ctx: rs.RuleContext) -> None:
+    """Say "one" and "two", 1 s apart."""
+    ctx.emit(rawio.piece, "one ")
+    await ctx.sleep(1)
+    ctx.emit(rawio.piece, "two")
+    ctx[rawio.output] = "one two"
+
+
+stubborn = rs.Module("stubborn", requires=[rawio])
+
+
+@stubborn.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+async def insist(ctx: rs.RuleContext) -> None:
+    """Do as `talk` does, but without an `until`."""
+    ctx.emit(rawio.piece, "one ")
+    await ctx.sleep(1)
+    ctx.emit(rawio.piece, "two")
+    ctx[rawio.output] = "one two"
+
+
+Talk = Callable[[Conversation, list[Utterance]], Awaitable[None]]
+
+
+def converse(talk: Talk, *modules: rs.Module) -> None:
+    """Run a test in virtual time with a conversation and the list of the utterances that nobody asked for."""
+
+    async def main() -> None:
+        spoken: list[Utterance] = []
+        conversation = Conversation(rs.Context(*modules), spoken.append, "test")
+        await conversation.begin()
+        try:
+            await talk(conversation, spoken)
+        finally:
+            await conversation.end()
+
+    with asyncio.Runner(loop_factory=VirtualLoop) as runner:
+        runner.run(main())
+
+
+async def past(seconds: float) -> None:
+    """Let virtual time pass."""
+    over = asyncio.get_running_loop().create_future()
+    asyncio.get_running_loop().call_later(seconds, over.set_result, None)
+    await over
+
+
+async def text(utterance: Utterance) -> str:
+    """Return the pieces of an utterance once it is over."""
+    return "|".join([piece async for piece in utterance])
+
+
+async def answer(conversation: Conversation, words: str) -> list[str]:
+    return [await text(utterance) async for utterance in conversation.answer(words)]
+
+
+# ------------------------------------------------------------------------------------------- utterances
+
+
+def test_an_utterance_yields_its_pieces_and_ends_for_good() -> None:
+    async def main() -> None:
+        utterance = Utterance()
+        for piece in ("a", "", "b"):
+            utterance.grow(piece)
+        utterance.end()
+        utterance.grow("c")
+        assert (await text(utterance), await text(utterance), utterance.text) == ("a|b", "", "abc")
+
+    asyncio.run(main())
+
+
+def test_pieces_and_the_whole_text_are_one_utterance() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        assert await answer(conversation, "count") == ["one |two"]
+        assert spoken == []
+
+    converse(talk, talker)
+
+
+def test_a_text_unlike_the_pieces_is_an_utterance_of_its_own() -> None:
+    module = rs.Module("module", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def stumble(ctx: rs.RuleContext) -> None:
+        ctx.emit(rawio.piece, "uh")
+        ctx[rawio.output] = "Hello"
+
+    async def talk(conversation: Conversation, _: list[Utterance]) -> None:
+        assert sorted(await answer(conversation, "hi")) == ["Hello", "uh"]
+
+    converse(talk, module)
+
+
+def test_a_rule_that_fails_ends_its_utterance() -> None:
+    module = rs.Module("module", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def fail(ctx: rs.RuleContext) -> None:
+        ctx.emit(rawio.piece, "I know")
+        raise OSError
+
+    async def talk(conversation: Conversation, _: list[Utterance]) -> None:
+        assert await answer(conversation, "who?") == ["I know"]
+        assert await answer(conversation, "who?") == ["I know"]
+
+    converse(talk, module)
+
+
+def test_an_utterance_without_an_answer_is_spoken() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        conversation.hear("hello")
+        await conversation.context.quiet()
+        assert [await text(utterance) for utterance in spoken] == ["HELLO"]
+
+    converse(talk, echo)
+
+
+def test_an_answer_waits_for_the_one_before() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        both = await asyncio.gather(answer(conversation, "a"), answer(conversation, "b"))
+        assert both == [["one |two"], ["one |two"]]
+        assert conversation.context.now == 2
+
+    converse(talk, talker)
+
+
+def test_blank_words_are_not_heard() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        assert await answer(conversation, " \n") == []
+        assert conversation.context.read(rawio.input) == ""
+
+    converse(talk, echo)
+
+
+# ------------------------------------------------------------------------------------------- interruption
+
+
+def test_an_answer_that_is_closed_is_interrupted() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        async with aclosing(conversation.answer("count")) as utterances:
+            async for utterance in utterances:
+                assert await anext(utterance) == "one "
+                break
+        await conversation.context.quiet()
+        assert conversation.context.now == 0  # the rule was cancelled
+        assert await text(utterance) == ""
+        assert await answer(conversation, "again") == ["one |two"]
+
+    converse(talk, talker)
+
+
+@pytest.mark.parametrize("module", [talker, stubborn])
+def test_nothing_more_is_said_of_an_interrupted_utterance(module: rs.Module) -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        conversation.hear("count")
+        await past(0.5)
+        conversation.interrupt()
+        await past(5)
+        assert [await text(utterance) for utterance in spoken] == ["one "]
+        assert await answer(conversation, "again") == ["one |two"]
+
+    converse(talk, module)
+
+
+def test_words_right_after_an_interruption_are_answered() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        conversation.hear("count")
+        await past(0.5)
+        conversation.interrupt()
+        assert await answer(conversation, "again") == ["one |two"]
+
+    converse(talk, talker)
+
+
+# ------------------------------------------------------------------------------------------- life
+
+
+def test_the_user_comes_and_goes() -> None:
+    seen: list[list[str]] = []
+    module = rs.Module("module", requires=[interloc, rawio])
+
+    @module.rule(when=interloc.users.changed.detached(), reads=interloc.users)
+    async def look(ctx: rs.RuleContext) -> None:
+        seen.append([key[:5] for key in ctx[interloc.users]])
+
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        await conversation.begin()  # a second time, which does nothing
+        await conversation.end()
+        await conversation.end()
+
+    converse(talk, module)
+    assert seen == [["test-"], []]
+
+
+def test_the_end_waits_for_an_answer_and_a_farewell_but_not_for_ever() -> None:
+    module = rs.Module("module", requires=[interloc, rawio])
+
+    @module.rule(when=rawio.input.changed | interloc.users.removed, writes=rawio.output)
+    async def hang(ctx: rs.RuleContext) -> None:
+        await asyncio.Event().wait()
+
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        conversation.hear("hello")
+        loop = asyncio.get_running_loop()
+        await conversation.end()
+        assert LONGEST + FAREWELL <= loop.time() <= LONGEST + 2 * FAREWELL
+
+    converse(talk, module)
+
+
+def test_an_end_at_once_waits_for_nothing() -> None:
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        conversation.hear("count")
+        await conversation.end(at_once=True)
+        assert asyncio.get_running_loop().time() == 0
+        assert [await text(utterance) for utterance in spoken] == ["one "]
+
+    converse(talk, talker)
+
+
+def test_only_the_agents_own_wish_to_leave_is_told() -> None:
+    module = rs.Module("module", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output)
+    async def leave(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        leaving = asyncio.create_task(conversation.until_agent_leaves())
+        if conversation.context.policy.rules.get("module:leave"):
+            conversation.hear("bye")
+            await leaving
+        else:
+            await conversation.end()
+            await past(100)
+            assert not leaving.done()
+            leaving.cancel()
+
+    converse(talk, module)
+    converse(talk, echo)
+
+
+# ------------------------------------------------------------------------------------------- agents
+
+
+def test_each_conversation_gets_a_context_of_the_same_policy(tmp_path: Path) -> None:
+    (tmp_path / "agent.yml").write_text("modules: [idle]\nsettings: {idle: {bored_after: 7}}\n")
+    policy = rs.compile(echo)
+    for agent in (
+        echo,
+        [echo, talker],
+        policy,
+        Agent(echo),
+        tmp_path / "agent.yml",
+        str(tmp_path / "agent.yml"),
+        "idle",
+    ):
+        make = contexts_of(agent)
+        one, other = make(), make()
+        assert one is not other
+        assert "rawio:output" in one.policy.slots
+    assert contexts_of(policy)().policy.rules.keys() == policy.rules.keys()
+    assert contexts_of(tmp_path / "agent.yml")().settings["idle"].bored_after == 7  # type: ignore[attr-defined]
+
+
+def test_a_context_serves_one_conversation() -> None:
+    context = rs.Context(echo)
+    assert contexts_of(context)() is context
+
+
+def test_wrong_agents_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(DeclarationError, match="requires rawio"):
+        contexts_of(rs.Module("deaf"))
+    with pytest.raises(UsageError, match="cannot read"):
+        contexts_of(tmp_path / "none.yaml")
+    with pytest.raises(UsageError, match="no module 'nobody'"):
+        contexts_of("nobody")
+    with pytest.raises(DeclarationErrors) as caught:
+        contexts_of(42)  # type: ignore[arg-type]
+    assert "42" in str(caught.value.exceptions)

@@ -1,0 +1,235 @@
+"""The voice on the page, in a real browser whose microphone is a recording."""
+
+import contextlib
+import wave
+from collections.abc import AsyncGenerator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.async_api import Browser, Page, expect
+
+from end_to_end.host import host
+from end_to_end.stage import PHONE, Host, Stage, on_stage
+from modules.platform.webio.ears import SAGA, WORD, babble, ears, saga, story
+from ravestate.modules import rawio
+
+ANSWER = "I heard a sound, and that pleases me."
+RATE = 16_000
+
+
+def record(file: Path, *parts: float) -> Path:
+    """Write a recording: seconds of voice, or of silence if they are negative, then half a minute of silence."""
+    with wave.open(str(file), "wb") as sound:
+        sound.setnchannels(1)
+        sound.setsampwidth(2)
+        sound.setframerate(RATE)
+        for seconds in (*parts, -30.0):
+            sound.writeframes(babble(seconds, RATE) if seconds > 0 else bytes(2 * round(-seconds * RATE)))
+    return file
+
+
+@contextlib.asynccontextmanager
+async def calls(stage: Stage, recording: Path) -> AsyncGenerator[Browser]:
+    """A browser whose microphone plays a recording from the moment at which it goes on."""
+    async with stage.launch(
+        "--use-fake-device-for-media-stream",
+        "--use-fake-ui-for-media-stream",
+        f"--use-file-for-fake-audio-capture={recording}%noloop",
+    ) as browser:
+        yield browser
+
+
+def bar(page: Page) -> Any:
+    return page.get_by_role("region", name="Voice")
+
+
+def lines(page: Page) -> Any:
+    return page.locator(".line")
+
+
+async def turn_on(page: Page) -> None:
+    await page.get_by_role("button", name="Talk with").click()
+    await expect(bar(page)).to_contain_text("The microphone is on.")
+
+
+def line_of(served: Host) -> Any:
+    (session,) = served.sessions
+    return session.line
+
+
+@on_stage
+async def test_a_spoken_conversation(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0)) as browser,
+        stage.serve(ears, story, title="Elske") as served,
+        stage.open(served.address, browser=browser) as page,
+    ):
+        await turn_on(page)
+        await expect(bar(page)).to_contain_text("seconds so far")
+        await expect(lines(page)).to_have_text(["You: a sound", f"Elske: {ANSWER}"])
+        await expect(bar(page)).to_contain_text("Elske is speaking.")
+        await expect(bar(page)).to_contain_text("The microphone is on.")  # it has spoken to the end
+        (session,) = served.sessions
+        assert session.context.read(rawio.heard) == ANSWER
+        assert session.line.played == pytest.approx(len(ANSWER.split()) * WORD)
+        await page.get_by_role("button", name="Turn the microphone off").click()
+        await expect(bar(page)).to_have_count(0)
+        assert session.line.window is None
+
+
+@on_stage
+async def test_an_interruption_by_voice_and_one_by_the_button(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0, -1.4, 1.0)) as browser,
+        stage.serve(ears, saga, title="Elske") as served,
+        stage.open(served.address, browser=browser) as page,
+    ):
+        await turn_on(page)
+        first = page.locator(".line.agent").nth(0)
+        await expect(first).to_have_text(f"Elske: {SAGA}")
+        await expect(first).to_contain_text("(interrupted)")
+        cut = str(await first.text_content()).split("Elske:")[1].split("(")[0].strip()
+        assert cut
+        assert SAGA.startswith(cut)
+        second = page.locator(".line.agent").nth(1)
+        await expect(second).to_have_text(f"Elske: {SAGA}")
+        await page.get_by_role("button", name="Stop").click()
+        await expect(second).to_contain_text("(interrupted)")
+        await expect(bar(page)).to_contain_text("The microphone is on.")
+
+
+@on_stage
+async def test_push_to_talk_by_pointer_and_by_key(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav", 20.0)) as browser,
+        stage.serve(ears, saga, title="Elske") as served,
+        stage.open(served.address, browser=browser) as page,
+    ):
+        button = page.get_by_role("button", name="Talk with Elske")
+        await button.hover()
+        await page.mouse.down()
+        await expect(bar(page)).to_contain_text("seconds so far")
+        await page.mouse.up()
+        await expect(lines(page).nth(0)).to_have_text("You: a sound")  # though the voice goes on
+        await expect(page.get_by_role("button", name="Hold to talk")).to_have_attribute("aria-pressed", "false")
+        await page.get_by_role("button", name="Stop").click()
+        await page.get_by_role("button", name="Hold to talk").focus()
+        await page.keyboard.down("Space")
+        await expect(bar(page)).to_contain_text("seconds so far")
+        await page.keyboard.up("Space")
+        await expect(lines(page).nth(2)).to_have_text("You: a sound")
+        await page.get_by_role("button", name="End voice").click()
+        await expect(bar(page)).to_have_count(0)
+
+
+@on_stage
+async def test_on_a_phone_everything_is_in_reach_of_a_finger(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0)) as browser,
+        stage.serve(ears, saga, title="Elske") as served,
+        stage.open(served.address, browser=browser, **PHONE) as page,
+    ):
+        await page.get_by_role("button", name="Talk with Elske").tap()
+        stop = page.get_by_role("button", name="Stop")
+        await expect(stop).to_be_visible()
+        for button in await page.get_by_role("button").all():
+            box = await button.bounding_box()
+            assert box is not None
+            assert min(box["width"], box["height"]) >= 44, await button.text_content()
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= 360
+        assert await page.evaluate("document.documentElement.scrollWidth") == 360
+        await expect(lines(page).nth(1)).to_be_in_viewport()
+        await stop.tap()
+        await expect(page.locator(".line.agent")).to_contain_text("(interrupted)")
+
+
+@on_stage
+async def test_in_the_background_the_microphone_is_off(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav")) as browser,
+        stage.serve(ears, story, title="Elske") as served,
+        stage.open(served.address, browser=browser) as page,
+    ):
+        await turn_on(page)
+        await page.evaluate(
+            "Object.defineProperty(document, 'visibilityState', {value: 'hidden'});"
+            "document.dispatchEvent(new Event('visibilitychange'))"
+        )
+        await expect(page.get_by_role("alert")).to_have_text("The microphone is off: the page was in the background.")
+        await expect(bar(page)).to_have_count(0)
+        assert line_of(served).window is None
+
+
+@on_stage
+async def test_after_a_lost_connection_the_microphone_is_still_on(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0, -3.0, 1.0)) as browser,
+        stage.serve(ears, story, title="Elske") as served,
+        stage.open(served.address, browser=browser, complaints=True) as page,
+    ):
+        await turn_on(page)
+        await expect(bar(page)).to_contain_text("Elske is speaking.")
+        served.drop()
+        await expect(bar(page)).to_contain_text("The microphone is on.")
+        await expect(page.locator(".line.user")).to_have_count(2)
+        await expect(bar(page)).to_contain_text("Elske is speaking.")
+
+
+@on_stage
+async def test_the_window_that_turns_its_microphone_on_takes_it_from_the_other(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav")) as browser,
+        stage.serve(ears, story, title="Elske") as served,
+        stage.open(served.address, browser=browser) as page,
+    ):
+        await turn_on(page)
+        kept = await page.evaluate("sessionStorage.getItem('ravestate')")
+        second = await page.context.new_page()
+        await second.add_init_script(f"sessionStorage.setItem('ravestate', {kept!r})")
+        await second.goto(served.address)
+        await turn_on(second)
+        await expect(page.get_by_role("alert")).to_contain_text("the microphone is on in another window")
+        assert line_of(served).window is not None
+
+
+@on_stage
+async def test_the_visitor_refuses_the_microphone(stage: Stage) -> None:
+    async with (
+        stage.launch("--use-fake-device-for-media-stream", "--deny-permission-prompts") as browser,
+        stage.serve(ears, story, title="Elske") as served,
+        stage.open(served.address, browser=browser) as page,
+    ):
+        await page.get_by_role("button", name="Talk with Elske").click()
+        await expect(page.get_by_role("alert")).to_contain_text("The microphone is not allowed.")
+        await expect(bar(page)).to_have_count(0)
+        await page.context.grant_permissions(["microphone"])
+        await turn_on(page)
+        await expect(page.get_by_role("alert")).to_have_count(0)
+
+
+@on_stage
+async def test_there_is_no_microphone(stage: Stage) -> None:
+    async with stage.serve(ears, story) as served, stage.open(served.address, permissions=["microphone"]) as page:
+        await page.get_by_role("button", name="Talk with").click()
+        await expect(page.get_by_role("alert")).to_contain_text("There is no microphone. Connect one")
+
+
+@on_stage
+async def test_over_plain_http_the_page_says_that_it_needs_https(stage: Stage) -> None:
+    token = "open sesame, please"
+    async with (
+        stage.launch("--host-resolver-rules=MAP guide.example 127.0.0.1") as browser,
+        stage.serve(ears, story, token=token) as served,
+        stage.open(f"{served.address.replace('127.0.0.1', 'guide.example')}#token={token}", browser=browser) as page,
+    ):
+        await page.get_by_role("button", name="Talk with").click()
+        await expect(page.get_by_role("alert")).to_contain_text("only over https")
+
+
+@on_stage
+async def test_an_agent_without_ears_has_no_microphone_button(stage: Stage) -> None:
+    async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
+        await expect(lines(page)).to_have_text("Elske: Good evening.")
+        await expect(page.get_by_role("button", name="Talk with")).to_have_count(0)

@@ -1,0 +1,101 @@
+"""A messenger in memory, in virtual time: it keeps the agent's messages, and fails as a test wants."""
+
+import asyncio
+import contextlib
+import itertools
+from collections import Counter
+from collections.abc import AsyncGenerator
+from pathlib import Path
+from typing import Any
+
+import ravestate as rs
+from ravestate.modules import interloc, rawio
+from ravestate.modules.platform.chats import ChatSettings, DeliveryError, Incoming, Outgoing, Person, Room, connect
+from ravestate.runtime.agent import Agent
+
+letters = rs.Module("letters", requires=(rawio, interloc), settings=ChatSettings)
+chat, command = connect(letters)
+
+parrot = rs.Module("parrot", requires=(rawio, interloc))
+
+
+@parrot.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = ctx.payload(rawio.input.changed)
+
+
+@parrot.rule(when=interloc.users.added, writes=rawio.output)
+async def greet(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = f"Hello {ctx.payload(interloc.users.added).item}!"
+
+
+class Post:
+    """A carrier that keeps the messages; `failures` are raised first, one for each attempt."""
+
+    longest = 100
+    rate = 1000.0
+
+    def __init__(self) -> None:
+        self.sent: list[Outgoing] = []
+        self.failures: list[Exception] = []
+        self.files: dict[str, bytes] = {}
+        self.shown: list[str] = []
+        self.attempts: list[tuple[float, str]] = []
+        self.news = asyncio.Condition()
+
+    async def send(self, message: Outgoing, again: bool) -> str:
+        self.attempts.append((asyncio.get_running_loop().time(), message.chat))
+        if self.failures:
+            raise self.failures.pop(0)
+        if again:
+            known = [n for n, each in enumerate(self.sent) if each.key == message.key]
+            if known:
+                return str(known[0])
+        self.sent.append(message)
+        async with self.news:
+            self.news.notify_all()
+        return f"answer {len(self.sent)}"
+
+    def trace(self, chat: str) -> str:
+        return ""
+
+    async def fetch(self, file: str) -> bytes:
+        if self.failures:
+            raise self.failures.pop(0)
+        if file not in self.files:
+            raise DeliveryError("there is no such file", final=True)
+        return self.files[file]
+
+    async def show_work(self, chat: str) -> None:
+        self.shown.append(chat)
+
+    def can_react(self, emoji: str) -> bool:
+        return emoji == "👍"
+
+    async def said(self, count: int) -> list[str]:
+        """Return the agent's messages, once there are `count`."""
+        async with self.news:
+            await self.news.wait_for(lambda: len(self.sent) >= count)
+        return [f"{each.chat}: {each.text}" for each in self.sent]
+
+
+_keys = itertools.count()
+
+
+def letter(text: str = "", chat: str = "a", **fields: Any) -> Incoming:
+    """Return a message of the person of a chat."""
+    n = str(next(_keys))
+    base: dict[str, Any] = {"key": n, "id": n, "person": Person(chat, chat.upper())}
+    return Incoming(**{**base, "chat": chat, "text": text, **fields})
+
+
+@contextlib.asynccontextmanager
+async def room(path: Path, post: Post, *modules: Any, **settings: Any) -> AsyncGenerator[Room]:
+    """A room of an agent, which greets and repeats if no modules are given."""
+    agent = Agent(*(modules or (parrot,)), letters, settings={"letters": {"path": path / "letters.db", **settings}})
+    async with Room(agent, "letters", post, "me") as opened:
+        yield opened
+
+
+def counted(said: list[str]) -> Counter[str]:
+    return Counter(said)

@@ -1,0 +1,397 @@
+"""An agent on Telegram, against a server of the Bot API in a process of its own."""
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import AsyncGenerator, Callable, Coroutine
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.platform.telegramio.conftest import Bot
+from ravestate.errors import PlatformError
+from ravestate.modules import interloc, rawio, telegramio
+from ravestate.runtime.agent import Agent
+
+parrot = rs.Module("parrot", requires=(rawio, interloc))
+PATIENCE = 30.0
+
+
+@parrot.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = ctx.payload(rawio.input.changed)
+
+
+@parrot.rule(when=rawio.picture.changed, writes=rawio.output)
+async def look(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = f"{len(ctx.payload(rawio.picture.changed))} bytes"
+
+
+@parrot.rule(when=rawio.reaction, writes=rawio.output)
+async def feel(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = f"you reacted with {ctx.payload(rawio.reaction)}"
+
+
+host = rs.Module("host", requires=(rawio, interloc))
+
+
+@host.rule(when=interloc.users.added, writes=rawio.output)
+async def greet(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = f"Hello {ctx.payload(interloc.users.added).item}!"
+
+
+@host.rule(when=interloc.users.removed, writes=rawio.output)
+async def part(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "Bye!"
+
+
+@contextlib.asynccontextmanager
+async def running(bot: Bot, folder: Path, *modules: Any, **settings: Any) -> AsyncGenerator[asyncio.Task[None]]:
+    agent = Agent(
+        *(modules or (parrot,)), telegramio,
+        settings={"telegramio": {**bot.settings, "path": folder / "chats.sqlite", **settings}},
+    )  # fmt: skip
+    task = asyncio.create_task(telegramio.serve(agent))
+    try:
+        yield task
+    finally:
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError, PlatformError):
+            await task
+
+
+@pytest.fixture(autouse=True)
+def _short_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ravestate.modules.platform.chats.sender.FIRST_WAIT", 0.01)
+    monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.CONFLICT_WAIT", 0.01)
+
+
+def live(test: Callable[[Bot, Path], Coroutine[Any, Any, None]]) -> Callable[[Bot, Path], None]:
+    """Run an async test on an ordinary loop."""
+
+    def run(bot: Bot, tmp_path: Path) -> None:
+        async def within() -> None:
+            async with asyncio.timeout(PATIENCE * 2):
+                await test(bot, tmp_path)
+
+        asyncio.run(within())
+
+    return run
+
+
+async def settled(bot: Bot) -> list[str]:
+    """Return the bot's messages, once a message that was sent last is answered."""
+    said = await bot.said(0)
+    await bot.say(99, "the last")
+    return [each for each in await bot.said(len(said) + 1) if each != "99: the last"]
+
+
+@live
+async def test_the_agent_answers(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.say(7, "Hello")
+        assert await bot.said(1) == ["7: Hello"]
+
+
+@live
+async def test_two_hundred_chats_at_once_and_none_crossed(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.do(
+            "crowd", messages=[{"chat": chat, "text": f"{n} of {chat}"} for n in range(3) for chat in range(1, 201)]
+        )
+        said = await bot.said(600)
+    assert sorted(said) == sorted(f"{chat}: {n} of {chat}" for n in range(3) for chat in range(1, 201))
+
+
+@live
+async def test_messages_of_a_chat_are_answered_in_order(bot: Bot, tmp_path: Path) -> None:
+    for n in range(20):
+        await bot.say(7, f"message {n}")
+    async with running(bot, tmp_path):
+        assert await bot.said(20) == [f"7: message {n}" for n in range(20)]
+
+
+@live
+async def test_a_new_user_is_greeted_by_name_and_once(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path, parrot, host, rest=0.2):
+        await bot.say(7, "/start")
+        assert await bot.said(1) == ["7: Hello User7!"]
+        await bot.say(7, "one")
+        assert (await bot.said(2))[1:] == ["7: one"]
+    async with running(bot, tmp_path, parrot, host):
+        await bot.say(7, "two")
+        assert (await bot.said(3))[2:] == ["7: two"]
+
+
+@live
+async def test_commands_explain_end_and_forget(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path, parrot, host):
+        await bot.say(7, "/help")
+        said = await bot.said(2)
+        assert said[0] == "7: Hello User7!"
+        assert all(command in said[1] for command in ("/stop", "/forget"))
+        await bot.say(7, "/stop")
+        assert (await bot.said(3))[2:] == ["7: Bye!"]
+        await bot.say(7, "I am back")
+        assert (await bot.said(5))[3:] == ["7: Hello User7!", "7: I am back"]
+        await bot.say(7, "/forget")
+        assert (await bot.said(6))[5:] == ["7: I have forgotten you, and everything that you told me."]
+        await bot.say(7, "Who am I?")
+        assert (await bot.said(8))[6:] == ["7: Hello User7!", "7: Who am I?"]
+
+
+@live
+async def test_start_is_explained_by_an_agent_that_does_not_greet(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.say(7, "/start")
+        assert (await bot.said(1))[0].startswith("7: I am Ravestate.")
+
+
+@live
+async def test_an_edited_message_changes_its_answer(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        message = await bot.say(7, "I like tee")
+        assert await bot.said(1) == ["7: I like tee"]
+        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea")
+        await bot.do("called", method="editMessageText", count=1)
+        assert await settled(bot) == ["7: I like tea"]
+        await bot.say(7, "And coffee")
+        await bot.said(3)
+        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # the talk has moved on
+        assert await settled(bot) == ["7: I like tea", "7: And coffee"]
+
+
+@live
+async def test_a_group_is_answered_when_it_speaks_to_the_agent(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.say(-5, "Hello all", user=7)
+        first = await bot.say(-5, "Hello @robin_bot", user=7)
+        await bot.said(1)
+        await bot.say(-5, "I think, Robin, you are right", user=8)
+        said = await bot.do("said", count=2)
+        await bot.say(-5, "Yes", user=8, reply_to_message={**said[0], "from": {**said[0]["from"]}})
+        await bot.say(-5, "The robins sing", user=9)
+        await bot.say(-5, "/help@other_bot", user=9)
+        assert await bot.said(3) == ["-5: Hello", "-5: I think, Robin, you are right", "-5: Yes"]
+        assert await settled(bot) == ["-5: Hello", "-5: I think, Robin, you are right", "-5: Yes"]
+        assert said[0]["reply_to_message"]["message_id"] == first["message_id"]
+
+
+@live
+async def test_an_emoji_alone_becomes_a_reaction(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        message = await bot.say(7, "❤️")
+        await bot.do("called", method="setMessageReaction", count=1)
+        await settled(bot)
+        assert (await bot.do("message", chat=7, id=message["message_id"]))["reaction"] == ["❤"]
+        await bot.say(7, "🦭")  # is none of Telegram's reactions
+        assert "7: 🦭" in await bot.said(2)
+
+
+@live
+async def test_the_agent_feels_a_reaction(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.say(7, "Hello")
+        [said] = await bot.do("said", count=1)
+        await bot.do("react", chat=7, id=said["message_id"], emoji="👍")
+        assert (await bot.said(2))[1:] == ["7: you reacted with 👍"]
+
+
+@live
+async def test_a_picture_of_20_MB_is_seen_with_its_caption(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        size = 20 * 1024 * 1024
+        file = await bot.do("upload", size=size)
+        await bot.say(7, caption="My cat", photo=[{**file, "width": 9, "height": 9}])
+        assert sorted(await bot.said(2)) == sorted([f"7: {size} bytes", "7: My cat"])
+        await bot.say(7, photo=[{**await bot.do("upload", size=size + 1), "width": 9, "height": 9}])
+        assert (await bot.said(3))[2:] == ["7: I couldn't open that."]
+
+
+@live
+async def test_a_file_is_fetched_again_after_a_failure(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.do("fault", method="getFile", kind="500", times=2)
+        file = await bot.do("upload", size=1000)
+        await bot.say(7, photo=[{**file, "width": 9, "height": 9}])
+        assert await bot.said(1) == ["7: 1000 bytes"]
+
+
+@live
+async def test_the_agent_shows_that_it_writes(bot: Bot, tmp_path: Path) -> None:
+    slow = rs.Module("slow", requires=(rawio,))
+    done = asyncio.Event()
+
+    @slow.rule(when=rawio.input.changed, writes=rawio.output)
+    async def think(ctx: rs.RuleContext) -> None:
+        await done.wait()
+        ctx[rawio.output] = "Yes."
+
+    async with running(bot, tmp_path, slow):
+        await bot.say(7, "Hello")
+        assert (await bot.do("called", method="sendChatAction", count=1))["calls"]
+        done.set()
+        assert await bot.said(1) == ["7: Yes."]
+
+
+@live
+async def test_a_long_answer_comes_in_parts(bot: Bot, tmp_path: Path) -> None:
+    tale = " ".join(f"Sentence {n} ends." for n in range(400))
+    wordy = rs.Module("wordy", requires=(rawio,))
+
+    @wordy.rule(when=rawio.input.changed, writes=rawio.output)
+    async def tell(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = tale
+
+    async with running(bot, tmp_path, wordy):
+        await bot.say(7, "Tell me a tale")
+        said = await bot.said(2)
+        assert " ".join(each.removeprefix("7: ") for each in said) == tale
+
+
+@live
+async def test_only_those_who_are_allowed_get_an_answer(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path, allow=(7, "@User8", 99)):
+        for chat in (9, 8, 7):
+            await bot.say(chat, "Hello")
+        assert sorted(await settled(bot)) == ["7: Hello", "8: Hello"]
+
+
+# ------------------------------------------------------------------------------------ faults
+
+
+@live
+async def test_a_flood_wait_is_obeyed_and_nothing_is_lost(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.do("fault", method="sendMessage", kind="429", retry_after=1, chat="7")
+        for n in range(5):
+            await bot.say(7, f"message {n}")
+        await bot.say(8, "another chat")
+        said = await bot.said(6)
+        assert [each for each in said if each.startswith("7")] == [f"7: message {n}" for n in range(5)]
+        assert said[0] == "8: another chat"  # it does not wait for chat 7
+        assert (await bot.do("called", method="sendMessage"))["early"] == 0
+
+
+@pytest.mark.parametrize("kind", ["500", "502", "503", "garbage", "lost"])
+def test_nothing_is_lost_or_doubled_after_a_failed_answer(bot: Bot, tmp_path: Path, kind: str) -> None:
+    @live
+    async def test(bot: Bot, folder: Path) -> None:
+        async with running(bot, folder):
+            for method in ("sendMessage", "getUpdates"):
+                await bot.do("fault", method=method, kind=kind, times=2)
+            for chat in (7, 8):
+                for n in range(3):
+                    await bot.say(chat, f"message {n}")
+            said = await bot.said(6)
+            assert said == await settled(bot)
+            assert sorted(said) == sorted(f"{chat}: message {n}" for chat in (7, 8) for n in range(3))
+
+    test(bot, tmp_path)
+
+
+@live
+async def test_malformed_updates_are_left_out(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.do("update", data={"message": {"message_id": "x"}})
+        await bot.do("update", data={"message": 7})
+        await bot.do("update", data={"edited_message": {}})
+        await bot.do("update", data={"never_heard_of": {}})
+        await bot.say(7, "Hello")
+        await bot.say(7, None, dice={"emoji": "🎲", "value": 3})
+        assert await settled(bot) == ["7: Hello"]
+
+
+@live
+async def test_a_left_group_and_a_blocked_bot_stop_nothing_else(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.say(-5, "Robin, hello", user=7)
+        await bot.said(1)
+        await bot.do("state", chat=-5, state="left")
+        await bot.do("fault", method="getUpdates", kind="500")
+        await bot.say(8, "one")
+        await bot.do("state", chat=8, state="blocked")
+        assert [each for each in await settled(bot) if each != "8: one"] == ["-5: Robin, hello"]
+        await bot.say(8, "I am back")
+        assert "8: I am back" in await settled(bot)
+
+
+@live
+async def test_a_group_that_gets_another_id_is_still_answered(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        new = -(10**12) - 5
+        await bot.say(new, "Robin, hello", user=7)
+        await bot.said(1)
+        await bot.do("fault", method="sendMessage", kind="500", chat="-5")
+        await bot.say(-5, "Robin, are you there?", user=7)
+        await bot.do("state", chat=-5, state=f"moved {new}")
+        assert (await bot.said(2))[1:] == [f"{new}: Robin, are you there?"]
+
+
+@live
+async def test_updates_that_come_twice_are_answered_once(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        message = await bot.say(7, "Hello")
+        await bot.said(1)
+    async with running(bot, tmp_path):
+        data = {"update_id": 1001, "message": message}
+        await bot.do("update", data=data)
+        await bot.do("update", data=data)
+        assert await settled(bot) == ["7: Hello"]
+
+
+# ------------------------------------------------------------------------------------ the token, and others
+
+
+@live
+async def test_a_wrong_token_is_explained_without_showing_it(bot: Bot, tmp_path: Path) -> None:
+    bot.token = f"{bot.token}-wrong"
+    async with running(bot, tmp_path) as task:
+        with pytest.raises(PlatformError, match=r"refuses the token.*BotFather") as caught:
+            await task
+    assert bot.token not in str(caught.value)
+
+
+def test_a_missing_token_is_explained() -> None:
+    with pytest.raises(PlatformError, match="export RAVESTATE_TELEGRAMIO_TOKEN"):
+        asyncio.run(telegramio.serve(Agent(parrot, telegramio)))
+
+
+@live
+async def test_another_program_that_gets_the_messages_is_named(bot: Bot, tmp_path: Path) -> None:
+    await bot.do("fault", method="getUpdates", kind="409", times=100)
+    async with running(bot, tmp_path) as task:
+        with pytest.raises(PlatformError, match="another program gets the messages"):
+            await task
+
+
+@live
+async def test_two_agents_do_not_share_a_file(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path):
+        await bot.say(7, "Hello")
+        await bot.said(1)
+        async with running(bot, tmp_path) as second:
+            with pytest.raises(PlatformError, match="another agent uses it"):
+                await second
+
+
+def test_the_token_is_never_logged(bot: Bot, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.DEBUG)
+
+    @live
+    async def test(bot: Bot, folder: Path) -> None:
+        async with running(bot, folder):
+            await bot.do("fault", method="sendMessage", kind="lost")
+            await bot.do("fault", method="getUpdates", kind="garbage")
+            await bot.say(7, "Hello")
+            await bot.said(1)
+
+    test(bot, tmp_path)
+    theirs = [r for r in caplog.records if f"/control/{bot.token}" not in r.getMessage()]  # the test's own requests
+    logged = "\n".join(f"{r.getMessage()} {r.exc_text}" for r in theirs)
+    assert "[secret]" in logged
+    assert bot.token not in logged
+    assert bot.token.partition(":")[2] not in logged
+    assert bot.token not in repr(Agent(parrot, telegramio, settings={"telegramio": bot.settings}).settings)

@@ -1,0 +1,387 @@
+"""A spoken conversation over the WebSocket: sound both ways, captions, the part that was heard, and what clients do wrong."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncGenerator
+from typing import Any
+
+import pytest
+from starlette.applications import Starlette
+from starlette.testclient import TestClient
+
+from modules.platform.webio.ears import WORD, ears, story, tone
+from modules.platform.webio.visit import Visit, in_virtual_time, page, past
+from ravestate.modules import rawio
+from ravestate.modules.platform.webio.protocol import LONGEST_SOUND
+from ravestate.modules.platform.webio.session import Session
+
+SPEECH = tone(1.0, rawio.IN_RATE)
+SILENCE = bytes(rawio.IN_RATE)  # half a second
+ANSWER = "I heard a sound, and that pleases me."
+LENGTH = len(ANSWER.split()) * WORD
+"""The seconds that the answer takes."""
+
+
+class Caller(Visit):
+    """A visitor who speaks and listens."""
+
+    def __init__(self, app: Starlette, **headers: str) -> None:
+        super().__init__(app, **headers)
+        self.stream = -1
+        self.sound = 0
+        """The samples of the present stream that have come."""
+
+    async def call(self, **fields: Any) -> dict[str, Any]:
+        """Say hello and turn the microphone on."""
+        welcome = await self.hello(**fields)
+        self.tell("microphone", on=True)
+        await self.until("flush")
+        return welcome
+
+    def speak(self, sound: bytes = SPEECH + SILENCE) -> None:
+        """Send sound in blocks of 40 ms."""
+        for at in range(0, len(sound), 1280):
+            self.send(sound[at : at + 1280])
+
+    async def next(self) -> dict[str, Any]:
+        """The next frame; sound is counted."""
+        frame = await super().next()
+        if frame["type"] == "sound":
+            self.sound += len(frame["sound"]) // 2
+        elif frame["type"] == "flush":
+            self.stream, self.sound = frame["n"], 0
+        return frame
+
+    async def until(self, type: str) -> dict[str, Any]:
+        """The next frame of a type."""
+        return (await self.frames(type))[-1]
+
+    async def rest(self) -> list[dict[str, Any]]:
+        """The frames that have come and were not looked at."""
+        found: list[dict[str, Any]] = []
+        while not self.nothing_more():
+            found.append(await self.next())
+        return found
+
+    def played(self, seconds: float) -> None:
+        """Report the position of the loudspeaker."""
+        self.tell("played", n=self.stream, samples=round(seconds * rawio.OUT_RATE))
+
+
+@contextlib.asynccontextmanager
+async def calling() -> AsyncGenerator[tuple[Starlette, Caller]]:
+    """A caller whose microphone is on."""
+    async with page(ears, story) as app, Caller(app) as caller:
+        assert (await caller.call())["voice"] is True
+        yield app, caller
+
+
+def now() -> float:
+    return asyncio.get_running_loop().time()
+
+
+def session_of(app: Starlette) -> Session:
+    (session,) = app.state.sessions
+    return session
+
+
+@in_virtual_time
+async def test_words_that_are_spoken_show_as_captions_then_as_a_message_before_the_answer() -> None:
+    async with calling() as (_, caller):
+        caller.speak()
+        frames = await caller.frames("sound")
+        captions = [frame["text"] for frame in frames if frame["type"] == "caption"]
+        assert captions[0] == "a sound of 0.2 seconds so far"
+        assert captions[-1] == ""
+        assert [(f["n"], f["from"], f["text"]) for f in frames if f["type"] == "message"] == [
+            (1, "user", "a sound"),
+            (2, "agent", ANSWER),
+        ]
+
+
+@in_virtual_time
+async def test_the_answer_is_sent_ahead_of_the_loudspeaker_by_a_second_at_most() -> None:
+    async with calling() as (_, caller):
+        caller.speak()
+        for second in (1.0, 2.0, LENGTH):
+            while caller.sound < round(second * rawio.OUT_RATE):
+                await caller.until("sound")
+            await past(0.0)
+            assert caller.nothing_more()
+            caller.played(second)
+        assert caller.sound == round(LENGTH * rawio.OUT_RATE)
+
+
+@in_virtual_time
+async def test_the_visitor_who_presses_stop_hears_no_more_and_the_message_says_what_they_heard() -> None:
+    async with calling() as (_, caller):
+        caller.speak()
+        await caller.until("sound")
+        caller.played(0.0)
+        while caller.sound < rawio.OUT_RATE:
+            await caller.until("sound")
+        caller.played(1.0)
+        await caller.until("sound")
+        stream = caller.stream
+        caller.tell("hush")
+        frames = await caller.frames("heard")
+        assert caller.stream == stream + 1
+        assert frames[-1] == {"type": "heard", "n": 2, "text": "I heard a"}
+        await past(60.0)
+        assert caller.sound == 0
+        async with Visit(caller._app) as other:  # a window that opens later learns it, too
+            await other.hello(session=caller.session)
+            assert (await other.frames("message"))[-1]["text"] == "a sound"
+            assert (await other.next())["heard"] == "I heard a"
+
+
+@in_virtual_time
+async def test_an_answer_that_was_heard_to_its_end_has_no_mark() -> None:
+    async with calling() as (app, caller):
+        caller.speak()
+        for second in (1.0, 2.0, LENGTH):
+            while caller.sound < round(second * rawio.OUT_RATE):
+                await caller.until("sound")
+            caller.played(second)
+        await past(1.0)
+        assert session_of(app).context.read(rawio.heard) == ANSWER
+        assert "heard" not in [frame["type"] for frame in await caller.rest()]
+
+
+@in_virtual_time
+async def test_a_visitor_who_types_gets_no_sound_and_no_mark() -> None:
+    async with page(ears, story) as app, Visit(app) as visit:
+        assert (await visit.hello())["voice"] is True
+        visit.say("words")
+        assert await visit.messages(2) == ["user: words", "agent: I heard words, and that pleases me."]
+        await past(60.0)
+        assert visit.nothing_more()
+        assert session_of(app).context.read(rawio.sound) is None  # so nobody made sound
+        visit.tell("hush")  # without a line, too
+
+
+@in_virtual_time
+async def test_the_line_stays_for_half_a_minute_after_the_microphone_went_off() -> None:
+    async with calling() as (app, caller):
+        context = session_of(app).context
+        line = context.read(rawio.sound)
+        for seconds, kept in ((29.0, True), (29.0, True), (31.0, False)):
+            caller.tell("microphone", on=False)
+            await past(seconds)
+            assert (context.read(rawio.sound) is line) is kept
+            caller.tell("microphone", on=True)
+            await caller.until("flush")
+        caller.speak()
+        assert (await caller.until("message"))["text"] == "a sound"
+        assert context.read(rawio.sound) not in (None, line)
+
+
+@in_virtual_time
+async def test_a_line_that_the_agent_closes_is_replaced_when_the_microphone_goes_on_again() -> None:
+    async with calling() as (app, caller):
+        line = session_of(app).line
+        assert line is not None
+        line.close()
+        assert (await caller.until("taken"))["text"] == "the agent does not listen any more"
+        caller.tell("microphone", on=True)
+        await caller.until("flush")
+        caller.speak()
+        assert (await caller.until("message"))["text"] == "a sound"
+
+
+@in_virtual_time
+async def test_the_last_window_that_turns_its_microphone_on_has_the_sound() -> None:
+    async with calling() as (app, caller), Caller(app) as second:
+        await second.call(session=caller.session)
+        assert await caller.until("taken") == {"type": "taken", "text": "the microphone is on in another window"}
+        caller.speak()  # is not heard
+        await past(5.0)
+        assert session_of(app).history.last == 0
+        second.speak()
+        await second.until("sound")
+        await past(0.0)
+        types = [frame["type"] for frame in await caller.rest()]
+        assert types.count("message") == 2  # it sees the words
+        assert "sound" not in types
+
+
+@in_virtual_time
+async def test_a_lost_connection_stops_the_sound_and_a_new_one_gets_what_comes_then() -> None:
+    async with calling() as (app, caller):
+        caller.speak()
+        await caller.until("sound")
+        await caller.drop()
+        line = session_of(app).line
+        assert line is not None
+        assert line.window is None
+        async with Caller(app) as again:
+            await again.call(session=caller.session, last=2)
+            again.speak()
+            assert (await again.until("message"))["text"] == "a sound"
+            assert (await again.until("sound"))["sound"] == tone(WORD)[:9600]
+
+
+@in_virtual_time
+async def test_the_microphone_goes_off_and_the_utterance_ends() -> None:
+    async with calling() as (_, caller):
+        caller.speak(SPEECH)
+        caller.tell("microphone", on=False)
+        assert (await caller.until("message"))["text"] == "a sound"
+        caller.tell("microphone", on=True)
+        await caller.until("flush")
+
+
+@in_virtual_time
+async def test_the_agent_may_say_goodbye_aloud() -> None:
+    async with calling() as (app, caller):
+        caller.speak()
+        await caller.until("sound")
+        caller.tell("bye")
+        caller.tell("hush")
+        assert await caller.until("ended")
+        assert list(app.state.sessions) == []
+
+
+@in_virtual_time
+async def test_what_was_heard_belongs_to_the_message_that_begins_with_it() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        context = session_of(app).context
+        for text in ("one two  three", "four"):
+            visit.say(text)
+        await visit.messages(5)
+        for heard, frame in (
+            ("one  two", {"n": 3, "text": "one two"}),
+            ("one two three", {"n": 3, "text": "one two  three"}),  # it was a false alarm, and the agent went on
+            ("", {"n": 5, "text": ""}),  # nothing of the newest
+        ):
+            context.put(rawio.heard, heard)
+            assert (await visit.frames("heard"))[-1] == {"type": "heard", **frame}
+        context.put(rawio.heard, "nothing of the kind")
+        context.put(rawio.heard, "Hello!")  # the whole of a message without a mark
+        await past(1.0)
+        assert visit.nothing_more()
+
+
+@in_virtual_time
+async def test_what_was_heard_of_a_growing_utterance_marks_the_message_that_it_becomes() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        context = session_of(app).context
+        context.put(rawio.speaking, True)
+        context.emit(rawio.piece, "I once knew a raven who")
+        context.put(rawio.heard, "I once")
+        context.put(rawio.speaking, False)
+        (*_, message) = await visit.frames("message")
+        assert (message["text"], message["heard"]) == ("I once knew a raven who", "I once")
+
+
+@in_virtual_time
+async def test_an_input_from_elsewhere_shows_as_the_visitors_words_and_their_own_only_once() -> None:
+    async with page() as app, Visit(app) as visit:
+        await visit.hello()
+        await visit.messages(1)
+        rawio.say(session_of(app).context, "from\x1b[31m elsewhere")
+        assert await visit.messages(2) == ["user: from elsewhere", "agent: from elsewhere"]
+        visit.say("typed")
+        visit.say("typed")
+        assert sorted(await visit.messages(4)) == ["agent: typed", "agent: typed", "user: typed", "user: typed"]
+
+
+# ------------------------------------------------------------------------------------ what clients do wrong
+
+
+@in_virtual_time
+async def test_an_agent_without_ears_says_so_and_takes_no_sound() -> None:
+    async with page() as app, Visit(app) as visit:
+        assert "voice" not in await visit.hello()
+        await visit.next()
+        for frame in ({"type": "microphone", "on": True}, {"type": "played", "n": 0, "samples": 0}, {"type": "hush"}):
+            visit.tell(**frame)
+            assert await visit.next() == {
+                "type": "error",
+                "code": "deaf",
+                "text": "this agent neither hears nor speaks: it needs a module such as voiceio",
+            }
+        visit.send(bytes(640))
+        assert (await visit.next())["text"] == "a frame is a text message, not a binary one"
+
+
+@in_virtual_time
+async def test_sound_before_hello_ends_the_connection() -> None:
+    async with page(ears, story) as app, Visit(app) as visit:
+        visit.send(bytes(640))
+        assert (await visit.next())["code"] == "malformed"
+        assert (await visit.next())["code"] == 4400
+
+
+@pytest.mark.parametrize("size", [1, 641, LONGEST_SOUND + 2])
+def test_frames_with_half_samples_or_too_many_are_refused(size: int) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with calling() as (_, caller):
+            caller.send(b"\x70" * size)
+            frame = await caller.next()
+            assert (frame["type"], frame["code"]) == ("error", "malformed")
+            assert f"not {size:,} bytes" in frame["text"]
+            caller.speak()
+            await caller.until("sound")
+
+    test()
+
+
+@in_virtual_time
+async def test_sound_beyond_the_speed_of_speech_is_ignored() -> None:
+    async with calling() as (app, caller):
+        for _ in range(1000):
+            caller.send(bytes(LONGEST_SOUND))
+        await past(0.0)
+        line = session_of(app).line
+        assert line is not None
+        assert len(line._heard) <= 2 * LONGEST_SOUND
+        await past(5.0)
+        caller.speak()  # it is heard again
+        assert (await caller.until("message"))["text"] == "a sound"
+
+
+@in_virtual_time
+async def test_sound_and_reports_leave_the_limit_of_words_alone() -> None:
+    async with calling() as (_, caller):
+        for _ in range(100):
+            caller.send(bytes(640))
+            caller.played(0.0)
+        caller.say("words")
+        assert (await caller.until("message"))["text"] == "words"
+        assert now() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("frame", "why"),
+    [
+        ({"type": "microphone"}, 'microphone lacks "on": true or false'),
+        ({"type": "microphone", "on": 1}, "microphone: \"on\": '1' is not true or false"),
+        ({"type": "played", "n": -1, "samples": 0}, "played: \"n\": '-1' is not a whole number from 0 on"),
+        ({"type": "played", "n": 0, "samples": 1.5}, "played: \"samples\": '1.5' is not a whole number from 0 on"),
+    ],
+)
+def test_frames_are_checked(frame: dict[str, Any], why: str) -> None:
+    @in_virtual_time
+    async def test() -> None:
+        async with calling() as (_, caller):
+            caller.tell(**frame)
+            assert (await caller.until("error"))["text"] == why
+
+    test()
+
+
+def test_only_the_page_of_an_agent_that_hears_may_use_the_microphone() -> None:
+    from ravestate.modules import webio
+    from ravestate.runtime.agent import Agent
+
+    for modules, allowed in (((ears, story), "microphone=(self)"), ((story,), "microphone=()")):
+        with TestClient(webio.app(Agent(*modules, webio)), base_url="http://127.0.0.1:8420") as client:
+            headers = client.get("/").headers
+            assert allowed in headers["permissions-policy"]
+            assert "script-src 'self'" in headers["content-security-policy"]  # for the worklet, too
+            assert client.get("/assets/worklet.js").status_code == 200
