@@ -173,7 +173,6 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
     subject = "" if asked is None else asked.subject_person
     about = _about_in(seen)
     found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
-    owned = asked is not None and asked.subject.of("you") and about != ""
     opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
     polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
     words = re.findall(r"[\w']+", asking.lower())
@@ -199,7 +198,8 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         or bool({"remember", "recall"} & low and "you" in low)
         or ("know" in words and subject == "you" and "my" in words),
         "to_agent": addressed and (asked is None or subject == "you" or asked.subject.of("you")),
-        "taste": found.thing != "" and (owned or opining),
+        "able": polar and subject == "you" and bool(modal & {"can", "could"}),
+        "taste": found.thing != "" and (opining or (about != "" and subject == "you")),
     }
 
 
