@@ -36,7 +36,7 @@ def lines_of(moment: Moment) -> list[Line]:
 
 def all_lines() -> list[Line]:
     phrases = material()
-    groups = (phrases.acts, phrases.feelings, phrases.moments, phrases.topics, phrases.verbs, phrases.plain)
+    groups = (phrases.acts, phrases.feelings, phrases.moments, phrases.topics, phrases.plain)
     return [line for group in groups for moment in group.values() for line in lines_of(moment)]
 
 

@@ -53,6 +53,8 @@ _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
 """Closed-class words that end no utterance."""
 _SAD = SORROWS | {"tiredness"}
+_JUDGING = frozenset(("think", "feel", "say", "know", "hear", "be"))
+"""Verbs of questions such as *what do you think about jazz*."""
 _THIRD = frozenset(("he", "she", "they"))
 
 
@@ -79,7 +81,6 @@ class Hearing:
     """The name of the moment that it resembles most, even a little."""
     moves: tuple[str, ...] = ()
     """The moves that may come next, the likeliest first: one, or two if both are likely; none if that is unknown."""
-    verb: Moment | None = None
     topic: Moment | None = None
     thing: str = ""
     """The thing that the agent's opinion is asked for."""
@@ -148,8 +149,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _question_tags(found, phrases, seen, asking, low) | {"choice": choice[0] != ""}
     elif statement is not None:
         tags |= _statement_tags(phrases, seen, statement, roles)
-        name = f"not {statement.verb}" if statement.negated else statement.verb
-        found.verb = next((one for one in phrases.verbs.values() if name in one.words), None)
         heads = {
             word.lemma.lower()
             for word in seen.tree.words
@@ -199,7 +198,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         or ("know" in words and subject == "you" and "my" in words),
         "to_agent": addressed and (asked is None or subject == "you" or asked.subject.of("you")),
         "able": polar and subject == "you" and bool(modal & {"can", "could"}),
-        "taste": found.thing != "" and (opining or (about != "" and subject == "you")),
+        "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
 
@@ -273,13 +272,14 @@ def moment_of(
     user asks something, only the question counts.
     """
     best, sentence, score = None, "", 0.0
+    imagined = any(one.conditional for one in seen.statements)
     texts = [asking] if asking else list(seen.sentences[:4])
     for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
         if match is None or match.score <= score:
             continue
         found = phrases.moments[match.name]
         few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry": more was said
-        fits = match.score >= EXACT or _fits(found, moves)
+        fits = match.score >= EXACT or (_fits(found, moves) and not imagined)
         if fits and not (few and match.score < EXACT) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score

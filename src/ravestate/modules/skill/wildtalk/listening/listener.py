@@ -221,13 +221,6 @@ class Listener:
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
 
-    def _verb(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the questions about the verb of a statement."""
-        if hearing.verb is not None:
-            tense = "past" if "past" in hearing.tags else "present"
-            names = ("theirs",) if "living" in hearing.tags else (tense, "say")
-            yield _Source(hearing.verb.lines(*names))
-
     def _topic(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the questions about a topic; about others, only those that speak of them."""
         if hearing.topic is not None:

@@ -94,7 +94,6 @@ class Material:
         ]
         """One matcher a file: all of them together learn faster than one of all examples."""
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
-        self.verbs = _moments("verbs")
         self.replies = _moments("replies")
         self.plain = {**_moments("plain"), **self.replies}
         self.order = [_row(row) for row in _read("order")]
