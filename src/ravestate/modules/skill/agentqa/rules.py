@@ -24,6 +24,8 @@ from .remarks import act_in, remark_in
 from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
+CERTAIN = 0.7
+"""The confidence in a topic from which it needs no second sign that the question is about the agent."""
 TURNS = 6
 """The user's utterances before which the agent does not offer to be asked."""
 
@@ -87,6 +89,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
+    if seen.move is not None and found.score < CERTAIN and "self" not in (seen.move.name, seen.move.second):
+        return rs.Resign(f"{found.topic} is only likely, and the user wants another answer: {seen.move.name}")
     ctx.log.debug("%s", found)
     ctx.emit(asked, found)
     return None

@@ -50,10 +50,12 @@ _LEAVING = re.compile(
 """The farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The offer to tell something."""
+_AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
+"""The end of a statement that astonishes: *he ate it all, can you believe it?*"""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
 """Closed-class words that end no utterance."""
 _SAD = SORROWS | {"tiredness"}
-_JUDGING = frozenset(("think", "feel", "say", "know", "hear", "be"))
+_JUDGING = frozenset(("think", "feel", "know"))
 """Verbs of questions such as *what do you think about jazz*."""
 _THIRD = frozenset(("he", "she", "they"))
 
@@ -142,6 +144,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "called": called != "",
         "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
         and not statement.conditional and "thing" in roles.values,
+        "request": is_request(seen) and seen.question is None and len(seen.sentences) == 1,
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
@@ -171,6 +174,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
     asked = next((one for one in seen.statements if one.question), None)
     subject = "" if asked is None else asked.subject_person
     about = _about_in(seen)
+    about = about if about.split()[-1:] and about.split()[-1].lower() in asking.lower() else ""
     found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
     opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
     polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
@@ -245,7 +249,7 @@ def _fits(moment: Moment, moves: Sequence[str]) -> bool:
 
 def asking_sentence(seen: Analysis) -> str:
     """Return the question among the sentences of an utterance; empty if it asks nothing."""
-    if seen.question is None or not seen.sentences:
+    if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
         return ""
     marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
     opened = [
@@ -280,7 +284,7 @@ def moment_of(
         found = phrases.moments[match.name]
         few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry": more was said
         fits = match.score >= EXACT or (_fits(found, moves) and not imagined)
-        if fits and not (few and match.score < EXACT) and has_head(phrases, found, seen):
+        if fits and not few and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
 

@@ -206,9 +206,10 @@ class Listener:
         tags, replies = hearing.tags, self._phrases.replies
         sure = len(hearing.moves) == 1
         name = hearing.moves[0] if sure else "ask" if "question" in tags else "tell"
+        asked = ["asked"] if {"question", "request"} & tags else []
         plain = ["plain"] if {"plainly", "mine"} <= tags and not state.tone and "negated" not in tags else []
         being = [hearing.roles.being.kind] if hearing.roles.being is not None else []
-        yield _Source(replies[name].lines(*plain, *being, state.tone, "say"), replies[name] if sure else None)
+        yield _Source(replies[name].lines(*asked, *plain, *being, state.tone, "say"), replies[name] if sure else None)
         yield _Source(replies["ask" if "question" in tags else "tell"].lines(state.tone, "say"))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
