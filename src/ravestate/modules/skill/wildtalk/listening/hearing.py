@@ -104,7 +104,9 @@ def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
 def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis, state: State) -> None:
     asking = asking_sentence(seen)
     found.moves = likely(phrases, seen)
-    moment, sentence, score = moment_of(phrases, seen, found.moves, asking)
+    if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
+        found.tags.add("shown")
+    moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
         match = seen.feelings[feeling.name]
@@ -130,7 +132,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,
-        "shown": bool(state.said and state.shown) and state.said[-1].endswith(state.shown[-1]),
         "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
@@ -223,7 +224,7 @@ def _ranked(
     moment = phrases.moments.get(found.moment)
     light = moment is not None and moment.tone != "sad" and "sad" not in moment.groups
     if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
-        score = score if score >= TURNED else 0.0  # no light talk in grief
+        score = score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0  # no light talk
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
         score = score if score >= CLOUDED else 0.0  # tears of joy
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
@@ -236,7 +237,11 @@ def _ranked(
         few, last = len(act.text.split()) <= FEW_WORDS, act.text in seen.sentences[-1:]
         least = ASKED if act.name in ENDINGS else FEW if few else MEANT
         whole = len(seen.sentences) == 1 and len(act.text) >= len(seen.sentences[0]) - 1
-        beside = act.text != asking if asking else few and not whole and not (last and act.name == "farewell")
+        beside = (
+            act.text != asking or act.name in ("greeting", "farewell")
+            if asking
+            else few and not whole and not (last and act.name == "farewell")
+        )
         if act.score >= least and not beside and (_fits(phrases.acts[act.name], found.moves) or (whole and few)):
             ranked.append((act.score, phrases.acts[act.name]))
     return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
@@ -267,9 +272,7 @@ def asking_sentence(seen: Analysis) -> str:
     return [*seen.sentences, *opened, *marked][-1]
 
 
-def moment_of(
-    phrases: Material, seen: Analysis, moves: Sequence[str], asking: str = ""
-) -> tuple[Moment | None, str, float]:
+def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
     """Return the moment that a sentence resembles most, with the sentence and the confidence.
 
     Only a moment that may answer one of the moves counts, or one whose example the user says nearly word for word. If the
@@ -283,8 +286,8 @@ def moment_of(
             continue
         found = phrases.moments[match.name]
         few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry": more was said
-        fits = match.score >= EXACT or (_fits(found, moves) and not imagined)
-        if fits and not few and has_head(phrases, found, seen):
+        fits = match.score >= EXACT or (_fits(found, heard.moves) and not imagined)
+        if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
 

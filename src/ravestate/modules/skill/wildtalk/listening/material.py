@@ -20,7 +20,7 @@ ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
 """The files of situations in a talk. Each situation names the moves for which it may answer."""
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least"))
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +55,8 @@ class Moment:
     """The nouns or verbs that are typical of it."""
     moves: frozenset[str] = frozenset()
     """The moves for which it may answer (language/moves.py)."""
+    after: str = ""
+    """A tag that the utterance needs: ``shown`` for remarks about a joke."""
     least: float = 0.0
     """The confidence in a move from which its replies are used."""
     heads: str = ""
@@ -138,6 +140,7 @@ def _moments(name: str) -> dict[str, Moment]:
             tuple(value.get("examples", ())),
             words,
             frozenset(value.get("moves", ())),
+            value.get("after", ""),
             float(value.get("least", 0.0)),
             value.get("heads", ""),
         )
