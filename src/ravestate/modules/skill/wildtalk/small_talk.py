@@ -58,7 +58,7 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 
 
 def needs_comfort(seen: nlp.Analysis | None) -> bool:
-    """Return whether the user tells of a sorrow, by the feeling and by the likely move."""
+    """Return whether the user is in sorrow: the feeling and the likely move agree."""
     if seen is None or seen.question is not None or seen.move is None:
         return False
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
