@@ -224,7 +224,9 @@ def _ranked(
     moment = phrases.moments.get(found.moment)
     light = moment is not None and moment.tone != "sad" and "sad" not in moment.groups
     if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
-        score = score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0  # no light talk
+        score = (
+            score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
+        )  # no light talk
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
         score = score if score >= CLOUDED else 0.0  # tears of joy
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:

@@ -204,13 +204,16 @@ class Listener:
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move; of two likely ones, replies that suit both."""
         tags, replies = hearing.tags, self._phrases.replies
-        sure = len(hearing.moves) == 1
-        name = hearing.moves[0] if sure else "ask" if "question" in tags else "tell"
-        asked = ["asked"] if {"question", "request"} & tags else []
-        plain = ["plain"] if {"plainly", "mine"} <= tags and not state.tone and "negated" not in tags else []
-        being = [hearing.roles.being.kind] if hearing.roles.being is not None else []
-        yield _Source(replies[name].lines(*asked, *plain, *being, state.tone, "say"), replies[name] if sure else None)
-        yield _Source(replies["ask" if "question" in tags else "tell"].lines(state.tone, "say"))
+        sure, unsure = len(hearing.moves) == 1, "ask" if "question" in tags else "tell"
+        groups = ["asked"] if {"question", "request"} & tags else []
+        if "plainly" in tags and not tags & {"negated", "tone", "felt"}:
+            groups += ["plain"] if "mine" in tags else ["thing"]
+        if hearing.roles.being is not None and "question" not in tags:
+            groups.append(hearing.roles.being.kind)
+        groups += [state.tone, "say"]
+        if sure:
+            yield _Source(replies[hearing.moves[0]].lines(*groups), replies[hearing.moves[0]])
+        yield _Source(replies[unsure].lines(*groups))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion; it is chosen once. It has none of people."""
