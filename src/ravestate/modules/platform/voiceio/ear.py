@@ -86,6 +86,7 @@ class Ear:
         self._far = bytearray()
         self._clean = bytearray()
         self._before: deque[bytes] = deque(maxlen=BEFORE)
+        self._lately: deque[bool] = deque(maxlen=ONSET)
         self._in_a_row = self._silent = self._spoken = self._articulate = self._at_limit = 0
         self._sure = False
 
@@ -135,6 +136,8 @@ class Ear:
         length = CHUNK / IN_RATE
         is_speech = likely >= (self._speech * STAY if self.speaking else self._speech)
         self._in_a_row = self._in_a_row + 1 if is_speech else 0
+        articulate = is_speech and is_articulate(sound)
+        self._lately.append(articulate)
         if self.turn is not None:
             self.turn.chunks.append(chunk)
         else:
@@ -146,7 +149,7 @@ class Ear:
             return
         assert self.turn is not None
         self._spoken += 1
-        self._articulate += is_speech and is_articulate(sound)
+        self._articulate += articulate
         self._note_clipping(sound)
         if not self._sure and (self._articulate >= ARTICULATE or self._spoken >= LONG):
             self._sure = True
@@ -163,7 +166,7 @@ class Ear:
 
     def _begin(self, now: float, agent_speaks: bool) -> None:
         self.speaking, self._sure = True, False
-        self._silent = self._spoken = self._articulate = 0
+        self._silent, self._spoken, self._articulate = 0, ONSET, sum(self._lately)
         if self.turn is None:
             self.turn = Turn(now, now, agent_speaks, chunks=list(self._before))
             self._before.clear()
