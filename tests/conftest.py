@@ -10,8 +10,14 @@ No profile has a deadline: benchmarks measure time. Choose with `HYPOTHESIS_PROF
 
 import os
 import tempfile
+from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
+
+# Each process of the tests has one core. More threads for a product of matrices would wait for each other.
+for _library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
 _folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
 os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well
@@ -26,3 +32,17 @@ settings.register_profile("dev", max_examples=100, **_shared)
 settings.register_profile("ci", max_examples=200, derandomize=True, database=None, **_shared)
 settings.register_profile("fuzz", max_examples=5_000, **_shared)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if "CI" in os.environ else "dev"))
+
+TESTS = Path(__file__).parent
+FIRST = ("quality", "end_to_end", "bridges", "modules", "examples", "cli", "repo", "board")
+"""The folders with the files that take longest."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run files that take long first, so that the processes of `make test` end at about the same time."""
+
+    def rank(item: pytest.Item) -> int:
+        folders = [place.name for place in item.path.parents if place.parent == TESTS]
+        return FIRST.index(folders[0]) if folders and folders[0] in FIRST else len(FIRST)
+
+    items.sort(key=rank)

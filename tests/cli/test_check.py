@@ -60,8 +60,8 @@ def test_examples_that_two_intents_share(folder: Path, capsys: Capture) -> None:
     examples = [line for line in out.splitlines() if line.startswith("example:")]
     assert code == 0
     assert examples[0] == (
-        "example: the example 'R u open on Sundays?' of intent shop:hours fits intent shop:price as well: give it to one of "
-        "them, or write examples that differ more"
+        "example: the example 'R u open on Sundays?' of intent shop:hours fits intent shop:price as well: give it to "
+        "only one intent, or write examples that differ more"
     )
     assert any("'until when are you open' of intent shop:late fits intent shop:hours" in line for line in examples)
 

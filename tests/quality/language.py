@@ -15,9 +15,7 @@ from ravestate.language.acts import acts, heard
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import emotion
 from ravestate.modules.meta.nlp import Settings
-from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
-from ravestate.modules.meta.nlp.pipeline import pipeline
 
 LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows")
 SETS = ("triples_rows", "typed_rows", *LABELLED)
@@ -37,7 +35,7 @@ def acts_label(text: str) -> str:
 def intents(text: str) -> str:
     """By nlp."""
     bundled_matcher("acts").load()
-    seen = analyse(text, pipeline(""), Settings().agent_names)
+    seen = modules._seen(text)
     return "+".join(intent.removeprefix("intent_") for intent in seen.acted) or "-"
 
 
@@ -53,6 +51,7 @@ def quiet(text: str) -> str:
     return "quiet" if "quiet" in heard else "leave" if "farewell" in heard else "-"
 
 
+@cache
 def feelings(text: str) -> str:
     """By emotion, sadness included."""
     return emotion.recognise(text, Settings().agent_names) or "-"

@@ -11,7 +11,7 @@ from quality.measure import Reply, Result, facts, measure_facts
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import genqa as genqa_module
 from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
-from ravestate.modules.meta.nlp.analysis import Analysis, analyse
+from ravestate.modules.meta.nlp.analysis import MATCHERS, Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.genqa.answering import Answerer
 from ravestate.modules.skill.genqa.following import answer_in
@@ -19,6 +19,12 @@ from ravestate.modules.skill.genqa.question import not_asked, parsed
 
 
 def _seen(text: str) -> Analysis:
+    return _analysed(text, tuple(bundled_matcher(name).loaded for name in (*MATCHERS, "answers")))
+
+
+@cache
+def _analysed(text: str, learnt: tuple[bool, ...]) -> Analysis:
+    """Analyse a text once for all measures: the analysis depends on which matchers have learnt their examples."""
     return analyse(text, pipeline(""), Settings().agent_names)
 
 

@@ -107,12 +107,14 @@ def _label(fact: Fact) -> str:
     return f"{'not ' if fact.gone else ''}{fact.topic}" + (f"={values}" if values else "")
 
 
+@cache
 def agentqa_asks(sentence: str) -> str:
     """Return the topic about the agent that a sentence asks for."""
     found = router_of(read_life()).route(sentence, question=_seen(sentence).question is not None)
     return found.topic if isinstance(found, Match) else "-"
 
 
+@cache
 def agentqa_remarks(sentence: str) -> str:
     """Return the topic of a remark that the agent must not take for small talk."""
     _load()

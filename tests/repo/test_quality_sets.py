@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
 from ravestate.language import plain
+from ravestate.yaml_text import load_yaml
 
 ROOT = Path(__file__).parents[2]
 BLIND = ROOT / "tests" / "quality" / "blind"
@@ -39,7 +39,7 @@ def _sentences(file: Path) -> Iterator[str]:
             if line.strip() and not line.startswith("#"):
                 yield _SITUATION.sub("", line.partition("\t")[0])
     elif file.suffix == ".yaml":
-        yield from _strings(yaml.safe_load(text))
+        yield from _strings(load_yaml(text, file.name))
     else:
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and len(node.value) < LONGEST:
@@ -58,9 +58,9 @@ def known() -> dict[str, Path]:
 def _asked(name: str) -> list[str]:
     file = BLIND / name
     if name == "followups.yaml":
-        return [case["follow"] for case in yaml.safe_load(file.read_text(encoding="utf-8"))["cases"]]
+        return [case["follow"] for case in load_yaml(file.read_text(encoding="utf-8"), name)["cases"]]
     if file.suffix == ".yaml":
-        return [case["text"] for case in yaml.safe_load(file.read_text(encoding="utf-8"))]
+        return [case["text"] for case in load_yaml(file.read_text(encoding="utf-8"), name)]
     return list(_sentences(file))
 
 

@@ -1,3 +1,5 @@
+import { AGENT, type Band, type Mark, USER } from "./sound";
+import { paintVoice } from "./sound-paint";
 import type { Bar, Lane, Phase, Spike, Trace } from "./trace";
 import { from } from "./trace";
 import { label, step, type View } from "./view";
@@ -108,6 +110,7 @@ export function paint(context: CanvasRenderingContext2D, scene: Scene): void {
     context.fillRect(0, top + LANE - 1, width, 1);
     const lane = scene.trace.lanes.get(name);
     if (lane !== undefined) paintLane(context, scene, lane, top);
+    if (name === USER || name === AGENT) paintVoice(context, scene, name, top, LANE, shortened);
   }
   const places = new Map(scene.lanes.map((name, i) => [name, AXIS + i * LANE - scene.scroll + LANE / 2]));
   paintSpikes(context, scene, places);
@@ -492,14 +495,19 @@ function paintGaps(context: CanvasRenderingContext2D, scene: Scene): void {
   }
 }
 
-/** Return the spike at a place, or else the bar. */
-export function at(scene: Scene, x: number, y: number): { spike?: Spike; bar?: Bar } {
+/** Return the spike at a place, or else the bar; in the lane of a voice, the stretch of speech and the mark. */
+export function at(
+  scene: Scene,
+  x: number,
+  y: number,
+): { spike?: Spike; bar?: Bar; band?: Band; mark?: Mark } {
   const index = Math.floor((y - AXIS + scene.scroll) / LANE);
   const name = scene.lanes[index];
   if (y < AXIS || name === undefined) return {};
   const { view, width, trace } = scene;
   const reach = (7 / width) * view.span;
   const time = view.time(x, width);
+  if (name === USER || name === AGENT) return trace.sound.at(name, time, reach, scene.now);
   const middle = AXIS + index * LANE - scene.scroll + LANE / 2;
   // The context's own dots are below the others.
   const below = name === OUTSIDE && y > middle + OWN / 2;

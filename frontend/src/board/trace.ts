@@ -1,4 +1,5 @@
 import type { Alive, Rendered, Settled, TraceRecord } from "./protocol";
+import { Sound } from "./sound";
 
 /** The state of an activation. */
 export type State = "gathering" | "complete" | "waiting" | "running";
@@ -73,6 +74,8 @@ export class Trace {
   spikes: Spike[] = [];
   slots = new Map<string, { shown: Rendered; time: number }>();
   gaps: Gap[] = [];
+  /** The voices of a spoken conversation. */
+  sound = new Sound();
   /** The runs that failed. */
   failures: Settled[] = [];
   /** The last time of each signal (seconds). */
@@ -218,6 +221,7 @@ export class Trace {
     if (this.records.length === 0) this.first = record.time;
     this.records.push(record);
     this.last = Math.max(this.last, record.time);
+    this.sound.add(record);
     switch (record.kind) {
       case "born": {
         const spike: Spike = {
@@ -357,6 +361,7 @@ export class Trace {
     this.records = this.records.slice(-this.kept);
     this.first = this.records[0]?.time ?? 0;
     const gone = (time: number) => time < this.first;
+    this.sound.forget(this.first);
     for (const spike of this.spikes) if (gone(spike.time)) this.#spikes.delete(spike.id);
     this.spikes = this.spikes.filter((spike) => !gone(spike.time));
     this.gaps = this.gaps.filter((gap) => !gone(gap.time));

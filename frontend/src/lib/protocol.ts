@@ -172,6 +172,11 @@ export interface Flush {
   n: number;
 }
 
+/** The agent takes the sound of this window's microphone. The agent may have had to load its models first. */
+export interface Listening {
+  type: "listening";
+}
+
 /** This window no longer has the microphone; `text` says why. */
 export interface Taken {
   type: "taken";
@@ -212,6 +217,7 @@ export type ServerFrame =
   | Caption
   | Heard
   | Flush
+  | Listening
   | Taken
   | Ended
   | Error
@@ -255,6 +261,7 @@ export const FIELDS: Record<ServerFrame["type"], Record<string, string>> = {
   flush: {
     n: "number",
   },
+  listening: {},
   taken: {
     text: "string",
   },

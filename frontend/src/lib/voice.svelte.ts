@@ -26,6 +26,8 @@ export class Voice {
   available = $state(false);
   state: "off" | "starting" | "on" = $state("off");
   mode: "open" | "hold" = $state("open");
+  /** Whether the agent takes the microphone's sound; it may have to load its models first. */
+  listening = $state(false);
   /** Whether the microphone's sound goes to the agent. */
   talking = $state(false);
   /** The loudness of the visitor, from 0 (silence) to 1. */
@@ -89,7 +91,7 @@ export class Voice {
     this.#devices = null;
     this.state = "off";
     this.trouble = why;
-    this.talking = this.speaking = false;
+    this.talking = this.speaking = this.listening = false;
     this.level = 0;
     this.show("");
   }
@@ -121,12 +123,13 @@ export class Voice {
     this.#connected = false;
     this.#stream = -1;
     this.#devices?.flush(-1);
-    this.speaking = false;
+    this.speaking = this.listening = false;
     this.show("");
   }
 
   take(frame: ServerFrame): void {
     if (frame.type === "caption") this.show(frame.text);
+    else if (frame.type === "listening") this.listening = true;
     else if (frame.type === "flush") {
       this.#stream = frame.n;
       this.#hushed = false;

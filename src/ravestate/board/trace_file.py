@@ -86,7 +86,7 @@ class _File(pydantic.BaseModel):
 def save_trace(
     path: Path, policy: Policy, records: Iterable[Record | Gap], *, title: str = "Ravestate", whole: bool = True
 ) -> None:
-    """Write a trace to a file for the board, for example ``context.trace`` of a context with ``trace=True``."""
+    """Write a trace, e.g. the ``trace`` of a context with ``trace=True``, to a file for the board."""
     data = {
         "format": FORMAT,
         "v": VERSION,

@@ -75,7 +75,7 @@ class Constraint(Condition):
         return replace(self, is_detached=True)
 
     def where(self, predicate: Predicate) -> Constraint:
-        """Accept a spike only if ``predicate(payload)`` is true. Adds ln 2 to the utility (L9).
+        """Accept a spike only if ``predicate(payload)`` is true. The predicate adds ln 2 to the utility (L9).
 
         Args:
             predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule.

@@ -34,7 +34,7 @@ class SignalOptions(TypedDict, total=False):
 
 @dataclass(slots=True, eq=False, repr=False)
 class Signal(Condition, Generic[T]):
-    """A named kind of event; ``Signal[T]`` carries a payload of type T. Made by ``module.signal(...)``.
+    """A named kind of event, made by ``module.signal(...)``. ``Signal[T]`` carries a payload of type T.
 
     Attributes:
         name: The qualified name, ``module:name``.

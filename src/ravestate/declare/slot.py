@@ -35,7 +35,7 @@ class Entry(NamedTuple):
 
 
 class Slot(Generic[T]):
-    """A value slot. Made by ``module.slot(...)``; its signal is ``.changed`` (payload: the new value).
+    """A value slot, made by ``module.slot(...)``. Its signal is ``.changed`` (payload: the new value).
 
     Attributes:
         name: The qualified name, ``module:name``.

@@ -63,7 +63,7 @@ class Layout:
     Attributes:
         boxes: Node's id → the node's box.
         lines: For each edge, in the order of the diagram, the points of its line from source to target.
-        labels: For each edge the box of its label; None if the edge has no label.
+        labels: For each edge, the box of its label; None if the edge has no label.
         width: The width of the picture.
         height: The height of the picture.
     """

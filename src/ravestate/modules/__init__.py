@@ -15,7 +15,7 @@ from ravestate.errors import nearest
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
-    from ravestate.modules.platform import conio, telegramio, voiceio, webio
+    from ravestate.modules.platform import conio, matrixio, telegramio, voiceio, webio
     from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "hibye",
     "idle",
     "interloc",
+    "matrixio",
     "nlp",
     "ontology",
     "persqa",
@@ -45,6 +46,7 @@ BUILT_IN = {
     "voiceio": "platform",
     "webio": "platform",
     "telegramio": "platform",
+    "matrixio": "platform",
     "rawio": "modality",
     "interloc": "modality",
     "emotion": "modality",

@@ -1,6 +1,10 @@
-"""Public helpers for tests. `simulate` runs modules in virtual time; `talk` holds a spoken conversation in it."""
+"""Public helpers for tests: `simulate` runs modules in virtual time, `talk` holds a spoken conversation in it.
 
+A platform's tests run `CHECKS`.
+"""
+
+from ravestate.testing.platforms import CHECKS, Driver, echo
 from ravestate.testing.simulation import Simulation, simulate
 from ravestate.testing.talking import Said, talk
 
-__all__ = ["Said", "Simulation", "simulate", "talk"]
+__all__ = ["CHECKS", "Driver", "Said", "Simulation", "echo", "simulate", "talk"]

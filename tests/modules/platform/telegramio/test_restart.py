@@ -27,10 +27,8 @@ async def repeat(ctx):
 """
 
 
-@contextlib.asynccontextmanager
-async def agent(bot: Bot, folder: Path) -> AsyncGenerator[asyncio.subprocess.Process]:
-    """An agent in a process of its own."""
-    (folder / "parrot.py").write_text(PARROT)
+async def start(bot: Bot, folder: Path, module: str) -> asyncio.subprocess.Process:
+    """Start an agent with a module in a process of its own."""
     environment = {
         **os.environ,
         "RAVESTATE_TELEGRAMIO_TOKEN": bot.token,
@@ -38,9 +36,16 @@ async def agent(bot: Bot, folder: Path) -> AsyncGenerator[asyncio.subprocess.Pro
         "RAVESTATE_TELEGRAMIO_PATH": str(folder / "chats.sqlite"),
         "RAVESTATE_TELEGRAMIO_RATE": "1000",
     }
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "ravestate", "run", "telegramio", str(folder / "parrot.py"), env=environment
+    return await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "ravestate", "run", "telegramio", module, env=environment
     )
+
+
+@contextlib.asynccontextmanager
+async def agent(bot: Bot, folder: Path) -> AsyncGenerator[asyncio.subprocess.Process]:
+    """A parrot in a process of its own, killed at the end."""
+    (folder / "parrot.py").write_text(PARROT)
+    process = await start(bot, folder, str(folder / "parrot.py"))
     try:
         yield process
     finally:
@@ -50,17 +55,17 @@ async def agent(bot: Bot, folder: Path) -> AsyncGenerator[asyncio.subprocess.Pro
 
 
 def crowd(first: int, last: int) -> list[dict[str, object]]:
-    return [{"chat": chat, "text": f"{n} of {chat}"} for n in range(first, last) for chat in range(1, 41)]
+    return [{"chat": chat, "text": f"{n} of {chat}"} for n in range(first, last) for chat in range(1, 21)]
 
 
 def whole(last: int) -> list[str]:
-    return sorted(f"{chat}: {n} of {chat}" for n in range(last) for chat in range(1, 41))
+    return sorted(f"{chat}: {n} of {chat}" for n in range(last) for chat in range(1, 21))
 
 
 def in_order(said: list[str]) -> bool:
     return all(
         [each for each in said if each.startswith(f"{chat}: ")] == [f"{chat}: {n} of {chat}" for n in range(6)]
-        for chat in range(1, 41)
+        for chat in range(1, 21)
     )
 
 
@@ -74,15 +79,15 @@ def test_the_agent_is_killed_and_nothing_is_lost_or_doubled(own_telegram: Telegr
             await bot.do("crowd", messages=crowd(0, 2))
             for n in (2, 4):
                 async with agent(bot, tmp_path) as process:
-                    await bot.said(chance.randrange(5, 60) + 80 * (n // 2 - 1))
+                    await bot.said(chance.randrange(3, 30) + 40 * (n // 2 - 1))
                     writing = asyncio.create_task(bot.do("crowd", messages=crowd(n, n + 2)))
                     process.send_signal(signal.SIGKILL)
                     await process.wait()
                     await writing
             async with agent(bot, tmp_path):
-                await bot.said(240)
+                await bot.said(120)
                 await bot.say(99, "the last")
-                said = (await bot.said(241))[:240]
+                said = (await bot.said(121))[:120]
             assert sorted(said) == whole(6)
             assert in_order(said)
 
@@ -99,12 +104,12 @@ def test_the_server_is_killed_and_nothing_is_lost_or_doubled(own_telegram: Teleg
             async with agent(bot, tmp_path):
                 for n in (0, 2, 4):
                     await bot.do("crowd", messages=crowd(n, n + 2))
-                    await bot.said(chance.randrange(5, 60) + 40 * n)
+                    await bot.said(chance.randrange(3, 30) + 20 * n)
                     own_telegram.kill()
                     own_telegram.start()
-                await bot.said(240)
+                await bot.said(120)
                 await bot.say(99, "the last")
-                said = await bot.said(241)
+                said = await bot.said(121)
             assert sorted(each for each in said if each != "99: the last") == whole(6)
             assert in_order([each for each in said if each != "99: the last"])
 
@@ -121,6 +126,6 @@ def test_an_agent_that_ends_in_order_leaves_nothing_behind(own_telegram: Telegra
             process.send_signal(signal.SIGINT)
             assert await process.wait() == 0
         async with agent(bot, tmp_path):
-            assert sorted(await bot.said(80)) == whole(2)
+            assert sorted(await bot.said(40)) == whole(2)
 
     asyncio.run(test())

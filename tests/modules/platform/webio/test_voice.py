@@ -100,6 +100,15 @@ async def test_words_that_are_spoken_show_as_captions_then_as_a_message_before_t
 
 
 @in_virtual_time
+async def test_the_page_learns_each_time_that_the_agent_listens() -> None:
+    async with calling() as (_, caller):
+        await caller.until("listening")
+        caller.tell("microphone", on=False)
+        caller.tell("microphone", on=True)
+        await caller.until("listening")
+
+
+@in_virtual_time
 async def test_the_answer_is_sent_ahead_of_the_loudspeaker_by_a_second_at_most() -> None:
     async with calling() as (_, caller):
         caller.speak()
@@ -322,7 +331,7 @@ def test_frames_with_half_samples_or_too_many_are_refused(size: int) -> None:
     async def test() -> None:
         async with calling() as (_, caller):
             caller.send(b"\x70" * size)
-            frame = await caller.next()
+            frame = await caller.until("error")
             assert (frame["type"], frame["code"]) == ("error", "malformed")
             assert f"not {size:,} bytes" in frame["text"]
             caller.speak()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .addressing import command_in, for_another, mentions, without_mention
+from .addressing import command_in, for_another, is_emoji, mentions, without_mention
 from .chat import Chat
 from .commands import COMMANDS, Command
 from .messages import Carrier, DeliveryError, Incoming, Outgoing, Person
@@ -31,6 +31,7 @@ __all__ = [
     "command_in",
     "connect",
     "for_another",
+    "is_emoji",
     "mentions",
     "secret",
     "without_mention",

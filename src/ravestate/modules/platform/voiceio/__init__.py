@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import rules as rules
+from .manner import Prosody
 from .names import (
     Settings,
     agent_speaking,
@@ -19,8 +20,7 @@ from .names import (
     user_speaking,
     utterance,
 )
-from .prosody import Prosody
-from .utterance import Utterance
+from .utterances import Utterance
 from .voice_notes import speak, synthesise, transcribe
 
 __all__ = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,7 @@ class Activity:
 
     def probability(self, chunk: Samples) -> float:
         """Return the probability that the next `CHUNK` samples are speech."""
-        sound = chunk.astype(np.float32) / 32768
+        sound: NDArray[np.float32] = chunk.astype(np.float32) / np.float32(32768)
         given = np.concatenate([self._last, sound])[None, :]
         found, self._h, self._c = self._session.run(None, {"input": given, "h": self._h, "c": self._c})
         self._last = sound[-_CONTEXT:]
@@ -72,9 +73,8 @@ def _session() -> Any:
 
 def session(file: Path) -> Any:
     """Return an ONNX model that runs in one thread."""
-    import onnxruntime
-
-    options: Any = onnxruntime.SessionOptions()
+    onnxruntime: Any = import_module("onnxruntime")  # it has no types
+    options = onnxruntime.SessionOptions()
     options.inter_op_num_threads = options.intra_op_num_threads = 1
     options.log_severity_level = 3
     try:

@@ -1,4 +1,4 @@
-"""What speech needs on this machine, and what is there."""
+"""The parts of speech on this machine: which are there, and how to get the others."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def _echo(settings: Settings) -> Line:
 
 
 def _devices(settings: Settings) -> list[Line]:
-    from .conversation import is_file
+    from .opening import is_file
 
     lines: list[Line] = []
     try:

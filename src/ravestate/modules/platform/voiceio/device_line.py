@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import threading
 from collections.abc import AsyncIterator
+from importlib import import_module
 from typing import Any
 
 from ravestate.errors import PlatformError
@@ -165,14 +166,13 @@ def portaudio() -> Any:
         PlatformError: The package or the library PortAudio is missing.
     """
     try:
-        import sounddevice
+        return import_module("sounddevice")  # it has no types
     except ImportError as error:
         raise PlatformError("voiceio needs sounddevice: pip install 'ravestate[voice]'") from error
     except OSError as error:
         raise PlatformError(
             "voiceio needs PortAudio: apt-get install libportaudio2 (or brew install portaudio)"
         ) from error
-    return sounddevice
 
 
 def restart() -> None:

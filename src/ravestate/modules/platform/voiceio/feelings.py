@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ravestate as rs
 
+from .manner import FEELINGS, Prosody
 from .names import module, prosody
-from .prosody import FEELINGS, Prosody
 
 LASTS = 15.0
 """The seconds for which a feeling is audible."""

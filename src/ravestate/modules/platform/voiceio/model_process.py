@@ -113,6 +113,7 @@ class ModelProcess:
                 start_new_session=True,
             )
         except OSError as error:
+            self._end()
             raise PlatformError(f"voiceio: cannot start {self._python!r} for {self.kind}: {error}") from error
         assert self._process.stdin is not None and self._process.stdout is not None
         os.set_blocking(self._process.stdin.fileno(), False)
@@ -121,7 +122,9 @@ class ModelProcess:
         answer, _ = self._exchange(self._config, b"", LOADING)
         if "error" in answer:
             self._end()
-            raise PlatformError(f"voiceio: cannot load {self.kind}: {answer['error']}. {_remedy(self.kind)}")
+            raise PlatformError(
+                f"voiceio: cannot load {self.kind}: {answer['error']}{_remedy(self.kind, answer['error'])}"
+            )
 
     def _exchange(self, header: Mapping[str, Any], data: bytes, seconds: float) -> tuple[dict[str, Any], bytes]:
         end = monotonic() + seconds
@@ -197,12 +200,12 @@ def _wait(pipe: int, event: int, end: float) -> None:
             raise TimeoutError
 
 
-def _remedy(kind: str) -> str:
+def _remedy(kind: str, reason: str) -> str:
     if kind == "espeak":
-        return "Install it: apt-get install espeak-ng (or brew install espeak-ng)"
+        return ": apt-get install espeak-ng (or brew install espeak-ng)" if "not installed" in reason else ""
     if kind == "piper":
-        return "Set it up with `make voice`, or take another voice: --set voiceio.voice=espeak"
-    return "See what is missing: ravestate voice check"
+        return ". Set it up with `make voice`, or take another voice: --set voiceio.voice=espeak"
+    return ". See what is missing: ravestate voice check"
 
 
 # ------------------------------------------------------------------------------------- sharing

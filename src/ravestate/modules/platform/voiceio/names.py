@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, cast
 
 from pydantic import ConfigDict, Field
 
 import ravestate as rs
 from ravestate.modules import rawio, verbaliser
 
-from .prosody import Prosody
-from .utterance import Utterance
+from .manner import Prosody
+from .utterances import Utterance
 
 if TYPE_CHECKING:
-    from .conversation import Conversation
     from .mouth import Speech
+    from .opening import Conversation
 
 Seconds = Annotated[float, Field(ge=0)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -64,7 +64,7 @@ class Settings(rs.Settings):
     complete: Share = 0.5
     """The probability of a complete turn (smart-turn) above which the melody sounds finished."""
 
-    ask_back_below: Share = 0.35
+    ask_back_below: Share = 0.38
     """The recogniser's confidence below which the agent asks back."""
     back_channel: Seconds = 1.0
     """Seconds of the user's speech after which it is no mere "mhm": the agent gives way."""
@@ -103,7 +103,7 @@ barge_in = module.signal("barge_in")
 held = module.flag("held")
 """True while the agent's speech is held, until it is clear whether the user interrupts."""
 
-speech: rs.Signal[Speech] = module.signal("speech", payload=object)
+speech: rs.Signal[Speech] = module.signal("speech", payload=cast("type[Speech]", object))
 """An utterance of the agent begins to be spoken; it may still grow."""
 
 prosody: rs.Slot[Prosody] = module.slot("prosody", Prosody(), type=Prosody, input=True)

@@ -18,7 +18,9 @@ _MARKS = re.compile(r"\[[^\]]*\]|\([^)]*\)|\*[^*]*\*|[♪♫]+")
 """Notes of a recogniser about sounds other than speech, such as ``[Music]`` or ``(coughs)``."""
 
 # Whisper has learnt these from the ends of films: it writes them for noise and silence.
-_PHANTOMS = frozenset({"you", "thank you", "thanks for watching", "thank you for watching", "bye", "the end", "so"})
+_PHANTOMS = frozenset(
+    {"i", "you", "thank you", "thanks for watching", "thank you for watching", "bye", "the end", "so"}
+)
 
 
 @dataclass(frozen=True, slots=True)

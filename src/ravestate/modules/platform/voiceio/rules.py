@@ -27,10 +27,10 @@ from .names import (
     user_speaking,
     utterance,
 )
-from .utterance import Utterance
+from .utterances import Utterance
 
 if TYPE_CHECKING:
-    from .conversation import Conversation
+    from .opening import Conversation
 
 DEAF = 0.25
 """half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
@@ -60,9 +60,13 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("this user has no line: their platform brings one in rawio.sound")
     if ctx[conversation] is not None:
         return rs.Resign("the line is open already")
+
+    def warn(text: str) -> None:
+        ctx.log.warning("%s", text)
+
     try:
-        parts = await asyncio.to_thread(importlib.import_module, f"{__package__}.conversation")
-        talk: Conversation = await parts.open_conversation(line, settings, lambda text: ctx.log.warning("%s", text))
+        parts = await asyncio.to_thread(importlib.import_module, f"{__package__}.opening")
+        talk: Conversation = await parts.open_conversation(line, settings, warn)
     except (PlatformError, ImportError) as error:
         fault = error if isinstance(error, PlatformError) else PlatformError(f"{error}: pip install 'ravestate[voice]'")
         if line is None:
@@ -149,7 +153,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=user_speaking.false.detached(),
     reads=conversation,
-    emits=(utterance, back_channel, false_alarm, rawio.hearing),
+    emits=(utterance, back_channel, false_alarm, barge_in, rawio.hearing),
     until=user_speaking.true,
 )
 async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -171,6 +175,8 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     talk.ear.take()
     what, text = talk.verdict(turn, found)
     if what == "utterance":
+        if talk.mouth.held:
+            ctx.emit(barge_in)
         ctx.emit(rawio.hearing, text)
         ctx.emit(utterance, Utterance(text, found.confidence, turn.start, turn.end))
     elif what == "back_channel":
@@ -259,7 +265,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     when=speech.max_age(None).detached(),
     reads=(conversation, prosody),
     writes=(agent_speaking, held, rawio.heard),
-    until=barge_in | utterance | rs.shutdown,
+    until=barge_in | utterance | rawio.hush | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
     """Speak an utterance sentence by sentence. An interruption cuts it; then the user has heard a part."""
@@ -284,7 +290,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                         else:
                             ctx[agent_speaking] = True
                     while (lead := mouth.lead) > LEAD:
-                        await ctx.sleep(lead - LEAD)
+                        await ctx.sleep(max(0.05, lead - LEAD))
                 await mouth.played_out()
                 saying.heard = saying.text
             except PlatformError as error:

@@ -104,7 +104,7 @@ def write_wav(path: Path, pcm: bytes, rate: int) -> None:
     import wave
 
     try:
-        with wave.open(str(path), "wb") as file:
+        with path.open("wb") as target, wave.open(target, "wb") as file:
             file.setnchannels(1)
             file.setsampwidth(2)
             file.setframerate(rate)

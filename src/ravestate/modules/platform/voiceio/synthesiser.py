@@ -10,9 +10,9 @@ from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 from . import model_process
 from .alignment import Word, by_phonemes, by_places
+from .manner import Prosody
 from .models import piper_python, piper_voice
 from .names import Settings
-from .prosody import Prosody
 from .sound import resample, seconds
 
 PATIENCE = 20.0

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import yaml
 
@@ -19,7 +19,8 @@ from .names import Settings
 WINDOW = 8.0
 """The last seconds of a turn, which the model of the melody hears."""
 
-_LAUGH = re.compile(r"(?:a?(?:ha|he|hi|ho|heh|hah)+h?)")
+_SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+-?)+")
+"""Laughter, and hums as a recogniser writes them: "hahaha", "mm-hmm", "m-h-m"."""
 _EDGES = ".,!?…;:\"'“”‘’()-–— "
 
 
@@ -60,22 +61,27 @@ def wanted_silence(text: str, complete: float | None, settings: Settings) -> flo
         complete: The probability of a complete melody; None without the model.
         settings: The limits.
     """
-    signs = [is_complete(text, settings.language), complete is not None and complete >= settings.complete]
-    wanted = (settings.longest_pause, settings.doubtful_pause, settings.pause)[sum(signs)]
-    return min(wanted, settings.longest_pause)
+    words = completeness(text, settings.language)
+    if words == "open":
+        return settings.longest_pause
+    sure = words == "complete" and complete is not None and complete >= settings.complete
+    return min(settings.pause if sure else settings.doubtful_pause, settings.longest_pause)
 
 
-def is_complete(text: str, language: str = "en") -> bool:
-    """Return whether words sound complete: they end neither with a comma nor with a word that needs another one.
+def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
+    """Return whether words are complete, by the last one: an article needs another word, an auxiliary verb may need one.
 
     Example:
-        >>> is_complete("I would like to go to the"), is_complete("I would like to go home.")
-        (False, True)
+        >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")
+        ('open', 'doubtful', 'complete')
     """
     text = text.strip()
-    if not text or text.endswith((",", "...", "…", "-", "—", ":")):
-        return False
-    return _bare(text.split()[-1]) not in _words(language)["unfinished"] or text.endswith(("?", "!"))
+    if not text:
+        return "complete"
+    known, last = _words(language), _bare(text.split()[-1])
+    if text.endswith((",", "...", "…", "-", "—", ":")) or (last in known["open"] and not text.endswith(("?", "!"))):
+        return "open"
+    return "doubtful" if last in known["doubtful"] and not text.endswith(("?", "!")) else "complete"
 
 
 def is_back_channel(text: str, language: str = "en") -> bool:
@@ -91,7 +97,7 @@ def is_back_channel(text: str, language: str = "en") -> bool:
     while at < len(words):
         for length in (3, 2, 1):
             phrase = " ".join(words[at : at + length])
-            if phrase in known or (length == 1 and _LAUGH.fullmatch(phrase)):
+            if phrase in known or (length == 1 and _SOUND.fullmatch(phrase)):
                 at += length
                 break
         else:
@@ -100,7 +106,7 @@ def is_back_channel(text: str, language: str = "en") -> bool:
 
 
 def is_echo(text: str, spoken: str) -> bool:
-    """Return whether at least two recognised words are a part of the agent's own words.
+    """Return whether at least three recognised words are a part of the agent's own words.
 
     Example:
         >>> is_echo("lived in a museum", "Once there was a robot. It lived in a museum.")
@@ -108,11 +114,11 @@ def is_echo(text: str, spoken: str) -> bool:
     """
     heard = [bare for word in text.split() if (bare := _bare(word))]
     own = [bare for word in spoken.split() if (bare := _bare(word))]
-    if len(heard) < 2 or not own:
+    if len(heard) < 3 or not own:
         return False
     blocks = difflib.SequenceMatcher(None, heard, own, autojunk=False).get_matching_blocks()
     longest = max(block.size for block in blocks)
-    return sum(block.size for block in blocks) >= 0.75 * len(heard) and longest >= min(3, len(heard))
+    return longest >= 2 and sum(block.size for block in blocks) >= 0.7 * len(heard)
 
 
 def _bare(word: str) -> str:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 from .names import Settings, module
-from .utterance import Utterance
+from .utterances import Utterance
 
 if TYPE_CHECKING:
     from .recogniser import Recogniser
@@ -76,15 +75,25 @@ def settings_here() -> Settings:
     return load_settings([module])[module.name]
 
 
-@lru_cache(maxsize=4)
+_recognisers: dict[str, Recogniser] = {}
+_synthesisers: dict[str, Synthesiser] = {}
+
+
 def _recogniser(settings: Settings) -> Recogniser:
+    """Return the recogniser for these settings. It stays loaded for the next note."""
     from .recogniser import Recogniser
 
-    return Recogniser(settings)
+    key = settings.model_dump_json()
+    if key not in _recognisers:
+        _recognisers[key] = Recogniser(settings)
+    return _recognisers[key]
 
 
-@lru_cache(maxsize=4)
 def _synthesiser(settings: Settings) -> Synthesiser:
+    """Return the voice for these settings. It stays loaded for the next note."""
     from .synthesiser import Synthesiser
 
-    return Synthesiser(settings)
+    key = settings.model_dump_json()
+    if key not in _synthesisers:
+        _synthesisers[key] = Synthesiser(settings)
+    return _synthesisers[key]

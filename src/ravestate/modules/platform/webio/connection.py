@@ -58,6 +58,7 @@ class Connection:
         self._note = note
         self._channel = Channel(socket, REPLIES)
         self._stream: object = None  # the stream of sound that the client knows
+        self._listens: object = None  # the line of which the client knows that the agent listens
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
 
     async def run(self) -> None:
@@ -149,7 +150,7 @@ class Connection:
         if isinstance(frame, protocol.Hush):
             session.hush()
         elif isinstance(frame, protocol.Microphone) and frame.on:
-            self._taken = None
+            self._taken = self._listens = None
             session.take_line(self)
         elif isinstance(frame, protocol.Microphone) and session.line is not None:
             session.line.leave(self)
@@ -207,6 +208,9 @@ class Connection:
             if (line, line.stream) != self._stream:
                 self._stream = line, line.stream
                 await self._send(protocol.Flush(line.stream))
+            elif line.listens and self._listens is not line:
+                self._listens = line
+                await self._send(protocol.Listening())
             elif (sound := line.fetch(self)) is not None:
                 await self._channel.send_sound(sound)
             else:

@@ -79,7 +79,8 @@ class PageLine:
         self.closed = False
         """Whether the line is closed."""
         self._on_left = on_left
-        self._taken_up = False  # whether a rule has begun to take the sound
+        self.listens = False
+        """Whether a rule has begun to take the visitor's sound. Its models may take a while to load."""
         self._waiting: deque[memoryview] = deque()
         self._queued = self._sent = self._reported = 0  # samples of the present stream
         self._earlier = 0  # samples played of the earlier streams
@@ -96,7 +97,9 @@ class PageLine:
 
     async def blocks(self) -> AsyncGenerator[bytes]:
         """Yield the visitor's sound in blocks of 20 ms, until the line is closed; while the microphone is off, none."""
-        self._taken_up = True
+        self.listens = True
+        if self.window is not None:
+            self.window.wake()
         while not self.closed:
             if len(self._heard) >= BLOCK:
                 block = bytes(self._heard[:BLOCK])
@@ -163,7 +166,7 @@ class PageLine:
             self.window.lose_sound("the microphone is on in another window")
         self.window = window
         self.stop()
-        if not self._taken_up:
+        if not self.listens:
             self._expect(DEAF, self._find_deaf)
 
     def leave(self, window: Window) -> None:
@@ -231,7 +234,7 @@ class PageLine:
         self._lose("the sound does not play")
 
     def _find_deaf(self) -> None:
-        if not self._taken_up:
+        if not self.listens:
             self._lose("the agent cannot hear at the moment")
 
     def _lose(self, why: str) -> None:

@@ -24,7 +24,7 @@ from ravestate.modules._text import printable
 
 __all__ = [
     "CLIENT", "CLOSING_CODES", "LONGEST_NAME", "LONGEST_TEXT", "SERVER", "VERSION", "Bye", "ClientFrame", "Ended",
-    "Caption", "Error", "Flush", "Heard", "Hello", "Hush", "Message", "Microphone", "Paused", "Piece", "Ping", "Played",
+    "Caption", "Error", "Flush", "Heard", "Hello", "Hush", "Listening", "Message", "Microphone", "Paused", "Piece", "Ping", "Played",
     "Pong", "ProtocolError", "Renamed", "Say", "ServerFrame", "Taken", "Typing", "Welcome", "Writing", "heard_text",
     "LONGEST_SOUND", "name_of", "parse", "serialise", "sound_of",
 ]  # fmt: skip
@@ -360,6 +360,13 @@ class Flush:
 
 
 @dataclass(frozen=True, slots=True)
+class Listening:
+    """The agent takes the sound of this window's microphone. The agent may have had to load its models first."""
+
+    type: Literal["listening"] = "listening"
+
+
+@dataclass(frozen=True, slots=True)
 class Taken:
     """This window no longer has the microphone; `text` says why."""
 
@@ -400,7 +407,20 @@ class Pong:
 
 ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush
 ServerFrame = (
-    Welcome | Renamed | Message | Piece | Typing | Paused | Caption | Heard | Flush | Taken | Ended | Error | Pong
+    Welcome
+    | Renamed
+    | Message
+    | Piece
+    | Typing
+    | Paused
+    | Caption
+    | Heard
+    | Flush
+    | Listening
+    | Taken
+    | Ended
+    | Error
+    | Pong
 )
 
 _BY_TYPE = Field(discriminator="type")

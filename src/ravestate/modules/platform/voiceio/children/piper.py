@@ -3,6 +3,7 @@
 # pyright: basic
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 STRESS = "ˈˌː"
@@ -11,13 +12,13 @@ STRESS = "ˈˌː"
 
 def load(config: dict[str, Any]) -> Any:
     """Load the voice file ``voice``; return the function that synthesises."""
-    from piper import PiperVoice, SynthesisConfig  # pyright: ignore[reportMissingImports]
-
-    voice = PiperVoice.load(config["voice"], include_alignments=True)
+    importlib.import_module("onnxruntime").set_seed(1)  # the same texts in the same order sound the same
+    piper: Any = importlib.import_module("piper")  # the environment of the rest lacks it
+    voice = piper.PiperVoice.load(config["voice"], include_alignments=True)
 
     def handle(header: dict[str, Any], _: bytes) -> tuple[dict[str, Any], bytes]:
         normal = voice.config.length_scale or 1.0
-        style = SynthesisConfig(
+        style = piper.SynthesisConfig(
             length_scale=normal / header["rate"],
             noise_scale=min(1.0, 0.667 * header["range"]),
             noise_w_scale=0.8,

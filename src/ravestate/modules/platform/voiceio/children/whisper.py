@@ -31,6 +31,7 @@ def load(config: dict[str, Any]) -> Any:
 
     model = WhisperModel(config["path"], device="auto", compute_type="default" if config["exact"] else "int8",
                          cpu_threads=config["threads"], local_files_only=True)  # fmt: skip
+    suppressed: Any = get_suppressed_tokens  # its types are wrong
     tokenizers: dict[str, Tokenizer] = {}
 
     def tokenizer_of(language: str) -> Tokenizer:
@@ -57,7 +58,7 @@ def load(config: dict[str, Any]) -> Any:
             max_length=224,
             return_scores=True,
             return_no_speech_prob=True,
-            suppress_tokens=get_suppressed_tokens(tokenizer, [-1]),
+            suppress_tokens=suppressed(tokenizer, [-1]),
         )[0]
         tokens = result.sequences_ids[0]
         return {

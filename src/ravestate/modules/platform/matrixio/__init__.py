@@ -1,0 +1,8 @@
+"""Matrix: each room of an account is a conversation of its own with the agent."""
+
+from __future__ import annotations
+
+from .names import Settings, chat, command, module
+from .serving import serve
+
+__all__ = ["Settings", "chat", "command", "module", "serve"]

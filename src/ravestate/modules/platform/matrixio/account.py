@@ -1,0 +1,189 @@
+"""The account: it logs in, joins the rooms that it is invited to, and gives their messages to `Room`."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import sys
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from nio import (  # pyright: ignore[reportMissingTypeStubs]
+    AsyncClient,
+    AsyncClientConfig,
+    ErrorResponse,
+    Event,
+    InviteMemberEvent,
+    MatrixRoom,
+    MegolmEvent,
+    RoomMemberEvent,
+    SyncResponse,
+)
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats import Incoming, Person, Room, back_off
+
+from .carrier import LOST, MatrixCarrier
+from .events import incoming
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from .names import Settings
+
+POLL = 30_000  # the milliseconds for which the server holds a request for events, if there are none
+PAGE = 100  # the number of events of a room in one answer
+DEVICE = "RAVESTATE"  # always the same, so that the server knows a message that is repeated after a restart
+REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
+FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
+
+log = logging.getLogger("ravestate.matrixio")
+
+
+async def run(agent: Agent, settings: Settings) -> None:
+    """Serve the account's rooms until cancelled."""
+    config = AsyncClientConfig(max_limit_exceeded=0, max_timeouts=0, request_timeout=20)
+    client = AsyncClient(settings.homeserver.rstrip("/"), settings.user, device_id=DEVICE, config=config)
+    try:
+        await _log_in(client, settings)
+        async with Room(agent, "matrixio", MatrixCarrier(client), client.user_id) as room:
+            sys.stdout.write(f"{client.user_id} is on Matrix (Ctrl-C ends it)\n")
+            sys.stdout.flush()
+            await Inlet(client, room, settings).run()
+    finally:
+        await client.close()
+
+
+async def _log_in(client: AsyncClient, settings: Settings) -> None:
+    """Log in; wait until the server answers."""
+    attempt = 0
+    while True:
+        try:
+            if settings.token:
+                client.access_token = settings.token.get_secret_value()
+                answer: Any = await client.whoami()
+            else:
+                assert settings.password is not None  # `serve` has checked it
+                answer = await client.login(settings.password.get_secret_value(), device_name="Ravestate")
+        except LOST as error:
+            why: object = type(error).__name__
+        else:
+            if not isinstance(answer, ErrorResponse):
+                client.user_id = answer.user_id
+                return
+            if answer.status_code in REFUSED:
+                raise PlatformError(
+                    f"matrixio: {settings.homeserver} refuses the account: check matrixio.user with "
+                    f"RAVESTATE_MATRIXIO_PASSWORD, or RAVESTATE_MATRIXIO_TOKEN ({answer.message})"
+                )
+            why = answer.message
+        if attempt in (0, 5):
+            log.warning("%s does not answer (%s); trying again", settings.homeserver, why)
+        await asyncio.sleep(back_off(attempt))
+        attempt += 1
+
+
+class Inlet:
+    """Takes events from the server, and gives them to a room of chats."""
+
+    def __init__(self, client: AsyncClient, room: Room, settings: Settings) -> None:
+        self._client = client
+        self._room = room
+        self._settings = settings
+        self._warned: set[str] = set()
+
+    async def run(self) -> None:
+        """Take events until cancelled."""
+        attempt, first = 0, True
+        while True:
+            since = self._room.store.noted("since")
+            try:
+                answer: Any = await self._client.sync(
+                    timeout=0 if first else POLL, sync_filter=FILTER, since=since, full_state=first
+                )
+                if isinstance(answer, SyncResponse):
+                    await self._take(answer, since)
+                    attempt, first = 0, False
+                    continue
+                why: object = answer
+                if answer.status_code in REFUSED:
+                    raise PlatformError("matrixio: the server has ended the login: start again, or renew the token")
+            except LOST as error:
+                why = repr(error)
+            log.log(logging.WARNING if attempt == 3 else logging.INFO, "no events: %s", why)
+            await asyncio.sleep(back_off(attempt))
+            attempt += 1
+
+    async def _take(self, answer: SyncResponse, since: str | None) -> None:
+        """Take the events of an answer, and note the position after them in the same transaction."""
+        messages: list[Incoming] = []
+        rooms: Any = answer.rooms  # its types are not complete
+        for id, info in rooms.join.items():
+            events: list[Event] = info.timeline.events
+            if info.timeline.limited and since is not None:
+                events = [*await self._missed(id, info.timeline.prev_batch, since), *events]
+            room = self._client.rooms.get(id)
+            if room is not None and (since is not None or self._invited(events)):
+                messages += self._read(room, events)
+        nobody = Person(self._client.user_id)
+        for id in rooms.leave:
+            messages.append(Incoming(key=f"left {answer.next_batch} {id}", chat=id, id="", kind="left", person=nobody))
+        for id, invitation in rooms.invite.items():
+            await self._join(id, invitation.invite_state)
+        self._room.receive(messages, ("since", answer.next_batch))
+
+    async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
+        """Return the events that do not fit into an answer, because there are too many."""
+        found: list[Event] = []
+        while start:
+            page: Any = await self._client.room_messages(room, start, end, limit=PAGE)
+            if isinstance(page, ErrorResponse) or not page.chunk:
+                break
+            found += page.chunk
+            start = page.end
+        return found[::-1]
+
+    def _invited(self, events: Iterable[Event]) -> bool:
+        return any(self._is_invitation(event) for event in events)
+
+    def _is_invitation(self, event: Event) -> bool:
+        me = self._client.user_id
+        return isinstance(event, RoomMemberEvent) and event.state_key == me and event.membership == "invite"
+
+    def _read(self, room: MatrixRoom, events: Iterable[Event]) -> list[Incoming]:
+        """Return the messages in a room's events; those before the agent's invitation do not count."""
+        me = self._client.user_id
+        names = {room.user_name(me) or "", *self._room.called}
+        messages: list[Incoming] = []
+        for event in events:
+            if self._is_invitation(event):
+                messages.clear()
+            if isinstance(event, MegolmEvent):
+                self._warn(room.room_id, "is encrypted: its messages cannot be read")
+            try:
+                message = incoming(event, room, me, names)
+            except Exception:
+                log.exception("an event cannot be read, and is left out")
+                continue
+            if message is None:
+                continue
+            if self._settings.allows(event.sender, room.room_id):
+                messages.append(message)
+            else:
+                self._warn(event.sender, "is not in matrixio.allow, and gets no answer")
+        return messages
+
+    async def _join(self, room: str, state: Iterable[Any]) -> None:
+        me = self._client.user_id
+        hosts = [e.sender for e in state if isinstance(e, InviteMemberEvent) and e.state_key == me]
+        if not self._settings.allows(room, *hosts):
+            self._warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
+            return
+        answer: Any = await self._client.join(room)
+        if isinstance(answer, ErrorResponse):
+            log.warning("room %s cannot be joined: %s", room, answer)
+
+    def _warn(self, concerned: str, what: str) -> None:
+        if concerned not in self._warned:
+            self._warned.add(concerned)
+            log.warning("%s %s", concerned, what)

@@ -1,0 +1,103 @@
+"""The carrier: it sends messages to Matrix rooms, and fetches files."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import io
+from collections.abc import Generator
+from typing import Any
+
+import aiohttp
+from nio import AsyncClient, ErrorResponse  # pyright: ignore[reportMissingTypeStubs]
+
+from ravestate.modules.platform.chats import DeliveryError, Outgoing, is_emoji
+from ravestate.modules.platform.chats.voice import spoken
+
+GONE = ("M_FORBIDDEN", "M_NOT_FOUND")
+FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
+LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
+"""The failures after which a request may have reached the server."""
+
+WRITING = 5000  # the milliseconds for which a room shows that the agent is writing
+
+
+class MatrixCarrier:
+    """Sends messages from an account; see `Carrier`. A homeserver ignores a message whose id it knows."""
+
+    longest = 16_000  # the limit of an event is 64 kB
+    rate = 50.0
+
+    def __init__(self, client: AsyncClient) -> None:
+        self._client = client
+
+    def trace(self, chat: str) -> str:
+        """Return nothing: the server itself knows a repeated message."""
+        return ""
+
+    def can_react(self, emoji: str) -> bool:
+        """Return whether a text is one emoji. Matrix takes any."""
+        return is_emoji(emoji)
+
+    async def send(self, message: Outgoing, again: bool) -> str:
+        """Send a message, and return its id; a repeated message gets the id that it has."""
+        with _delivery():
+            kind, content = await self._content(message)
+            answer: Any = await self._client.room_send(message.chat, kind, content, tx_id=message.key)
+        return str(_checked(answer).event_id)
+
+    async def _content(self, message: Outgoing) -> tuple[str, dict[str, Any]]:
+        """Return the type and the content of the event for a message."""
+        text, to = message.text, message.to
+        if message.kind == "reaction":
+            return "m.reaction", {"m.relates_to": {"rel_type": "m.annotation", "event_id": to, "key": text}}
+        content: dict[str, Any] = {"msgtype": "m.text", "body": text}
+        if message.kind == "edit":
+            change = {"rel_type": "m.replace", "event_id": to}
+            return "m.room.message", {**content, "body": f"* {text}", "m.new_content": content, "m.relates_to": change}
+        if message.kind == "picture":
+            url = await self._upload(message.data, "image/png")
+            content = {"msgtype": "m.image", "body": text or "picture", "url": url}
+        elif message.kind == "voice" and (note := await spoken(text)) is not None:
+            url = await self._upload(note, "audio/ogg")
+            content = {"msgtype": "m.audio", "body": text, "url": url, "org.matrix.msc3245.voice": {}}
+        if to:
+            content["m.relates_to"] = {"m.in_reply_to": {"event_id": to}}
+        return "m.room.message", content
+
+    async def _upload(self, data: bytes, type: str) -> str:
+        answer: Any
+        answer, _ = await self._client.upload(io.BytesIO(data), content_type=type, filesize=len(data))
+        return str(_checked(answer).content_uri)
+
+    async def fetch(self, file: str) -> bytes:
+        """Return the bytes of a file."""
+        with _delivery():
+            client: Any = self._client
+            answer = await client.download(file)
+        return bytes(_checked(answer).body)
+
+    async def show_work(self, chat: str) -> None:
+        """Show in the room that the agent is writing."""
+        with _delivery():
+            await self._client.room_typing(chat, True, timeout=WRITING)
+
+
+def _checked(answer: Any) -> Any:
+    """Return an answer, or raise the `DeliveryError` that it stands for."""
+    if not isinstance(answer, ErrorResponse):
+        return answer
+    code = str(answer.status_code)
+    if code == "M_LIMIT_EXCEEDED":
+        raise DeliveryError(str(answer), wait=(answer.retry_after_ms or 5000) / 1000)
+    raise DeliveryError(str(answer), gone=code in GONE, final=code in FINAL, unsure=True)
+
+
+@contextlib.contextmanager
+def _delivery() -> Generator[None]:
+    """Turn the errors of the connection into a `DeliveryError`."""
+    try:
+        yield
+    except LOST as error:
+        unsure = not isinstance(error, aiohttp.ClientConnectorError)
+        raise DeliveryError(f"{type(error).__name__}: {error}", unsure=unsure) from None

@@ -1,0 +1,69 @@
+"""Events: the messages in a Matrix room, as `Room` takes them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from nio import Event, MatrixRoom, ReactionEvent, RoomMessage, RoomMessageAudio, RoomMessageImage  # pyright: ignore[reportMissingTypeStubs]
+
+from ravestate.modules.platform.chats import Incoming, Person, command_in, mentions, without_mention
+from ravestate.modules.platform.chats.messages import Said
+
+SPOKEN = ("m.text", "m.emote")
+"""The types of messages with words for the agent. Other bots write notices, which must not be answered."""
+
+QUOTE = re.compile(r"\A(?:> .*\n)+\n?")
+"""The quotation of another message before a reply, as older clients write it."""
+
+
+def incoming(event: Event, room: MatrixRoom, me: str, names: Iterable[str]) -> Incoming | None:
+    """Return the message in an event; None if it does not concern the agent.
+
+    Args:
+        event: The event.
+        room: The room of the event.
+        me: The agent's own id.
+        names: The agent's names. In a group, a message with one of them is for the agent.
+    """
+    if event.sender == me:
+        return None
+    person = Person(event.sender, room.user_name(event.sender))
+    group = room.member_count > 2
+    if isinstance(event, ReactionEvent):
+        return _made(event, room, event.reacts_to, "reaction", person, event.key, group=group)
+    if not isinstance(event, RoomMessage):
+        return None
+    content: dict[str, Any] = event.source["content"]
+    id, kind = event.event_id, "text"
+    relation: dict[str, Any] = content.get("m.relates_to") or {}
+    if relation.get("rel_type") == "m.replace":
+        content, id, kind = content["m.new_content"], str(relation["event_id"]), "edit"
+    body = str(content.get("body", ""))
+    whole, text = body, QUOTE.sub("", body)
+    command = command_in(text)
+    called: dict[str, Any] = content.get("m.mentions") or {}
+    mentioned = me in called.get("user_ids", ())
+    if group and not (command or mentioned or mentions(whole, (me, *names))):
+        return None
+    for each in (me, f"@{me[1:].partition(':')[0]}"):
+        text = without_mention(text, each)
+    if kind == "edit":
+        return _made(event, room, id, "edit", person, text, group=group) if content.get("msgtype") in SPOKEN else None
+    if isinstance(event, RoomMessageImage):
+        caption = text if content.get("filename", body) != body else ""
+        return _made(event, room, id, "picture", person, caption, event.url, group)
+    if isinstance(event, RoomMessageAudio):
+        return _made(event, room, id, "voice", person, "", event.url, group)
+    if content.get("msgtype") not in SPOKEN or not text.strip():
+        return None
+    return _made(event, room, id, "command" if command else "text", person, command or text, group=group)
+
+
+def _made(
+    event: Event, room: MatrixRoom, id: str, kind: Said, person: Person, text: str, file: str = "", group: bool = False
+) -> Incoming:
+    return Incoming(
+        key=event.event_id, chat=room.room_id, id=id, kind=kind, person=person, text=text, file=file, group=group
+    )

@@ -1,0 +1,38 @@
+"""Serving an agent on Matrix, from its login to its end."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+from typing import TYPE_CHECKING, cast
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats import secret
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+    from .names import Settings
+
+
+async def serve(agent: Agent) -> None:
+    """Serve the agent in the rooms of its Matrix account, until cancelled; then end the conversations in order.
+
+    Raises:
+        PlatformError: The account is missing or refused, or a package is missing.
+    """
+    settings = cast("Settings", agent.settings["matrixio"])
+    secrets = [each.get_secret_value() for each in (settings.token, settings.password) if each]
+    if not any(secrets) or not (settings.token or settings.user):
+        raise PlatformError(
+            "matrixio needs an account: --set matrixio.homeserver=https://... --set matrixio.user=@robin:museum.example, "
+            "and export RAVESTATE_MATRIXIO_PASSWORD=... (or RAVESTATE_MATRIXIO_TOKEN=... alone)"
+        )
+    try:
+        await asyncio.to_thread(importlib.import_module, "nio")
+    except ImportError as error:
+        raise PlatformError(f"matrixio needs {error.name}: pip install 'ravestate[matrix]'") from error
+    from .account import run
+
+    with secret(*secrets):
+        await run(agent, settings)

@@ -1,0 +1,136 @@
+"""Checks that every platform for conversations passes: order, separate users, restarts.
+
+A platform's test runs each check against the platform, with the agent `echo` and a `Driver`:
+
+```python
+@pytest.mark.parametrize("check", CHECKS)
+def test_the_platform_conforms(check):
+    asyncio.run(check(MyDriver()))
+```
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncGenerator, Awaitable, Callable
+from typing import Protocol
+
+import ravestate as rs
+from ravestate.modules import rawio
+
+PATIENCE = 60.0
+"""The seconds that a check may take."""
+
+USERS = ("ada", "bob", "cleo", "dora", "emil")
+
+echo = rs.Module("echo", requires=(rawio,))
+"""The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""
+
+_count = echo.slot("count", 0)
+
+
+@echo.rule(when=rawio.input.changed, writes=(rawio.output, _count))
+async def repeat(ctx: rs.RuleContext) -> None:
+    """Repeat the user's words, or say how many messages came in this context."""
+    text = ctx.payload(rawio.input.changed)
+    ctx[_count] = ctx[_count] + 1
+    ctx[rawio.output] = str(ctx[_count]) if text == "count" else text
+
+
+class Driver(Protocol):
+    """The users of a platform on which `echo` runs. Each check gets a new driver, so all users are new.
+
+    Use it as an async context manager: it starts the agent on entry, and ends it on exit.
+    """
+
+    async def __aenter__(self) -> object:
+        """Start the platform with the agent."""
+        ...
+
+    async def __aexit__(self, *_: object) -> None:
+        """End the platform."""
+        ...
+
+    async def say(self, user: str, text: str) -> None:
+        """Say something as a user, also while the agent is down."""
+        ...
+
+    async def read(self, user: str, count: int) -> list[str]:
+        """Wait until a user has received `count` messages from the agent; return all that they have received."""
+        ...
+
+    async def kill(self) -> None:
+        """End the agent without warning, as a crash does. If it keeps nothing in files, cut the users' connections."""
+        ...
+
+    async def restart(self) -> None:
+        """Start the agent again after `kill`, or connect the users again."""
+        ...
+
+
+async def check_answer(driver: Driver) -> None:
+    """Check that a message gets an answer with the same text, whatever its characters."""
+    texts = ["Hello", "Grüß dich, 世界! 🎈", "two\nlines", "<b>&amp;</b> *bold* `code`", "x" * 3000]
+    async with _limited(driver):
+        for n, text in enumerate(texts, start=1):
+            await driver.say("ada", text)
+            said = await driver.read("ada", n)
+            _agree(said, texts[:n])
+
+
+async def check_order(driver: Driver) -> None:
+    """Check that the messages of a user are answered in order."""
+    texts = [f"message {n}" for n in range(12)]
+    async with _limited(driver):
+        for text in texts:
+            await driver.say("ada", text)
+        _agree(await driver.read("ada", len(texts)), texts)
+
+
+async def check_users(driver: Driver) -> None:
+    """Check that users who write at once get their own answers alone, each from a context of their own."""
+    async with _limited(driver):
+        for n in range(3):
+            await asyncio.gather(*(driver.say(user, f"{n} of {user}") for user in USERS))
+        for user in USERS:
+            _agree(await driver.read(user, 3), [f"{n} of {user}" for n in range(3)])
+            await driver.say(user, "count")
+            _agree((await driver.read(user, 4))[3:], ["4"])
+
+
+async def check_restart(driver: Driver) -> None:
+    """Check that messages from before, during and after a crash are answered once, and in order."""
+    texts: dict[str, list[str]] = {user: [] for user in USERS}
+
+    async def say_all(round: str) -> None:
+        for user in USERS:
+            texts[user].append(f"{round} of {user}")
+        await asyncio.gather(*(driver.say(user, texts[user][-1]) for user in USERS))
+
+    async with _limited(driver):
+        for n in range(2):
+            await say_all(f"before {n}")
+            await driver.read(USERS[n], 2 * n + 1)
+            await driver.kill()
+            await say_all(f"during {n}")
+            await driver.restart()
+        await say_all("after")
+        for user in USERS:
+            _agree(await driver.read(user, len(texts[user])), texts[user])
+
+
+CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (check_answer, check_order, check_users, check_restart)
+"""All checks of a platform, each an async function of a driver."""
+
+
+@contextlib.asynccontextmanager
+async def _limited(driver: Driver) -> AsyncGenerator[None]:
+    """Enter a driver, for at most `PATIENCE` seconds."""
+    async with driver, asyncio.timeout(PATIENCE):
+        yield
+
+
+def _agree(found: list[str], wanted: list[str]) -> None:
+    if found != wanted:
+        raise AssertionError(f"the user should have received {wanted}, and has received {found}")

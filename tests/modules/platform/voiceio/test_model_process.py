@@ -1,0 +1,129 @@
+"""A model's process: it answers, reports faults, and is replaced when it hangs or dies."""
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.voiceio import model_process
+from ravestate.modules.platform.voiceio.model_process import ModelProcess
+
+BACKEND = """
+import os, threading
+
+def load(config):
+    if config.get("broken"):
+        raise ValueError("the file is damaged")
+    print("a library prints")
+
+    def handle(header, data):
+        if header["do"] == "hang":
+            threading.Event().wait(60)
+        if header["do"] == "die":
+            os._exit(3)
+        if header["do"] == "fail":
+            raise ValueError("too loud")
+        return {"pid": os.getpid(), "said": header["do"]}, data[::-1]
+
+    return handle
+"""
+
+
+@pytest.fixture
+def children(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with the real server of requests and a backend that obeys."""
+    (tmp_path / "serve.py").write_text((model_process.CHILDREN / "serve.py").read_text(encoding="utf-8"))
+    (tmp_path / "obedient.py").write_text(BACKEND)
+    monkeypatch.setattr(model_process, "CHILDREN", tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def process(children: Path) -> Iterator[ModelProcess]:
+    one = ModelProcess("obedient", {})
+    yield one
+    one.close()
+
+
+def test_it_answers_with_data_of_any_size(process: ModelProcess) -> None:
+    data = bytes(range(256)) * 4000  # more than a pipe holds
+    answer, back = process.request({"do": "turn"}, data, seconds=20)
+    assert answer["said"] == "turn" and back == data[::-1]
+    assert process.request({"do": "again"}, seconds=20)[0]["pid"] == answer["pid"] == process.pid
+
+
+def test_a_fault_is_reported_and_the_process_lives(process: ModelProcess) -> None:
+    with pytest.raises(PlatformError, match="obedient failed: ValueError: too loud"):
+        process.request({"do": "fail"}, seconds=20)
+    pid = process.pid
+    assert process.request({"do": "go on"}, seconds=20)[0]["pid"] == pid
+
+
+def test_a_process_that_hangs_is_replaced(process: ModelProcess) -> None:
+    process.start()
+    hanging = process.pid
+    with pytest.raises(PlatformError, match=r"did not answer within 0\.2 s"):
+        process.request({"do": "hang"}, seconds=0.2)
+    answer, _ = process.request({"do": "go on"}, seconds=20)
+    assert answer["pid"] != hanging
+    assert hanging is not None
+    with pytest.raises(ProcessLookupError):
+        os.kill(hanging, 0)
+
+
+def test_a_stopped_process_is_replaced_even_if_it_does_not_read(process: ModelProcess) -> None:
+    process.start()
+    assert process.pid is not None
+    os.kill(process.pid, signal.SIGSTOP)
+    with pytest.raises(PlatformError, match="did not answer"):
+        process.request({"do": "turn"}, bytes(1 << 20), seconds=0.2)
+    assert process.request({"do": "turn"}, b"ab", seconds=20)[1] == b"ba"
+
+
+def test_a_process_that_dies_is_replaced(process: ModelProcess) -> None:
+    with pytest.raises(PlatformError, match="exit code 3"):
+        process.request({"do": "die"}, seconds=20)
+    assert process.request({"do": "go on"}, seconds=20)[0]["said"] == "go on"
+    assert process.pid is not None
+    os.kill(process.pid, signal.SIGKILL)
+    process._process.wait()  # type: ignore[union-attr]
+    assert process.request({"do": "and on"}, seconds=20)[0]["said"] == "and on"
+    assert process.restarts == 1
+
+
+def test_a_model_that_cannot_be_loaded_says_why(children: Path) -> None:
+    process = ModelProcess("obedient", {"broken": True})
+    with pytest.raises(PlatformError, match="cannot load obedient: ValueError: the file is damaged"):
+        process.start()
+    process.close()
+
+
+def test_an_interpreter_that_is_missing_is_named(children: Path) -> None:
+    with pytest.raises(PlatformError, match="cannot start '/none/python'"):
+        ModelProcess("obedient", {}, "/none/python").start()
+
+
+def test_a_closed_process_refuses(process: ModelProcess) -> None:
+    process.start()
+    pid = process.pid
+    process.close()
+    with pytest.raises(PlatformError, match="is closed"):
+        process.start()
+    assert pid is not None
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+def test_users_of_the_same_model_share_its_process(children: Path) -> None:
+    one, two = model_process.take("obedient", {"a": 1}), model_process.take("obedient", {"a": 1})
+    other = model_process.take("obedient", {"a": 2})
+    assert one is two is not other
+    one.start()
+    model_process.drop(one)
+    assert one.pid is not None
+    model_process.drop(two)
+    model_process.drop(other)
+    assert one.pid is None

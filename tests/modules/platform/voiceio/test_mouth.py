@@ -1,0 +1,168 @@
+"""The mouth: text that grows, what was heard of it, and holding and going on."""
+
+import asyncio
+
+import pytest
+
+from modules.platform.voiceio.test_wav_line import run
+from ravestate.modules.platform.voiceio.alignment import by_places
+from ravestate.modules.platform.voiceio.mouth import Mouth, Speech
+from ravestate.modules.platform.voiceio.playout import SECOND
+from ravestate.modules.platform.voiceio.synthesiser import Spoken
+from ravestate.modules.platform.voiceio.wav_line import WavLine
+
+TEXT = "one two three four five"
+
+
+def said(text: str = TEXT, per_word: float = 0.5, level: bytes = b"\0\x10") -> Spoken:
+    """A text whose words take half a second each."""
+    words = text.split()
+    length = per_word * len(words)
+    places = [(text.index(word), number * per_word) for number, word in enumerate(words)]
+    return Spoken(
+        text,
+        level * round(length * SECOND / 2),
+        level * round(length * 16000),
+        by_places(text, places, length),
+    )
+
+
+def mouth() -> Mouth:
+    return Mouth(WavLine(None), None)  # type: ignore[arg-type]  # synthesis is not part of these tests
+
+
+@pytest.mark.parametrize(
+    ("seconds", "heard"),
+    [(0.1, ""), (0.29, ""), (0.31, "one"), (1.2, "one two"), (1.4, "one two three"), (2.4, TEXT), (9.0, TEXT)],
+)
+def test_the_heard_part_is_right_to_the_word(seconds: float, heard: str) -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(said(), 0)
+        await asyncio.sleep(0)
+        await _wait(seconds)
+        assert one.heard(TEXT) == heard
+
+    run(listen)
+
+
+async def _wait(seconds: float) -> None:
+    loop = asyncio.get_running_loop()
+    done = loop.create_future()
+    loop.call_later(seconds, done.set_result, None)
+    await done
+
+
+def test_several_sentences_add_up() -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(said("one two."), 0)
+        one.queue(said(" three four"), 8)
+        await _wait(1.4)
+        assert one.heard("one two. three four") == "one two. three"
+        await one.played_out()
+        assert one.heard("one two. three four") == "one two. three four"
+        assert asyncio.get_running_loop().time() == pytest.approx(2.0)
+
+    run(listen)
+
+
+def test_held_speech_goes_on_at_the_word_that_was_cut() -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(said(), 0)
+        await _wait(1.3)  # within "three", of which half has sounded
+        one.hold(1.3)
+        await _wait(5.0)
+        assert one.position == pytest.approx(1.3)
+        assert one.heard(TEXT) == "one two three"
+        one.release()
+        await one.played_out()
+        assert asyncio.get_running_loop().time() == pytest.approx(1.3 + 5.0 + 1.5)  # "three" once more
+        assert one.heard(TEXT) == TEXT
+
+    run(listen)
+
+
+def test_a_sentence_that_is_queued_while_the_speech_is_held_waits() -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(said("one two."), 0)
+        await _wait(0.5)
+        one.hold(0.5)
+        one.queue(said(" three four"), 8)
+        await _wait(3.0)
+        assert one.heard("one two. three four") == "one"
+        one.release()
+        await one.played_out()
+        assert one.heard("one two. three four") == "one two. three four"
+
+    run(listen)
+
+
+def test_nothing_is_heard_of_the_next_utterance_before_it_sounds() -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(said(), 0)
+        await _wait(1.0)
+        one.stop()
+        one.begin()
+        assert one.heard("other words") == ""
+        one.queue(said("other words"), 0)
+        await _wait(0.6)
+        assert one.heard("other words") == "other"
+
+    run(listen)
+
+
+def test_the_echos_reference_is_the_sound_that_plays() -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        assert one.reference(640) == bytes(640)
+        one.queue(said("one two", 0.1), 0)
+        heard = []
+        for _ in range(15):
+            await _wait(0.02)
+            heard.append(any(one.reference(640)))
+        assert heard[:10] == [True] * 10 and not any(heard[11:])
+
+    run(listen)
+
+
+def test_a_growing_text_gives_its_sentences() -> None:
+    async def listen() -> None:
+        speech, found = Speech(), list[tuple[int, str]]()
+
+        async def follow() -> None:
+            async for sentence in speech.sentences():
+                found.append(sentence)
+
+        following = asyncio.create_task(follow())
+        for piece, count in (("Once there was ", 0), ("a robot. It ", 1), ("lived in a museum.", 1)):
+            speech.grow(piece)
+            await _wait(0.1)
+            assert len(found) == count
+        speech.finish("Once there was a robot. It lived in a museum. The end.")
+        await following
+        assert "".join(text for _, text in found) == speech.text
+        assert found[1][0] == 23
+
+    run(listen)
+
+
+def test_another_text_is_spoken_from_its_beginning() -> None:
+    async def listen() -> None:
+        speech = Speech()
+        speech.grow("Once there was a robot. It")
+        sentences = speech.sentences()
+        assert (await anext(sentences))[1] == "Once there was a robot."
+        speech.finish("Good night to you.")
+        assert [text async for _, text in sentences] == ["Good night to you."]
+
+    run(listen)

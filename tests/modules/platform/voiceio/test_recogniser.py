@@ -1,0 +1,96 @@
+"""Recognition of people's speech by the real models, and what a recogniser writes for sounds that are no speech."""
+
+from pathlib import Path
+
+import pytest
+
+from modules.platform.voiceio.speech import PEOPLE, plain, word_errors
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.voiceio import Settings, recogniser, sound
+from ravestate.modules.platform.voiceio.recogniser import Recogniser
+
+LIBRIVOX = PEOPLE / "librivox"
+
+
+def transcriptions(file: Path) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if "(" in line:
+            words, _, name = line.rpartition("(")
+            found[name.rstrip(")").strip()] = words.replace("<s>", "").replace("</s>", "").strip()
+    return found
+
+
+def test_people_are_understood() -> None:
+    small = Recogniser(Settings(model="tiny.en"))
+    wrong = total = 0
+    for name, wanted in list(transcriptions(LIBRIVOX / "transcription").items())[:3]:
+        found = small.recognise(sound.decode(LIBRIVOX / f"{name}.wav", 16000))
+        wrong += word_errors(wanted.replace("mister", "mr"), found.text)
+        total += len(plain(wanted))
+        assert found.confidence > 0.5
+    assert wrong / total < 0.15
+    small.close()
+
+
+def test_a_grammar_understands_commands_and_refuses_other_words() -> None:
+    commands = Recogniser(Settings(recogniser="grammar", model=str(PEOPLE / "goforward.gram")))
+    forward = commands.recognise(sound.resample((PEOPLE / "goforward.raw").read_bytes(), 16000, 16000))
+    assert forward.text == "go forward ten meters" and forward.confidence > 0.8
+    other = commands.recognise(sound.decode(PEOPLE / "cards" / "005.wav", 16000))
+    assert not other.text or other.confidence < 0.2
+    commands.close()
+
+
+def test_a_missing_grammar_is_named(tmp_path: Path) -> None:
+    with pytest.raises(PlatformError, match=r"needs a grammar file .* not 'none\.gram'"):
+        Recogniser(Settings(recogniser="grammar", model="none.gram"))
+
+
+def test_a_grammar_with_a_fault_is_told(tmp_path: Path) -> None:
+    (tmp_path / "bad.gram").write_text("#JSGF V1.0; grammar bad; public <x> = xyzzyq;")
+    broken = Recogniser(Settings(recogniser="grammar", model=str(tmp_path / "bad.gram")))
+    with pytest.raises(PlatformError, match="cannot load grammar"):
+        broken.load()
+    broken.close()
+
+
+def test_a_missing_model_is_told_with_its_remedy() -> None:
+    with pytest.raises(PlatformError, match=r"no model 'huge'; there are: .*ravestate voice get huge"):
+        Recogniser(Settings(model="huge"))
+
+
+@pytest.mark.parametrize(
+    ("text", "confidence", "no_speech", "kept"),
+    [
+        ("Hello there.", 0.9, 0.0, "Hello there."),
+        ("[Music] Hello", 0.9, 0.0, "Hello"),
+        ("(coughs)", 0.9, 0.1, ""),
+        ("♪ ♪", 0.9, 0.1, ""),
+        ("Thank you.", 0.9, 0.7, ""),
+        ("Thank you.", 0.9, 0.1, "Thank you."),
+        ("you", 0.3, 0.2, ""),
+        ("something unclear", 0.4, 0.8, ""),
+        (" . ", 0.9, 0.0, ""),
+    ],
+)
+def test_notes_about_sounds_are_no_words(text: str, confidence: float, no_speech: float, kept: str) -> None:
+    assert recogniser._cleaned(text, confidence, no_speech).text == kept
+
+
+def test_a_second_attempt_follows_a_crash(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = Recogniser(Settings(model="tiny.en"))
+    attempts: list[bool] = []
+
+    def request(*_: object, **__: object) -> tuple[dict[str, object], bytes]:
+        attempts.append(True)
+        if len(attempts) == 1:
+            raise PlatformError("the process ended")
+        return {"text": "Hello.", "confidence": 0.9, "no_speech": 0.0}, b""
+
+    monkeypatch.setattr(one.process, "request", request)
+    assert one.recognise(b"").text == "Hello." and len(attempts) == 2
+    attempts.clear()
+    with pytest.raises(PlatformError):
+        one.recognise(b"", partial=True)
+    one.close()

@@ -1,0 +1,261 @@
+"""Spoken conversations between recordings and agents, in virtual time."""
+
+from __future__ import annotations
+
+import wave
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import ravestate as rs
+from modules.platform.voiceio.speech import (
+    FAST,
+    STORY,
+    Scripted,
+    noise,
+    spoken,
+    storyteller,
+    track,
+    wav,
+)
+from ravestate.errors import PlatformError
+from ravestate.modules import idle, rawio, voiceio
+from ravestate.modules.platform.voiceio import opening
+from ravestate.testing import Said, talk
+
+WHOLE = "".join(STORY)
+TELL = (0.5, "Please tell me a story.")
+
+
+def script(monkeypatch: pytest.MonkeyPatch, *texts: str | Exception, confidence: float = 0.9) -> Scripted:
+    """Recognise these texts, whatever the sound."""
+    one = Scripted(*texts, confidence=confidence)
+    monkeypatch.setattr(opening, "Recogniser", one)
+    return one
+
+
+def sides(said: list[Said], speaker: str) -> list[str]:
+    return [one.text for one in said if one.speaker == speaker]
+
+
+def settings(**changed: Any) -> dict[str, dict[str, Any]]:
+    return {"voiceio": {**FAST["voiceio"], **changed}}
+
+
+def loud(file: Path, begin: float, end: float) -> bool:
+    """Whether the loudspeaker sounds in this time."""
+    with wave.open(str(file)) as out:
+        sound = np.frombuffer(out.readframes(out.getnframes()), "<i2").astype(int)
+    part = sound[round(begin * 24000) : round(end * 24000)]
+    return bool(len(part)) and int(np.abs(part).max()) > 300
+
+
+def test_a_question_is_answered(tmp_path: Path) -> None:
+    """The real recogniser hears the user, and hears the agent in the loudspeaker's file."""
+    heard: list[voiceio.Utterance] = []
+    module = rs.Module("listener", requires=[voiceio])
+
+    @module.rule(when=voiceio.utterance.max_age(None).detached(), reads=rawio.input, background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        heard.append(ctx.payload(voiceio.utterance))
+
+    del note
+    file = wav(tmp_path / "in.wav", track(TELL, length=2.5))
+    said = talk(file, tmp_path / "out.wav", storyteller(), module, settings=settings(voice="piper"))
+    assert [one.speaker for one in said] == ["user", "agent"]
+    assert "story" in said[0].text.lower() and said[1].text == WHOLE and not said[1].cut
+    assert heard[0].confidence > 0.45
+    assert (heard[0].start, heard[0].end) == pytest.approx((0.5, 1.8), abs=0.25)
+    assert said[1].start - said[0].end < 1.0
+    assert not loud(tmp_path / "out.wav", 0.0, said[1].start) and loud(tmp_path / "out.wav", said[1].start, said[1].end)
+    back = voiceio.transcribe(tmp_path / "out.wav", voiceio.Settings(model="tiny.en")).text.lower()
+    assert "museum" in back and "cat" in back
+
+
+def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = wav(tmp_path / "in.wav", track(TELL, (5.0, "No, stop."), length=8.0))
+    runs = []
+    for number in range(2):
+        script(monkeypatch, "Tell me a story.", "No, stop.")
+        said = talk(file, tmp_path / f"{number}.wav", storyteller(), settings=FAST)
+        runs.append((said, (tmp_path / f"{number}.wav").read_bytes()))
+    assert runs[0] == runs[1]
+
+
+def test_the_user_interrupts_and_the_agent_stops_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Tell me a story.", "Stop, that is enough.")
+    file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))
+    said = talk(file, tmp_path / "out.wav", storyteller(), settings=FAST)
+    story, *_, end = [one for one in said if one.speaker == "agent"]
+    assert story.cut and WHOLE.startswith(story.text) and 8 < len(story.text.split()) < 25
+    assert story.end <= 5.3 and not loud(tmp_path / "out.wav", 5.3, 5.5)
+    assert end.text == "Good night."
+
+
+@pytest.mark.parametrize("sound", ["Yes.", "Yeah, okay.", "cough"])
+def test_a_back_channel_or_a_cough_does_not_stop_the_agent(
+    sound: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(monkeypatch, "Tell me a story.", "" if sound == "cough" else sound)
+    fade = np.exp(-np.arange(5600) / 1600)
+    cough = (np.frombuffer(noise(0.35, 9000), "<i2") * fade).astype("<i2").tobytes()
+    pcm = track(TELL, (5.0, cough if sound == "cough" else sound), length=8.0)
+    said = talk(wav(tmp_path / "in.wav", pcm), tmp_path / "out.wav", storyteller(), settings=FAST)
+    assert sides(said, "agent") == [WHOLE]
+    assert sides(said, "user") == ["Tell me a story."]
+
+
+def test_a_false_alarm_resumes_where_it_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Tell me a story.", "")
+    file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Some words that nobody understands"), length=8.0))
+    flags: list[tuple[float, bool]] = []
+
+    def record(one: Any) -> None:
+        if type(one).__name__ == "SlotWritten" and one.slot == "voiceio:held":
+            flags.append((one.at, one.value))
+
+    said = talk(file, tmp_path / "out.wav", storyteller(), settings=settings(back_channel=5.0), record=record)
+    (story,) = [one for one in said if one.speaker == "agent"]
+    assert story.text == WHOLE and not story.cut
+    assert not loud(tmp_path / "out.wav", 5.4, 6.2) and loud(tmp_path / "out.wav", 7.2, 9.0)
+
+
+def test_a_long_interruption_stops_the_agent_before_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Tell me a story.", "no")
+    file = wav(
+        tmp_path / "in.wav",
+        track(TELL, (5.0, "I do not want to hear any more of this story because I know it already."), length=10.0),
+    )
+    stopped: list[float] = []
+    module = rs.Module("listener", requires=[voiceio])
+
+    @module.rule(when=voiceio.barge_in.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        stopped.append(ctx.now)
+
+    del note
+    talk(file, None, storyteller(), module, settings=FAST)
+    assert len(stopped) == 1 and 6.0 < stopped[0] < 6.5
+
+
+def test_what_was_heard_comes_after_each_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Tell me a story.", "Stop.")
+    heard: list[str] = []
+    module = rs.Module("listener", requires=[rawio])
+
+    @module.rule(when=rawio.heard.changed.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        heard.append(ctx.payload(rawio.heard.changed))
+
+    del note
+    file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop."), length=8.0))
+    talk(file, None, storyteller(), module, settings=FAST)
+    assert len(heard) == 2
+    assert WHOLE.startswith(heard[0]) and heard[0] != WHOLE and heard[1] == "Good night."
+    assert voiceio.heard is rawio.heard
+
+
+def test_low_confidence_asks_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Tell my a storage", confidence=0.2)
+    said = talk(wav(tmp_path / "in.wav", track(TELL, length=3.0)), None, storyteller(), settings=FAST)
+    (answer,) = sides(said, "agent")
+    assert any(word in answer for word in ("catch", "again", "repeat"))
+
+
+def test_a_filler_is_spoken_when_the_answer_takes_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Think about it, please.")
+    file = wav(tmp_path / "in.wav", track((0.5, "Think about it, please."), length=3.0))
+    said = talk(file, None, storyteller(slow=3.0), settings=FAST)
+    filler, answer = [one for one in said if one.speaker == "agent"]
+    assert filler.filler and filler.text in voiceio.Settings().fillers and not answer.filler
+    script(monkeypatch, "Think about it, please.")
+    assert sides(talk(file, None, storyteller(slow=0.5), settings=FAST), "agent") == ["Good night."]
+
+
+def test_a_pause_within_a_sentence_is_no_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scripted = script(monkeypatch, "I would like to hear a", "I would like to hear a good story.")
+    file = wav(tmp_path / "in.wav", track((0.5, "I would like to hear a"), (2.4, "good story."), length=4.0))
+    said = talk(file, None, storyteller(), settings=FAST)
+    assert sides(said, "user") == ["I would like to hear a good story."]
+    assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the whole turn was heard
+
+
+def test_captions_show_the_words_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "I", "I would", "I would like a story.")
+    seen: list[str] = []
+    module = rs.Module("listener", requires=[rawio])
+
+    @module.rule(when=rawio.hearing.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        seen.append(ctx.payload(rawio.hearing))
+
+    del note
+    file = wav(tmp_path / "in.wav", track((0.5, "I would like to hear one of your very long stories."), length=5.0))
+    talk(file, None, storyteller(), module, settings=settings(captions=0.8))
+    assert seen[:2] == ["I", "I would"] and seen[-1] == "I would like a story."
+
+
+def test_half_duplex_is_deaf_while_it_speaks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scripted = script(monkeypatch, "Tell me a story.", "Stop.")
+    file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))
+    said = talk(file, None, storyteller(), settings=settings(half_duplex=True))
+    assert sides(said, "agent") == [WHOLE] and len(scripted.heard) == 1
+
+
+def test_a_recogniser_that_fails_makes_the_agent_ask_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, PlatformError("whisper did not answer"), "Tell me a story.")
+    file = wav(tmp_path / "in.wav", track(TELL, (5.0, TELL[1]), length=8.0))
+    said = talk(file, None, storyteller(), settings=FAST)
+    ask, story = sides(said, "agent")
+    assert any(word in ask for word in ("catch", "again", "repeat")) and story == WHOLE
+
+
+def test_silence_and_noise_are_nobodys_turn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scripted = script(monkeypatch, "Hello?")
+    assert talk(wav(tmp_path / "in.wav", noise(5.0, 2000)), None, storyteller(), settings=FAST) == []
+    assert scripted.heard == []
+
+
+def test_the_agent_is_not_bored_while_it_speaks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "Tell me a story.")
+    bored: list[float] = []
+    module = rs.Module("watcher", requires=[idle])
+
+    @module.rule(when=idle.bored.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        bored.append(ctx.now)
+
+    del note
+    file = wav(tmp_path / "in.wav", track(TELL, length=20.0))
+    said = talk(file, None, storyteller(), module, settings={**FAST, "idle": {"bored_after": 3.0}})
+    story = said[-1]
+    assert bored and not any(story.start < time < story.end + 2.9 for time in bored)
+
+
+def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A platform with many users, such as the web page, brings a line for each of them."""
+    from ravestate.modules.platform.voiceio.wav_line import WavLine
+    from ravestate.testing import simulate
+
+    script(monkeypatch, "Tell me a story.")
+
+    async def serve(_: Any) -> None: ...
+
+    platform = rs.Module("page", requires=[rawio], serve=serve)
+    with simulate(storyteller(), platform, voiceio, settings=FAST) as sim:
+        sim.advance(3.0)
+        assert sim.read(voiceio.conversation) is None and not sim.failures
+        line = WavLine(wav(tmp_path / "in.wav", track(TELL, length=2.0)))
+        sim.put(rawio.sound, line)
+        sim.advance(20.0)
+        assert sim.said == [WHOLE] and sim.read(rawio.heard) == WHOLE
+        sim.put(rawio.sound, None)
+        assert sim.read(voiceio.conversation) is None
+
+
+def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:
+    file = wav(tmp_path / "in.wav", spoken("Hello."))
+    with pytest.raises(PlatformError, match="ravestate voice get huge"):
+        talk(file, None, storyteller(), settings=settings(model="huge"))

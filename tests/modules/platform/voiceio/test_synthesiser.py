@@ -1,0 +1,60 @@
+"""Voices: sound with the times of its words, prosody, and messages about missing parts."""
+
+import itertools
+
+import pytest
+
+from modules.platform.voiceio.speech import voice
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.voiceio import Prosody, Settings, models
+from ravestate.modules.platform.voiceio.synthesiser import Synthesiser
+
+TEXT = "Once upon a time there was a robot with 25 friends."
+
+
+@pytest.mark.parametrize("name", ["espeak", "piper"])
+def test_words_have_times_in_the_sound(name: str) -> None:
+    spoken = voice(name).speak(TEXT)
+    length = len(spoken.sound) / 48000
+    assert 2.0 < length < 6.0
+    assert len(spoken.reference) / 32000 == pytest.approx(length, abs=0.02)
+    assert [TEXT[word.begin : word.end] for word in spoken.words] == TEXT.split()
+    times = [word.time for word in spoken.words]
+    assert times == sorted(times) and times[0] < 0.3 and length - times[-1] > 0.2
+    assert all(later - earlier > 0.03 for earlier, later in itertools.pairwise(times))
+    assert times[9] + 0.3 < times[10]  # a number takes long
+
+
+@pytest.mark.parametrize("name", ["espeak", "piper"])
+def test_prosody_changes_the_speed(name: str) -> None:
+    normal, slow = (len(voice(name).speak(TEXT, Prosody(rate=rate)).sound) for rate in (1.0, 0.7))
+    assert slow > 1.15 * normal
+
+
+def test_prosody_changes_the_pitch_of_espeak() -> None:
+    low, high = (voice("espeak").speak("Oh!", Prosody(pitch=pitch)).sound for pitch in (0.8, 1.3))
+    assert low != high
+
+
+def test_a_voice_that_is_missing_is_named() -> None:
+    with pytest.raises(PlatformError, match="has no voice 'en_US-nobody'"):
+        Synthesiser(Settings(voice="en_US-nobody"))
+    nobody = Synthesiser(Settings(voice="espeak:xx-none"))
+    with pytest.raises(PlatformError, match="has no voice 'xx-none'"):
+        nobody.load()
+    nobody.close()
+
+
+def test_without_piper_espeak_speaks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ravestate.modules.platform.voiceio.synthesiser.piper_python", lambda _: None)
+    light = Synthesiser(Settings(voice=""))
+    assert light.name == "espeak:en"
+    light.close()
+    with pytest.raises(PlatformError, match="needs Piper"):
+        Synthesiser(Settings(voice="piper"))
+
+
+def test_a_voice_is_found_by_name_and_by_file() -> None:
+    file = models.piper_voice("en_US-joe-medium")
+    assert file is not None and models.piper_voice(str(file)) == file == models.piper_voice("")
+    assert models.piper_voice("none") is None

@@ -1,0 +1,76 @@
+"""The end of a turn by its words, back-channels, and the agent's own words."""
+
+import pytest
+
+from modules.platform.voiceio.speech import spoken
+from ravestate.modules.platform.voiceio import Settings
+from ravestate.modules.platform.voiceio.models import smart_turn
+from ravestate.modules.platform.voiceio.turn import (
+    Melody,
+    completeness,
+    is_back_channel,
+    is_echo,
+    wanted_silence,
+)
+
+SETTINGS = Settings(pause=0.2, doubtful_pause=0.7, longest_pause=1.4)
+
+
+@pytest.mark.parametrize(
+    ("text", "complete", "silence"),
+    [
+        ("What time is it?", 0.9, 0.2),
+        ("What time is it?", 0.1, 0.7),
+        ("What time is it?", None, 0.7),
+        ("I think that", 0.9, 0.7),
+        ("I would like to go to the", 0.9, 1.4),
+        ("I would like a coffee,", 0.9, 1.4),
+        ("What would you like to go to?", 0.9, 0.2),
+        ("", 0.9, 0.2),
+    ],
+)
+def test_words_and_melody_decide_how_long_a_pause_may_be(text: str, complete: float | None, silence: float) -> None:
+    assert wanted_silence(text, complete, SETTINGS) == silence
+
+
+def test_no_pause_is_longer_than_the_setting() -> None:
+    quick = Settings(longest_pause=0.5)
+    assert max(wanted_silence(text, 0.1, quick) for text in ("and the", "Yes.", "I think that")) == 0.5
+
+
+def test_german_has_words_of_its_own() -> None:
+    assert completeness("Ich möchte in die", "de") == "open"
+    assert completeness("Ich möchte nach Hause.", "de") == "complete"
+    assert is_back_channel("Ja, genau.", "de") and not is_back_channel("Nein.", "de")
+
+
+@pytest.mark.parametrize(
+    "text", ["Mhm.", "Mm-hmm.", "M-H-M.", "Hmm", "Yes.", "Yeah, okay.", "Ha ha ha!", "Hahaha", "Oh, I see.", "Uh-huh."]
+)
+def test_showing_that_one_listens_is_no_interruption(text: str) -> None:
+    assert is_back_channel(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["No.", "Stop.", "Yes, but why?", "Wait", "How?", "", "Okay, now something else please"]
+)
+def test_an_interruption_is_no_back_channel(text: str) -> None:
+    assert not is_back_channel(text)
+
+
+def test_the_agents_own_words_are_known() -> None:
+    own = "Once there was a robot. It lived in a museum."
+    assert is_echo("It lived in a museum.", own)
+    assert is_echo("lived in the museum", own + " It lived in a")
+    assert not is_echo("Where did it live?", own)
+    assert not is_echo("museum", own)  # a single word may well be a question
+
+
+def test_the_melody_of_a_complete_sentence_differs() -> None:
+    file = smart_turn()
+    assert file is not None
+    melody = Melody(file)
+    rest = bytes(6400)
+    complete = [melody.complete(spoken(text) + rest) for text in ("What time is it?", "My name is Robert.")]
+    cut = [melody.complete(spoken(text) + rest) for text in ("When I was a child, I", "Yesterday I met a man who")]
+    assert min(complete) > 0.5 > max(cut)
