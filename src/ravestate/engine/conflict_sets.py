@@ -4,7 +4,7 @@ A thousand rules that hear the same signal and write the same slot would need a 
 the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
 its run resigns or fails, the next clause takes its place. To explain something, and to retire or add a rule, the queue
 is *unfolded* into ordinary activations. The number of each activation is fixed from the start, and no rival depends on
-an alternative (`find_contests`), so it does not matter when a queue unfolds.
+an alternative (`find_contests`). So it does not matter when a queue unfolds.
 """
 
 from __future__ import annotations

@@ -280,6 +280,7 @@ class Holdings(State):
     def _lose_interest(self, activation: Activation) -> None:
         """Make an activation stop waiting: changes in its groups no longer make it ask again."""
         self.waiting.pop(activation, None)
+        self._refused.pop(activation, None)
         for hope in activation.hopes:
             hoping = self.hoping.get(hope)
             if hoping is not None:

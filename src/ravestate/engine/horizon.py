@@ -51,7 +51,7 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups on whose state the latest results depend.
-        hopes: What else the results depend on: pairs of a kind and the number of a rule or a signal.
+        hopes: Pairs of a kind and the number of a rule or signal: changes of these may change the results.
         recheck: The time at which a spike that a result depends on grows too old to be looked at (seconds).
     """
 

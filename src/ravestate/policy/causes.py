@@ -123,8 +123,7 @@ class Causes:
         return frozenset(rules)
 
     def leading_to_slots(self) -> frozenset[int]:
-        """Return the numbers of the signals from which any chain of effects leads to a rule that writes a slot, or to a
-        predicate on a slot."""
+        """Return the signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
         found = {s.index for r in self.rules for c in r.clauses for slot, _ in c.guards for s in slot.signals}
         rules = [rule for rule in self.rules if rule.slots or not found.isdisjoint(rule.raises)]
         seen = set(rules)
