@@ -143,7 +143,7 @@ def test_a_sentence_that_breaks_off_gets_time(talk: Any) -> None:
         ("are you storing everything I say?", "keeps_everything"),
         ("woohoo!!!", "cheer"),
         ("you might ask how my day was", "ask_my_day"),
-        ("why are you sorry, nobody has died", "your_mistake_hurts"),
+        ("why are you so sorry, she is fine", "your_mistake_hurts"),
     ],
 )
 def test_it_reacts_to_words_about_itself_and_the_talk(text: str, moment: str, talk: Any) -> None:
