@@ -208,6 +208,7 @@ class Chat:
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(FAREWELL):
                 await context.quiet()
+        await people.recalled(context)
         self._mute = self._gone
         self._room.called.add(context.read(interloc.agent))
         return new
