@@ -12,5 +12,6 @@ QUESTIONS = {
     "compiling": "how long does it take to compile a policy?",
     "web_users": "how long do many users of the web page wait for an answer?",
     "watching": "what does the board cost the agent?",
+    "voice": "how well does the agent listen, take turns and give way, and how long does the user wait?",
     "text_agent": "how fast and how large is the complete text agent?",
 }

@@ -41,7 +41,7 @@ class Context:
         settings: Module's name → the module's settings; they override those of the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
         patience: Seconds that a rival under pressure has to become ready (L16), if its rule sets no patience.
-        trace: True to keep records of all that happens, for ``trace`` and ``explain``; or a function to call with each.
+        trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
 
     Raises:

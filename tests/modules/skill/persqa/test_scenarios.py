@@ -349,6 +349,17 @@ def test_it_interrupts_small_talk_and_is_interrupted_by_the_user(file: Path) -> 
         assert "I see." not in sim.said
 
 
+@pytest.mark.parametrize("heard", ["whole", "half"])
+def test_a_spoken_question_counts_only_if_the_user_heard_it(file: Path, heard: str) -> None:
+    with agent(file) as sim:
+        sim.say("Hello.")
+        sim.advance(30.0)
+        question = sim.said[-1]
+        assert question.endswith("?") and sim.read(persqa.talk).question is not None
+        sim.put(rawio.heard, question if heard == "whole" else question.rsplit(maxsplit=1)[0])
+        assert (sim.read(persqa.talk).question is not None) == (heard == "whole")
+
+
 def test_boredom_and_the_users_words_at_once(file: Path) -> None:
     with agent(file) as sim:
         sim.advance(4.999)

@@ -151,6 +151,24 @@ def test_an_interrupted_answer_comes_before_the_answer_to_the_interruption() -> 
         ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("heard", "kept"),
+    [("Hello! How", ["Hello! How…"]), ("Hello! How are you?", ["Hello! How are you?"]), ("", [])],
+)
+def test_the_history_keeps_of_a_spoken_answer_what_was_heard(heard: str, kept: list[str]) -> None:
+    model = Model("Hello! ", "How are ", "you?")
+    sim = talk(model)
+    sim.say("Hi there, friend!")
+    sim.advance(5.0)
+    sim.put(rawio.heard, heard)
+    answers = [message.text for message in sim.read(wildtalk.history).values() if message.role == "assistant"]
+    assert answers == kept
+    sim.say("I did not get that, my dear friend.")
+    prompt = model.asked[-1]
+    assert [message.text for message in prompt if message.role == "assistant"] == kept
+    sim.__exit__(None, None, None)
+
+
 def test_it_stops_the_model_after_its_sentences() -> None:
     model = Model("One. ", "Two. ", "Three. ", "Four.")
     sim = talk(model, sentences=1)

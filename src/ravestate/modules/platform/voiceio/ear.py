@@ -13,6 +13,7 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 
 from .activity import CHUNK, Activity
 from .echo import FRAME
+from .leak import Leak
 from .sound import Samples, samples
 
 BEFORE = 12
@@ -82,6 +83,7 @@ class Ear:
         self._speech = speech
         self._pause = round(pause * IN_RATE / CHUNK)
         self._canceller = canceller
+        self._leak = Leak()
         self._frames = bytearray()
         self._far = bytearray()
         self._clean = bytearray()
@@ -120,21 +122,22 @@ class Ear:
     # ------------------------------------------------------------------------------- internals
 
     def _without_echo(self, block: bytes, far: bytes) -> bytes:
-        if self._canceller is None:
-            return block
         self._frames += block
         self._far += far if len(far) == len(block) else bytes(len(block))
         clean = bytearray()
         while len(self._frames) >= 2 * FRAME:
-            clean += self._canceller.clean(bytes(self._frames[: 2 * FRAME]), bytes(self._far[: 2 * FRAME]))
+            near, played = bytes(self._frames[: 2 * FRAME]), bytes(self._far[: 2 * FRAME])
             del self._frames[: 2 * FRAME], self._far[: 2 * FRAME]
+            self._leak.play(samples(played))
+            clean += near if self._canceller is None else self._canceller.clean(near, played)
         return bytes(clean)
 
     def _hear(self, chunk: bytes, now: float, agent_speaks: bool) -> Iterator[Event]:
         sound = samples(chunk)
         likely = self._activity.probability(sound)
         length = CHUNK / IN_RATE
-        is_speech = likely >= (self._speech * STAY if self.speaking else self._speech)
+        hidden = self._leak.hides(sound)
+        is_speech = likely >= (self._speech * STAY if self.speaking else self._speech) and not hidden
         self._in_a_row = self._in_a_row + 1 if is_speech else 0
         articulate = is_speech and is_articulate(sound)
         self._lately.append(articulate)

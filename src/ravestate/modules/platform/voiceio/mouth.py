@@ -18,7 +18,7 @@ from .sound import samples
 if TYPE_CHECKING:
     from .synthesiser import Spoken, Synthesiser
 
-HEARD = 0.6
+HEARD = 0.5
 """The share of a word that must have sounded for the word to count as heard."""
 QUIET = 200
 """The level of a sample below which the end of a sentence counts as silence."""

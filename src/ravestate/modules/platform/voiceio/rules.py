@@ -153,7 +153,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=user_speaking.false.detached(),
     reads=conversation,
-    emits=(utterance, back_channel, false_alarm, rawio.hearing),
+    emits=(utterance, back_channel, false_alarm, barge_in, rawio.hearing),
     until=user_speaking.true,
 )
 async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -175,6 +175,8 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     talk.ear.take()
     what, text = talk.verdict(turn, found)
     if what == "utterance":
+        if talk.mouth.held:
+            ctx.emit(barge_in)
         ctx.emit(rawio.hearing, text)
         ctx.emit(utterance, Utterance(text, found.confidence, turn.start, turn.end))
     elif what == "back_channel":

@@ -170,6 +170,18 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
+@module.rule(when=rawio.heard.changed.max_age(None).detached(), reads=rawio.output, writes=talk, background=True)
+async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Withdraw a spoken question that the user interrupted before its end: their words answer nothing."""
+    said, heard, now = ctx[rawio.output].strip(), ctx.payload(rawio.heard.changed).strip(), ctx[talk]
+    if now.question is None or not now.question.fresh:
+        return rs.Resign("no question waits for its first answer")
+    if heard == said or not said.startswith(heard) or "?" in heard:
+        return rs.Resign("the user heard the question")
+    ctx[talk] = replace(now, question=None)
+    return None
+
+
 @module.rule(
     when=interloc.users.added.max_age(None).detached(),
     reads=(ontology.memory, interloc.users),

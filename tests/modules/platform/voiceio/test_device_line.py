@@ -1,0 +1,162 @@
+"""A line to devices: PortAudio's callbacks become blocks, and an unplugged device is opened again."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from modules.platform.voiceio.test_wav_line import run
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.voiceio import device_line
+from ravestate.modules.platform.voiceio.device_line import DeviceLine
+
+
+class PortAudio:
+    """A stand-in for sounddevice, with one microphone and one loudspeaker that the test moves by hand."""
+
+    class PortAudioError(Exception):
+        pass
+
+    def __init__(self) -> None:
+        self.microphone: Any = None
+        self.loudspeaker: Any = None
+        self.broken = ""
+        self.restarts = 0
+
+    def _stream(self, rate: int, size: int, **options: Any) -> Any:
+        return Stream(self, rate, size, **options)
+
+    def RawInputStream(self, *args: Any, **options: Any) -> Any:
+        if self.broken == "microphone":
+            raise self.PortAudioError("Error querying device -1")
+        self.microphone = self._stream(*args, **options)
+        return self.microphone
+
+    def RawOutputStream(self, *args: Any, **options: Any) -> Any:
+        if self.broken == "loudspeaker":
+            raise ValueError(f"No output device matching {options['device']!r}")
+        self.loudspeaker = self._stream(*args, **options)
+        return self.loudspeaker
+
+    def _terminate(self) -> None:
+        self.restarts += 1
+
+    def _initialize(self) -> None: ...
+
+
+class Stream:
+    def __init__(self, _: PortAudio, rate: int, size: int, *, device: Any, callback: Any, channels: int, dtype: str):
+        assert (channels, dtype) == (1, "int16")
+        self.rate, self.size, self.device, self.callback = rate, size, device, callback
+        self.open = True
+
+    def start(self) -> None: ...
+
+    def abort(self) -> None: ...
+
+    def close(self) -> None:
+        self.open = False
+
+    def take(self, data: bytes) -> None:
+        self.callback(data, self.size, None, None)
+
+    def give(self) -> bytes:
+        data = bytearray(2 * self.size)
+        self.callback(data, self.size, None, None)
+        return bytes(data)
+
+
+@pytest.fixture
+def audio(monkeypatch: pytest.MonkeyPatch) -> PortAudio:
+    one = PortAudio()
+    monkeypatch.setattr(device_line, "portaudio", lambda: one)
+    return one
+
+
+def test_sound_goes_both_ways(audio: PortAudio) -> None:
+    async def follow() -> None:
+        line = DeviceLine("default", "Headset")
+        assert (audio.microphone.rate, audio.loudspeaker.rate) == (16000, 24000)
+        assert (audio.microphone.device, audio.loudspeaker.device) == (None, "Headset")
+        blocks = line.blocks()
+        audio.microphone.take(b"\1\2" * 320)
+        assert await anext(blocks) == b"\1\2" * 320
+        line.play(b"\3\4" * 700)
+        assert audio.loudspeaker.give() == b"\3\4" * 480
+        assert line.played == 480 / 24000
+        assert audio.loudspeaker.give() == (b"\3\4" * 220).ljust(960, b"\0")
+        await line.drained()
+        assert line.played == 700 / 24000
+        line.play(b"\5\6" * 2000)
+        line.stop()
+        await line.drained()
+        assert audio.loudspeaker.give() == bytes(960) and line.played == 700 / 24000
+        line.close()
+        assert [block async for block in blocks] == []
+        assert not audio.microphone.open and not audio.loudspeaker.open
+
+    run(follow)
+
+
+def test_an_unplugged_microphone_is_opened_again(audio: PortAudio) -> None:
+    async def follow() -> None:
+        line = DeviceLine()
+        first = audio.microphone
+        blocks = line.blocks()
+        first.take(bytes(640))
+        await anext(blocks)
+        audio.broken = "microphone"  # and no block comes any more
+
+        def plug_in() -> None:
+            audio.broken = ""
+
+        asyncio.get_running_loop().call_later(7.0, plug_in)
+        waiting = asyncio.ensure_future(anext(blocks))
+        while audio.microphone is first:
+            await asyncio.wait([waiting], timeout=1.0)
+        audio.microphone.take(b"\1\1" * 320)
+        assert await waiting == b"\1\1" * 320
+        assert line.lost == 1 and audio.restarts > 1 and not first.open
+        assert asyncio.get_running_loop().time() > 7.0
+        line.close()
+
+    run(follow)
+
+
+@pytest.mark.parametrize(("broken", "setting"), [("microphone", "source"), ("loudspeaker", "sink")])
+def test_a_device_that_cannot_be_opened_is_named(audio: PortAudio, broken: str, setting: str) -> None:
+    audio.broken = broken
+
+    async def follow() -> None:
+        with pytest.raises(PlatformError, match=rf"cannot open the {broken} .*voiceio\.{setting}=NAME"):
+            DeviceLine()
+
+    run(follow)
+    assert broken == "microphone" or not audio.microphone.open
+
+
+def test_a_slow_agent_loses_the_oldest_sound(audio: PortAudio) -> None:
+    async def follow() -> None:
+        line = DeviceLine()
+        for number in range(device_line.WAITING + 5):
+            audio.microphone.take(bytes([number % 250, 0]))
+        await asyncio.sleep(0)
+        assert (await anext(line.blocks()))[0] == 5
+        line.close()
+
+    run(follow)
+
+
+def test_this_machines_portaudio_answers() -> None:
+    """The real library: a machine without devices says so."""
+    audio = device_line.portaudio()
+    if len(audio.query_devices()) == 0:
+
+        async def follow() -> None:
+            with pytest.raises(PlatformError, match="ravestate voice check"):
+                DeviceLine()
+
+        run(follow)
+    device_line.restart()

@@ -1,0 +1,26 @@
+"""Floors for the shares that `benchmarks/questions/voice.py` measures in full."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[4]
+
+
+@pytest.fixture
+def voice(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.syspath_prepend(str(ROOT))
+    return import_module("benchmarks.questions.voice")
+
+
+def test_pauses_are_not_taken_for_ends_nor_ends_for_pauses(voice: Any) -> None:
+    cuts, missed, count = voice.ends_of_turns("tiny.en", 10)
+    assert count == 10 and cuts <= 0.2 and missed <= 0.1
+
+
+def test_the_agents_own_voice_is_no_utterance(voice: Any) -> None:
+    assert voice.echoes(1) == 0
