@@ -133,7 +133,7 @@ class Agenda(Slots):
         for entry in later:
             heapq.heappush(queue, entry)
         if self._refused and not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
-            best = stalemate(self, self._refused)
+            best = stalemate(self, self.waiting)
             if best is None:
                 self._refused.clear()
             else:
