@@ -69,6 +69,8 @@ class Model:
                 held = act.watch.get(clause.index, {})
                 times += [spike.born + clause.needs[n].min_age for n, spike in held.items()]
             times.append(act.due)
+        for spike in self.spikes:  # a rival in stand-by may look at it until it is too old
+            times += [spike.born + need.max_age for need in spike.signal.listeners if need.detached]
         if any(act.state == READY for act in self.acts):
             plans = [rule for rule in self.policy.rule_plans if rule.cooldown]
             times += [self.ran[r.index] + r.cooldown for r in plans if r.index in self.ran]
