@@ -255,6 +255,34 @@ def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.Mo
         assert sim.read(voiceio.conversation) is None
 
 
+def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A page brings its line in the instant in which its context begins."""
+    import asyncio
+
+    from modules.platform.voiceio.test_wav_line import run
+    from ravestate.modules.platform.voiceio.wav_line import WavLine
+
+    script(monkeypatch, "Good evening.")
+    file = wav(tmp_path / "in.wav", track((0.5, "Good evening."), length=2.0))
+    opened: list[object] = []
+
+    async def serve(_: Any) -> None: ...
+
+    platform = rs.Module("page", requires=[rawio], serve=serve)
+
+    async def follow() -> None:
+        async with rs.Context(storyteller(), platform, voiceio, settings=FAST) as context:
+            context.put(rawio.sound, WavLine(file))
+            opened.append(await context.next(voiceio.conversation.changed, timeout=5))
+            said = await context.next(rawio.output.changed, timeout=5)
+            opened.append(context.read(voiceio.conversation))
+            assert said == "Good night."
+            await asyncio.sleep(0)
+
+    run(follow)
+    assert opened[0] is opened[1]
+
+
 def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:
     file = wav(tmp_path / "in.wav", spoken("Hello."))
     with pytest.raises(PlatformError, match="ravestate voice get huge"):

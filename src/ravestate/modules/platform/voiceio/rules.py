@@ -58,8 +58,8 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
         return rs.Resign("this user has no line: their platform brings one in rawio.sound")
-    if ctx[conversation] is not None:
-        return rs.Resign("the line is open already")
+    if line is not None and ctx.payload(rawio.sound.changed) is None:
+        return rs.Resign("another run of this rule opens the line that came at once")
 
     def warn(text: str) -> None:
         ctx.log.warning("%s", text)
