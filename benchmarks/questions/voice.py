@@ -178,9 +178,8 @@ async def wait_for_answer(model: str, rounds: int) -> list[dict[str, float]]:
             await context.next(rawio.heard.changed, timeout=60)
             assert line.first is not None
             end = line.begun + 0.6 + sound.seconds(asked, rawio.IN_RATE)
-            (heard, understood), (_, judged), (asked_voice, sounded) = (
-                times[x][-1] for x in ("recognise", "complete", "speak")
-            )
+            (heard, understood), (_, judged) = times["recognise"][-1], times["complete"][-1]
+            asked_voice, sounded = times["speak"][0]  # the first sentence
             thinking = max(understood, judged) - heard
             own = (line.first - heard) - thinking - (sounded - asked_voice)
             if number:  # the first round loads everything

@@ -182,6 +182,17 @@ def test_a_pause_within_a_sentence_is_no_end(tmp_path: Path, monkeypatch: pytest
     assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the whole turn was heard
 
 
+def test_two_people_are_not_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "I would like to go to the", "I would like to go to the", "No, that is much too far.")
+    first, second = (
+        spoken("I would like to go to the", "espeak:en-us"),
+        spoken("No, that is much too far.", "espeak:en+f3"),
+    )
+    file = wav(tmp_path / "in.wav", track((0.5, first), (0.5 + len(first) / 32000 + 0.5, second), length=5.0))
+    said = [one for one in talk(file, None, storyteller(), settings=FAST) if one.speaker == "user"]
+    assert len(said) == 2 and said[0].end < said[1].start
+
+
 def test_captions_show_the_words_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "I", "I would", "I would like a story.")
     seen: list[str] = []
