@@ -46,6 +46,7 @@ help: ## this list
 
 .PHONY: demo
 demo: $(DONE)/demo $(DONE)/sentences ## set up and open a page with the agent, and what goes on inside it
+	@$(MAKE) $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
 	@$(BIN)/ravestate board $(ARGS)
 
 .PHONY: chat
@@ -111,7 +112,8 @@ format: setup ## format the code and mend what can be mended
 	@$(BIN)/ruff format --quiet .
 
 .PHONY: fuzz
-fuzz: setup $(APART) ## the property tests with fresh and many examples
+fuzz: setup $(APART) ## the engine against the interpreter of the laws on fresh random worlds; the property tests with fresh and many examples
+	@PYTHONPATH=tests $(BIN)/python -m properties.fuzz 20000
 	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
 
 .PHONY: coverage

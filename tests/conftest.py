@@ -33,6 +33,7 @@ settings.register_profile("ci", max_examples=200, derandomize=True, database=Non
 settings.register_profile("fuzz", max_examples=5_000, **_shared)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if "CI" in os.environ else "dev"))
 
+TESTS = Path(__file__).parent
 FIRST = ("quality", "end_to_end", "bridges", "modules", "examples", "cli", "repo", "board")
 """The folders with the files that take longest."""
 
@@ -41,7 +42,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Run files that take long first, so that the processes of `make test` end at about the same time."""
 
     def rank(item: pytest.Item) -> int:
-        folder = item.path.relative_to(Path(__file__).parent).parts[0]
-        return FIRST.index(folder) if folder in FIRST else len(FIRST)
+        folders = [place.name for place in item.path.parents if place.parent == TESTS]
+        return FIRST.index(folders[0]) if folders and folders[0] in FIRST else len(FIRST)
 
     items.sort(key=rank)

@@ -14,6 +14,7 @@ from websockets.sync.client import connect
 
 from board.test_trace_file import recorded
 from ravestate.cli import board, main
+from ravestate.modules.platform.voiceio import models as speech_models
 from ravestate.modules.skill.wildtalk import found_models, local_servers
 from ravestate.runtime.agent import Agent
 
@@ -106,6 +107,24 @@ def test_without_a_language_model_the_page_says_how_to_get_one(
     assert capsys.readouterr().err == f"ravestate board: s{note[1:-1]}\n"
     assert main(["board", "wildtalk", "--set", "wildtalk.base_url=http://here/v1", "--set", "wildtalk.model=big"]) == 0
     assert served[1].settings["webio"].note is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "models", "has"),
+    [([], True, True), ([], False, False), (["--without", "voiceio"], True, False), (["hibye"], True, False)],
+)
+def test_the_complete_agent_hears_where_speech_is_set_up(
+    monkeypatch: pytest.MonkeyPatch, arguments: list[str], models: bool, has: bool
+) -> None:
+    served: list[Agent] = []
+
+    async def serve(made: Agent, *_: Any) -> None:
+        served.append(made)
+
+    monkeypatch.setattr(board, "_serve", serve)
+    monkeypatch.setattr(speech_models, "whisper_models", lambda: iter([("base", Path())] if models else []))
+    assert main(["board", *arguments]) == 0
+    assert ("voiceio" in [module.name for module in served[0].policy.modules]) is has
 
 
 def test_a_recorded_trace_needs_no_agent(tmp_path: Path) -> None:

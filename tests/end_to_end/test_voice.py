@@ -11,6 +11,8 @@ from playwright.async_api import Browser, Page, expect
 
 from end_to_end.host import host
 from end_to_end.stage import PHONE, Host, Stage, on_stage
+from end_to_end.test_access import findings
+from end_to_end.test_widget import Museum
 from modules.platform.webio.ears import SAGA, WORD, babble, ears, saga, story
 from ravestate.modules import rawio
 
@@ -140,6 +142,7 @@ async def test_on_a_phone_everything_is_in_reach_of_a_finger(stage: Stage, tmp_p
             assert box["x"] >= 0
             assert box["x"] + box["width"] <= 360
         assert await page.evaluate("document.documentElement.scrollWidth") == 360
+        assert await findings(page) == []
         await expect(lines(page).nth(1)).to_be_in_viewport()
         await stop.tap()
         await expect(page.locator(".line.agent")).to_contain_text("(interrupted)")
@@ -192,6 +195,25 @@ async def test_the_window_that_turns_its_microphone_on_takes_it_from_the_other(s
         await turn_on(second)
         await expect(page.get_by_role("alert")).to_contain_text("the microphone is on in another window")
         assert line_of(served).window is not None
+
+
+@on_stage
+async def test_in_the_widget_on_another_site_one_can_speak_too(stage: Stage, tmp_path: Path) -> None:
+    async with (
+        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0)) as browser,
+        Museum().serve() as museum,
+        stage.serve(ears, story, title="Elske", origins=(museum.origin,)) as served,
+    ):
+        museum.chat = served.address
+        async with stage.open(museum.origin, browser=browser) as page:
+            button = page.get_by_role("button", name="Ask us")
+            await button.click()
+            chat = page.frame_locator("iframe[title='Ask us']")
+            await chat.get_by_role("button", name="Talk with Elske").click()
+            await expect(chat.locator(".line")).to_have_text(["You: a sound", f"Elske: {ANSWER}"])
+            await button.click()  # the chat closes, and nobody hears the visitor any more
+            await expect(chat.get_by_role("region", name="Voice")).to_have_count(0)
+            assert line_of(served).window is None
 
 
 @on_stage

@@ -138,8 +138,8 @@ def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
 
 def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another_cause() -> None:
     # L15, L16: r1 holds s0 and s1 and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
-    # consumed, and r1 lacks it: it has its patience of 1 s. But r0 did not ask again, as its group is that of s0
-    # alone. So r1 was never under pressure, and r0 waited for ever.
+    # consumed, and r1 lacks it. Its patience for s0 began at 0 s, when it lacked s1 for the first time, and is over. But
+    # r0 did not ask again, as its group is that of s0 alone, and waited for ever.
     def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
         return (tuple(Want(signal, max_age=None) for signal in signals),)
 
@@ -160,7 +160,7 @@ def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another
     )
     play = Play(world).play()
     assert runs(play) == ["r2", "r0"]
-    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("4.5 s < Run(")
+    assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("3.5 s < Run(")
     assert not play.engine.waiting
 
 
@@ -292,3 +292,173 @@ def test_replay_takes_effects_when_the_runtime_took_them() -> None:
     taken = replay(engine, [Entry(time, event) for time, event in play.journal])
     assert repr(taken) == repr(play.taken)
     assert "r3" not in runs(play)
+
+
+# ---------------------------------------------------------------------------- the engine against an interpreter of the laws
+
+
+def moments(world: World, rule: str) -> list[float]:
+    """Return when a rule was called (seconds)."""
+    lines = [line for line in Play(world).play().heard if "< Run(" in line and f"<rule m:{rule}>" in line]
+    return [float(line.split(" s ")[0]) for line in lines]
+
+
+OUT = (SlotOf(),)
+
+
+def test_an_older_activation_spares_the_younger_one_no_wait() -> None:
+    # L16: s1 comes at 0 s, s0 at 0.703 and 2.139 s. At 2.139 s r0's younger activation lacks s1 and is pressured.
+    world = World(
+        S3,
+        OUT,
+        (
+            RuleOf(when=((Want("s1"), Want("s0", min_age=1.916)),), writes=("v0",)),
+            RuleOf(when=on("s0"), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s1", 1)), (0.703, ("emit", "s0", 1)), (1.436, ("emit", "s0", 2))),
+    )
+    assert moments(world, "r0") == [pytest.approx(2.619)]
+    assert moments(world, "r1") == [pytest.approx(3.139)]
+
+
+def test_a_rule_that_the_asking_one_keeps_waiting_makes_no_rival_viable() -> None:
+    # L16: r1 would wait a second for r0, which lacks s1, which only r2 raises, which waits for r1.
+    world = World(
+        S3,
+        OUT,
+        (
+            RuleOf(when=on("s1", "s2"), writes=("v0",)),
+            RuleOf(when=on("s2"), writes=("v0",)),
+            RuleOf(when=on("s2"), writes=("v0",), emits=("s1",), detached=True),
+        ),
+        ((0.0, ("emit", "s2", 1)),),
+    )
+    assert moments(world, "r1") == [0.0]
+
+
+def test_patience_begins_when_a_rival_in_stand_by_first_hangs_on_an_input() -> None:
+    # L16: r1 raises s2 after 969 ms; r2 lacks s2 and the input s0 from the start, so r0 waits for 1 s.
+    world = World(
+        S3,
+        OUT,
+        (
+            RuleOf(when=on("s1"), writes=("v0",)),
+            RuleOf(when=on("s1"), emits=("s2",), acts=(Act(((0.969, ("emit", "s2", 1)),)),)),
+            RuleOf(when=on("s2", "s0"), writes=("v0",)),
+        ),
+        ((0.0, ("emit", "s1", 1)),),
+    )
+    assert moments(world, "r0") == [1.0]
+
+
+def test_a_rule_that_recovers_faster_from_nothing_overtakes_at_once() -> None:
+    # L15: both rules have run at 2.644 s; r1 recovers faster.
+    world = World(
+        S3,
+        OUT,
+        (
+            RuleOf(when=((Want("s0", min_age=1.925),),), writes=("v0",), cooldown=20.0),
+            RuleOf(when=on("s0"), writes=("v0",), cooldown=5.0),
+        ),
+        ((0.719, ("emit", "s0", 1)), (0.003, ("emit", "s0", 2)), (0.574, ("emit", "s0", 3))),
+    )
+    assert moments(world, "r0") == [pytest.approx(2.644)]
+    assert moments(world, "r1") == [pytest.approx(2.644), pytest.approx(2.644)]
+
+
+def test_a_rule_that_writes_nothing_frees_its_spike_when_it_starts() -> None:
+    # L10: two activations of r0 hold the first s1. When one of them starts, the other is free for the second s1.
+    world = World(
+        S3,
+        (),
+        (RuleOf(when=on("s0", "s1"), acts=(Act(seconds=2.0),)),),
+        ((0.0, ("emit", "s0", 1)), (0.0, ("emit", "s0", 2)), (0.5, ("emit", "s1", 1)), (0.5, ("emit", "s1", 2))),
+    )
+    assert moments(world, "r0") == [0.5, 1.0]
+
+
+def test_a_detached_constraint_holds_the_newest_spike_until_its_rule_runs() -> None:
+    # L19
+    world = World(
+        S3,
+        (),
+        (RuleOf(when=((Want("s0", min_age=1.0), Want("s1", detached=True)),)),),
+        ((0.0, ("emit", "s0", 1)), (0.25, ("emit", "s1", 1)), (0.25, ("emit", "s1", 2))),
+    )
+    [call] = [line for line in Play(world).play().heard if "< Run(" in line]
+    assert "'m:s1': 2" in call
+
+
+def test_a_detached_constraint_takes_a_newer_spike_as_soon_as_it_is_old_enough() -> None:
+    # L19: the second s1 is old enough at 1.25 s, the rule is kept waiting until 2 s.
+    world = World(
+        S3,
+        OUT,
+        (
+            RuleOf(when=on("s0"), writes=("v0",), weight=5.0, acts=(Act(seconds=2.0, end="resigned"),)),
+            RuleOf(when=((Want("s0"), Want("s1", min_age=1.0, detached=True)),), writes=("v0",)),
+            RuleOf(when=on("s2")),
+        ),
+        ((0.0, ("emit", "s0", 1)), (0.0, ("emit", "s1", 1)), (0.25, ("emit", "s1", 2))),
+    )
+    [call] = [line for line in Play(world).play().heard if "< Run(" in line and "<rule m:r1>" in line]
+    assert "'m:s1': 2" in call
+
+
+def test_the_signals_of_one_slot_cohere() -> None:
+    # L12: `changed` of the first write and `true` of the second are two writes.
+    world = World(
+        S3,
+        (SlotOf("flag", always=True),),
+        (RuleOf(when=(((Want("v0:changed", max_age=None), Want("v0:true", max_age=None))),)),),
+        ((0.0, ("write", "v0", False)), (0.5, ("write", "v0", True))),
+    )
+    assert moments(world, "r0") == [0.5]
+    play = Play(world).play()
+    [run] = [line for line in play.heard if "< Run(" in line]
+    assert "'m:v0:changed': True" in run
+
+
+def test_events_of_one_instant_count_in_the_order_in_which_they_arrive() -> None:
+    # L21: r0 begins after s1 is born, so s1 does not end it; the second s1 does, before r0 could end by itself.
+    world = World(
+        S3,
+        OUT,
+        (RuleOf(when=on("s0"), writes=("v0",), until=on("s1"), acts=(Act(seconds=1.0),)),),
+        ((0.0, ("emit", "s0", 1)), (0.0, ("emit", "s1", 1)), (0.0, ("emit", "s1", 2))),
+    )
+    play = Play(world).play()
+    assert [line.split(" < ")[1][:6] for line in play.heard if " < " in line and "Ended" not in line] == [
+        "Run(ru",
+        "Cancel",
+    ]
+    together = World(world.signals, world.slots, world.rules, world.inputs, together=True)
+    assert not any("Cancel" in line for line in Play(together).play().heard)
+
+
+def test_every_stalemate_of_an_instant_is_broken() -> None:
+    # L15: for each of two inputs r1 waits for r0, which r3 may help, and r3 for r2, which r1 may help.
+    world = World(
+        S3,
+        (SlotOf(), SlotOf()),
+        (
+            RuleOf(when=on("v1:changed"), writes=("v0",)),
+            RuleOf(when=on("s1"), writes=("v0",), emits=("s0",)),
+            RuleOf(when=on("s0"), writes=("v1",)),
+            RuleOf(when=on("s1"), writes=("v1",), acts=(Act(seconds=0.5),)),
+        ),
+        ((0.0, ("emit", "s1", 1)), (0.0, ("emit", "s1", 2))),
+        together=True,
+    )
+    assert moments(world, "r1") == [0.0, 0.0]
+
+
+def test_a_detached_clause_keeps_the_spike_that_another_clause_of_its_rule_runs_on() -> None:
+    # L10, L19
+    world = World(
+        S3,
+        (),
+        (RuleOf(when=((Want("s0", min_age=0.5, detached=True),), (Want("s0"),))),),
+        ((0.0, ("emit", "s0", 1)),),
+    )
+    assert moments(world, "r0") == [0.0, 0.5]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from properties.worlds import PREDICATES, Play
-from ravestate.engine.activation import NEVER, State
-from ravestate.engine.consent import ask
+from ravestate.engine.activation import State
+from ravestate.engine.consent import ask, stalemate
 from ravestate.engine.effects import Effect, Ended, Run
 
 __all__ = [
@@ -16,7 +16,6 @@ __all__ = [
     "consistent",
     "empty",
     "joined",
-    "pressed_in_time",
     "still",
     "waits_for_a_reason",
 ]
@@ -115,40 +114,11 @@ def waits_for_a_reason(play: Play) -> None:
         assert due is not None, f"{list(engine.waiting)} wait, and nothing will ever happen"
     if due is not None:
         assert due >= engine.now, f"a deadline at {due} s is past at {engine.now} s"
-    moving: set[Any] = set()
-    asked: dict[Any, Any] = {}
     for waiter in list(engine.waiting):
-        rule = waiter.clause.rule
         assert waiter.state is State.WAITING
-        if not rule.slots:
-            claimed = engine._claimed(waiter)
-            assert claimed is not None, f"{waiter} waits, and no run is on its spikes"
-            moving.add(waiter)
-            continue
-        refusal = asked[waiter] = ask(engine, waiter)
-        assert refusal, f"{waiter} waits, and no group would refuse consent"
-        for group, rival, member in refusal.pressed:
-            until = (group.pressed or {}).get(rival.index) if member is None else member.pressed
-            assert until is not None and until != NEVER, f"{waiter} waits for {rival}, which has for ever"
-            assert until > engine.now, f"{waiter} waits for {rival}, whose patience is over"
-            moving.add(waiter)
-    grew = True
-    while grew:
-        grew = False
-        for waiter, refusal in asked.items():
-            if waiter in moving:
-                continue
-            for blocker in refusal.blockers:
-                if (
-                    blocker in moving
-                    or blocker.state in (State.RUNNING, State.CANCELLING)
-                    or engine.now < blocker.ripens < NEVER
-                ):
-                    moving.add(waiter)
-                    grew = True
-    stuck = [waiter for waiter in engine.waiting if waiter not in moving]
-    # A wait for a live spike alone has no blocker: a holder of that spike must be at work, or soon be.
-    assert not stuck or engine.running or due is not None, f"{stuck} wait for nothing that moves"
+        assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
+        assert ask(engine, waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
+    assert stalemate(engine) is None, "activations wait for each other alone"
 
 
 def joined(play: Play) -> None:
@@ -170,19 +140,6 @@ def joined(play: Play) -> None:
                 assert apart or activation.id > spike.before or not engine._fits(need, spike), (
                     f"{activation} lacks {need.signal}, and does not take {spike}"
                 )
-
-
-def pressed_in_time(play: Play) -> None:
-    """Assert that no rival is under pressure past its patience (L16)."""
-    engine = play.engine
-    groups: dict[Any, None] = {}
-    for activation in play.active():
-        assert activation.pressed > engine.now, f"{activation} is pressed past its patience"
-        assert activation.state is State.GATHERING or activation.pressed == NEVER, f"{activation} is ready"
-        groups.update(dict.fromkeys(activation.firm_groups()))
-    for group in groups:
-        for clause, until in (group.pressed or {}).items():
-            assert until > engine.now, f"{engine.policy.clause_plans[clause]} is pressed past its patience"
 
 
 def still(play: Play) -> dict[str, Any]:
@@ -256,7 +213,6 @@ def bounded(play: Play) -> None:
     assert not play.engine._out, "looking has started a run"
     consistent(play.engine)
     joined(play)
-    pressed_in_time(play)
     waits_for_a_reason(play)
     engine = play.engine
     policy = engine.policy

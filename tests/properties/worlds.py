@@ -281,6 +281,8 @@ class Play:
     """A callback with each effect of a batch, before the first of them is performed."""
     budget: int = BUDGET
     """Calls of a rule after which it retires."""
+    machine: Callable[..., Any] = Counted
+    """The engine, or an interpreter in its place."""
     now: float = 0.0
     heard: list[str] = field(default_factory=list)
     taken: list[list[Effect]] = field(default_factory=list)
@@ -290,7 +292,7 @@ class Play:
     def __post_init__(self) -> None:
         if self.policy is None:
             self.names, self.policy = compiled(self.world)
-        self.engine = Counted(self.policy, patience=self.world.patience, report_ends=True)
+        self.engine: Any = self.machine(self.policy, patience=self.world.patience, report_ends=True)
         if self.traced:
             self.engine.tracer = lambda record: self.trace.append(repr(record))
         self.specs = {f"m:r{number}": rule for number, rule in enumerate(self.world.rules)}

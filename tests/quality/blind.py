@@ -69,9 +69,9 @@ def _labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) 
     return measure_labels(name, see, cases)
 
 
-def facts(kinds: Sequence[str] = ()) -> list[tuple[str, str]]:
-    """Return the sentences with the facts that may be stored, of some kinds or all."""
-    return [(row[0], row[1]) for row in rows("facts") if not kinds or row[2] in kinds]
+def facts(kinds: Sequence[str] = (), name: str = "facts") -> list[tuple[str, str]]:
+    """Return the sentences of a set with the facts that may be stored, of some kinds or all."""
+    return [(row[0], row[1]) for row in rows(name) if not kinds or row[2] in kinds]
 
 
 TRICKY = ("denied", "past", "hearsay", "conditional", "nothing", "question")
@@ -163,13 +163,13 @@ def _plain(words: str) -> str:
     return re.sub(r"^(?:an?|the|my|our|this) (?=\S)", "", words.strip())
 
 
-def measured_facts() -> list[Result]:
-    """Measure what is stored: all right, and nothing wrong in tricky sentences."""
-    seen = {text: stored(text) for text, _ in facts()}
-    right = [text for text, label in facts() if _same(label, seen[text])]
-    tricky = facts(TRICKY)
+def measured_facts(name: str = "facts") -> list[Result]:
+    """Measure what is stored: all right, and nothing wrong in tricky sentences. `name` may be a development set."""
+    cases, tricky = facts((), name), facts(TRICKY, name)
+    seen = {text: stored(text) for text, _ in cases}
+    right = [text for text, label in cases if _same(label, seen[text])]
     clean = [text for text, label in tricky if _harmless(label, seen[text])]
-    told = [case for case in facts() if case not in tricky]
+    told = [case for case in cases if case not in tricky]
     kept = [text for text, label in told if _same(label, seen[text])]
     return [
         Result("facts", len(seen), {"right": len(right) / len(seen)}),

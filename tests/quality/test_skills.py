@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from quality import followups, measure, skills
+from quality import blind, followups, measure, skills
 from quality.modules import plain
 from ravestate.modules.skill.agentqa.life_file import read_life
 
@@ -17,6 +17,12 @@ def test_the_share_right_stays_above_the_floor(name: str) -> None:
     misses = "\n  ".join(result.misses)
     print(f"{name}: {result.shares['right']:.1%} of {result.cases}\n  {misses}")
     assert result.shares["right"] >= skills.FLOORS[name], misses
+
+
+def test_what_people_tell_is_stored_and_nothing_wrong() -> None:
+    _, told, tricky = blind.measured_facts("../told_rows")
+    assert told.shares["right"] >= 0.86
+    assert tricky.shares["nothing wrong"] >= 0.95
 
 
 @pytest.mark.parametrize("name", skills.SETS)

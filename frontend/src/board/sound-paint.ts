@@ -25,8 +25,9 @@ export function paintVoice(
   const marks = trace.sound.marks[speaker];
   marks.forEach((mark, i) => {
     const x = Math.round(view.x(mark.time, width));
-    const next = marks[i + 1];
-    const end = next === undefined ? width : Math.min(width, view.x(next.time, width));
+    const band = trace.sound.bands[speaker].find((each) => each.from > mark.time);
+    const next = Math.min(marks[i + 1]?.time ?? view.right, band?.from ?? view.right);
+    const end = Math.min(width, view.x(next, width));
     if (x >= 0 && x <= width) paintMark(context, scene, mark, x, top, height, end - x - 10, shorten);
   });
 }

@@ -74,7 +74,7 @@ export class Conversation {
         this.status = status;
         if (status === "open" || status === "silent") return;
         this.typing = this.paused = false;
-        if (status === "ended") this.voice.pause("");
+        if (status !== "lost" && status !== "connecting") this.voice.pause("");
         this.voice.disconnected();
       },
     });

@@ -52,12 +52,25 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def names(options: argparse.Namespace) -> list[str]:
-    """Return the names of the complete agent's modules, except those that the options leave out."""
+def names(options: argparse.Namespace, *, voice: bool = False) -> list[str]:
+    """Return the names of the complete agent's modules, except those that the options leave out.
+
+    With `voice`, the agent also hears and speaks if speech is set up on this machine.
+    """
+    known = (*COMPLETE, "voiceio") if voice else COMPLETE
     for name in options.without:
-        if name not in COMPLETE:
-            raise UsageError(f"--without {name}: the agent has no such module{nearest(name, COMPLETE)}")
-    return [name for name in COMPLETE if name not in options.without]
+        if name not in known:
+            raise UsageError(f"--without {name}: the agent has no such module{nearest(name, known)}")
+    return [name for name in known if name not in options.without and (name != "voiceio" or _can_hear())]
+
+
+def _can_hear() -> bool:
+    """Return whether this machine has the packages and a model for speech recognition."""
+    if not all(map(find_spec, ("faster_whisper", "onnxruntime"))):
+        return False
+    from ravestate.modules.platform.voiceio.models import whisper_models
+
+    return any(whisper_models())
 
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:

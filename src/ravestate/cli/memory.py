@@ -38,7 +38,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
-    """Add the options that choose a memory. With `later`, the options follow an action, and keep earlier values."""
+    """Add the options that choose a memory.
+
+    With `later`, they stand after an action: an option left out there does not reset one given before the action.
+    """
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
         "--path", metavar="FILE", default=default, help="the memory file; by default the file in the settings"

@@ -17,7 +17,8 @@ A step that is not in the table of transitions is a bug in the engine.
 from __future__ import annotations
 
 import enum
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import EngineError
 
@@ -91,16 +92,20 @@ class Activation:
 
     ripens: float = NEVER
     """While one of its spikes is too young: the time at which all will be old enough (seconds)."""
-    pressed: float = NEVER
-    """While other activations wait for it: the time at which its patience ends (seconds; L16)."""
+    pressed: dict[Group, float] = MappingProxyType[Any, Any]({})  # type: ignore[assignment]  # replaced on first use
+    """Group in which others waited for it while it might never be ready → when its patience ends (seconds; L16)."""
     waits_for: tuple[str, ...] = ()
     """While it waits: the names of the rules that it waits for."""
     blockers: tuple[Activation, ...] = ()
     """While it waits: the live activations on whose progress its turn depends."""
     interests: tuple[Group, ...] = ()
     """While it waits: the groups whose changes concern it."""
-    speculative: bool = False
-    """Whether it waits for a rival that may never become ready, so that only the rival's patience ends the wait."""
+    firm: tuple[tuple[Activation, ...], ...] = ()
+    """While it waits: for each rival that work in progress will make ready, or not, the activations at work."""
+    hopes: tuple[tuple[int, int], ...] = ()
+    """While it waits: what else its turn depends on (`Horizon.hopes`)."""
+    bounded: bool = False
+    """Whether it waits for a taken slot, or for a rival whose patience ends the wait."""
     recheck: float = NEVER
     """While it waits: the time at which recovering utilities change the order (seconds; L9)."""
     stands_on: tuple[Spike, ...] = ()
@@ -133,6 +138,10 @@ class Activation:
         if state is None:
             raise EngineError(f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}")
         self.state = state
+
+    def patience_ends(self) -> float:
+        """Return when its patience ends first (seconds), or `NEVER`."""
+        return min(self.pressed.values(), default=NEVER)
 
     def held(self, bits: int) -> Spike | None:
         """Return a spike that the activation holds for one of the needs in `bits`, or None."""

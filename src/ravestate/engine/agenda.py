@@ -18,12 +18,12 @@ from typing import Any
 from ravestate.engine import trace
 from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
 from ravestate.engine.consent import Refusal, ask, stalemate
-from ravestate.engine.deadlines import PATIENCE, RECHECK, STANDBY, TIMEOUT
+from ravestate.engine.deadlines import PATIENCE, RECHECK, TIMEOUT
 from ravestate.engine.effects import Run
-from ravestate.engine.group import Group
-from ravestate.engine.horizon import FIRM, Horizon
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.loops import MANY, TURNS
 from ravestate.engine.slots import Slots
+from ravestate.engine.standing import Standing
 from ravestate.engine.watch import Watch
 from ravestate.errors import RuleError
 from ravestate.policy.model import Clause, RulePlan, SlotPlan
@@ -40,9 +40,9 @@ class Agenda(Slots):
         self.patience = patience
         # The activations that ask in this instant, the best first.
         self._queue: list[tuple[int, float, int, int, Activation]] = []
-        self._horizon: Horizon | None = None
         self.ran: dict[int, float] = {}
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
+        self.standing = Standing(self.ran)
         self._activity = policy.slot_of["core:activity"]
         self._pressure = policy.slot_of["core:pressure"]
 
@@ -57,36 +57,18 @@ class Agenda(Slots):
                     self._asking.pop(other, None)
                     self._refuse(other, Refusal.by(best, other))
 
-    def horizon(self) -> Horizon:
-        """Return the horizon of the engine; it stays valid until an activation starts or changes."""
-        if self._horizon is None:
-            self._horizon = Horizon(self)
-        return self._horizon
-
     def effective(self, clause: Clause) -> float:
         """Return the effective utility of a clause now (L9): utility x weight x recovery, in nats."""
-        cooldown = clause.rule.cooldown
-        if cooldown:
-            ran = self.ran.get(clause.rule.index)
-            if ran is not None and self.now - ran < cooldown:
-                return clause.base * ((self.now - ran) / cooldown)
-        return clause.base
-
-    def recovery(self, clause: Clause) -> tuple[float, float, float]:
-        """Return a clause's effective utility (nats), its slope (nats per second), and when it recovers (seconds)."""
-        rule = clause.rule
-        ran = self.ran.get(rule.index)
-        if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown:
-            return clause.base, 0.0, -NEVER
-        return self.effective(clause), clause.base / rule.cooldown, ran + rule.cooldown
+        self.standing.now = self.now
+        return self.standing.effective(clause)
 
     def order(self, activation: Activation) -> tuple[float, int, int]:
         """Return the sort key of a ready activation: greatest effective utility, then first declared, then oldest."""
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
-        """Start the ready activations that need no consent, unless a guard is false or another run is in the way."""
-        free = self._free
+        """Start the ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
+        free = sorted(self._free, key=_newest) if len(self._free) > 1 else self._free
         self._free = []
         for activation in free:
             clause = activation.clause
@@ -94,27 +76,12 @@ class Agenda(Slots):
                 continue
             if self._loops.runs > MANY and self._loops.defer(activation):
                 continue
-            if not clause.rule.slots:
-                other = self._claimed(activation)
-                if other is not None:
-                    self._refuse(activation, Refusal.by(other, activation))
-                    continue
             self._start(activation)
-
-    def _claimed(self, activation: Activation) -> Activation | None:
-        """Return a run of the same rule on a common spike, or None. Only this excludes a rule without slots (L10)."""
-        for spike in activation.firm_spikes():
-            if spike.claims is not None:
-                other = spike.claims.get(activation.clause.rule.index)
-                if other is not None:
-                    return other
-        return None
 
     def _guarded(self, activation: Activation) -> bool:
         """Return whether the activation's predicates on slots are true; if not, the activation is no longer ready."""
         clause = activation.clause
         if not all(self.holds(s, g, clause.rule) for s, g in clause.guards):
-            self._horizon = None
             self._unready(activation)
             self._update(activation)
             return False
@@ -127,7 +94,7 @@ class Agenda(Slots):
         activation sees the values that this rule writes before it suspends.
         """
         queue = self._queue
-        self._horizon = None
+        self.standing.now = self.now
         for activation in self._asking:
             heapq.heappush(queue, (*self._turn(activation), activation))
         self._asking.clear()
@@ -136,9 +103,9 @@ class Agenda(Slots):
             for group in self._dirty:
                 again.update(group.interested)
             self._dirty.clear()
-            if self._stirred:
-                again.update(self.hoping)
-                self._stirred = False
+            for hope in self._stirred:
+                again.update(self.hoping.get(hope, {}))
+            self._stirred.clear()
             for activation in again:
                 heapq.heappush(queue, (*self._turn(activation), activation))
         written: set[int] = set()
@@ -165,17 +132,17 @@ class Agenda(Slots):
                 written.update(rule.slots)
         for entry in later:
             heapq.heappush(queue, entry)
-        if self.waiting and not queue and not self._acts and not self._free:
-            best = stalemate(self, self._refused)
+        if self._refused and not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
+            best = stalemate(self)
             if best is None:
-                self._refused.clear()
+                self._refused = False
             else:
                 self._start(best)
 
     def _is_taken(self, activation: Activation) -> bool:
-        """Return whether one of the activation's slots is taken in one of its groups."""
-        slots = activation.clause.rule.slots
-        return any(slot in group.taken for group in activation.firm_groups() if group.taken for slot in slots)
+        """Return whether one of the activation's slots is taken in each of its groups."""
+        slots = activation.clause.rule.slotset
+        return all(not group.taken.keys().isdisjoint(slots) for group in activation.firm_groups())
 
     def _turn(self, activation: Activation) -> tuple[int, float, int, int]:
         """Return the activation's sort key in the queue: older causes first, and the best first within a cause."""
@@ -185,18 +152,11 @@ class Agenda(Slots):
 
     def _ask(self, activation: Activation, *, start: bool = True) -> bool:
         """Return whether an activation has consent. With consent it starts, unless `start` is false; else it waits."""
-        if not activation.clause.rule.slots:
-            free = self._claimed(activation) is None
-            if free and start:
-                self._start(activation)
-            return free
         refusal = ask(self, activation)
         if not refusal:
             if start:
                 self._start(activation)
             return True
-        for group, rival, member in refusal.pressed:
-            self._press(group, rival, member, activation)
         self._refuse(activation, refusal)
         activation.recheck = refusal.recheck
         if refusal.recheck != NEVER:
@@ -207,14 +167,17 @@ class Agenda(Slots):
         """Make an activation wait, for the reasons in `refusal`."""
         activation.step(REFUSE)
         self._lose_interest(activation)
-        self.waiting[activation] = self._refused[activation] = None
+        self.waiting[activation] = None
+        self._refused = True
         names = tuple(refusal.names)
         changed = activation.waits_for != names
         activation.waits_for = names
         activation.blockers = tuple(refusal.blockers)
-        activation.speculative = bool(refusal.pressed)
-        if refusal.hopes:
-            self.hoping[activation] = None
+        activation.firm = tuple(refusal.firm)
+        activation.bounded = refusal.pressed or refusal.taken
+        activation.hopes = tuple(refusal.hopes)
+        for hope in activation.hopes:
+            self.hoping.setdefault(hope, {})[activation] = None
         activation.interests = tuple(refusal.interests)
         for group in activation.interests:
             group.concern(activation)
@@ -227,60 +190,57 @@ class Agenda(Slots):
         names = activation.waits_for
         times: list[float] = []
         for group in activation.firm_groups():
-            times += [m.pressed for m in group.members if m.clause.rule.name in names and m.pressed != NEVER]
+            times += [m.pressed[group] for m in group.members if m.clause.rule.name in names and group in m.pressed]
             clauses = self.policy.clause_plans
-            times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names]
+            times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names and t > self.now]
         return max(times, default=None)
 
-    def _press(self, group: Group, rival: Clause, member: Activation | None, by: Activation) -> None:
-        """Put a rival under pressure, unless it is already (L16), because `by` waits for it. `member` is the rival's
-        activation, or None if the clause is in stand-by."""
-        patience = self.patience if rival.rule.patience is None else rival.rule.patience
-        until = self.now + patience
-        if member is not None:
-            if member.pressed != NEVER:
-                return
-            member.pressed = until
-            self._deadlines.add(until, PATIENCE, member)
-        else:
+    def press(
+        self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True
+    ) -> float:
+        """Return when a rival's patience in a group ends (seconds), for it may never be ready and `by` waits for it.
+
+        The first time puts the rival under pressure (L16), if `commit`. `member` is the rival's activation, or None if
+        the clause stands by.
+        """
+        table: dict[Any, float]
+        key: Any
+        if member is None:
             if group.pressed is None:
                 group.pressed = {}
-            if rival.index in group.pressed:
-                return
-            group.pressed[rival.index] = until
-            self._deadlines.add(until, STANDBY, (group, rival.index, until))
+            table, key = group.pressed, rival.index
+        else:
+            if not member.pressed:
+                member.pressed = {}
+            table, key = member.pressed, group
+        if key in table or not commit:
+            return table.get(key, -NEVER)
+        until = table[key] = self.now + (self.patience if rival.rule.patience is None else rival.rule.patience)
+        if until > self.now:
+            self._deadlines.add(until, PATIENCE, (group, rival.index if member is None else member))
         if self.tracer is not None:
             missing = rival.all_bits if member is None else member.missing
             lacks = tuple(n.signal.name for n in rival.needs if n.bit & missing)
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
+        return until
 
-    def _pressed_for_nothing(self, rival: Activation) -> bool:
-        """Return whether a rival survives the end of its patience: no activation waits for it, or work in progress may
-        still make it ready (L16)."""
-        slots = rival.clause.rule.slotset
-        groups = rival.firm_groups()
-        waited = any(
-            rival.clause.rule.name in waiter.waits_for and not waiter.clause.rule.slotset.isdisjoint(slots)
-            for group in groups
-            for waiter in group.members
-            if waiter.state == WAITING
-        )
-        if not waited:
-            return True
-        return all(Horizon(self).viable(rival.clause, rival, group, slots) == FIRM for group in groups)
+    def eliminate(self, rival: Activation) -> None:
+        """Make a rival whose patience is over give its spikes up for good (L16)."""
+        for spike in rival.firm_spikes():
+            spike.refuse(rival.clause.rule.index)
+        self._end(rival, "eliminated")
 
     def _start(self, activation: Activation) -> None:
         """Start an activation: it takes its slots in its groups, and its function runs (L17)."""
-        activation.step(GRANT)
-        self._horizon = None
-        if activation.pressed != NEVER:
-            activation.pressed = NEVER
         clause = activation.clause
         rule = clause.rule
+        activation.step(GRANT)
         if activation.interests:
             self._lose_interest(activation)
         activation.recheck = NEVER
-        activation.blockers = activation.waits_for = ()
+        if activation.pressed:
+            activation.pressed = NOTHING
+        activation.blockers = activation.waits_for = activation.firm = ()
         stands_on = activation.stands_on = activation.firm_spikes()
         if rule.slots:
             activation.groups = tuple(activation.firm_groups())
@@ -288,10 +248,7 @@ class Agenda(Slots):
                 for slot in rule.slots:
                     group.take(slot, (activation,))
         elif len(clause.needs) > 1 or len(rule.clauses) > 1:
-            for spike in stands_on:
-                if spike.claims is None:
-                    spike.claims = {}
-                spike.claims[rule.index] = activation
+            self._give_up(activation, stands_on, "consumed")  # L10
         self.running[activation.id] = activation
         loops = self._loops
         loops.runs += 1
@@ -332,6 +289,12 @@ class Agenda(Slots):
             self._set_flag(self._activity, activity)
             return True
         return False
+
+
+def _newest(activation: Activation) -> tuple[int, int, int]:
+    """Return the sort key of an activation that needs no consent: its newest spike, then the order of declaration."""
+    newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
+    return (newest, activation.clause.index, activation.id)
 
 
 def _endless(rules: Sequence[RulePlan]) -> str:

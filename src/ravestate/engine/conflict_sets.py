@@ -10,6 +10,7 @@ is fixed from the start, so it does not matter when a queue unfolds.
 from __future__ import annotations
 
 from ravestate.engine.activation import Activation
+from ravestate.engine.group import Group
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.spike import Spike
 from ravestate.policy.model import Clause, SignalPlan
@@ -25,6 +26,13 @@ class ConflictSets(Holdings):
         assert spike is not None  # it is ready, or runs
         for position in range(made, len(clauses)):
             self._activate(clauses[position], base + position + 1, spike)
+
+    def unfold_members(self, group: Group) -> None:
+        """Create the activations of the alternatives in the queues of a group's members."""
+        if self.alternatives:
+            for member in list(group.members):
+                if member in self.alternatives:
+                    self.unfold(member)
 
     def unfold_all(self) -> None:
         """Create the activations of the alternatives in all queues."""
@@ -78,5 +86,8 @@ class ConflictSets(Holdings):
     def _activate(self, clause: Clause, number: int, spike: Spike) -> Activation:
         activation = self._new_activation(clause, number)
         self._acquire(activation, clause.needs[0], spike)
+        group = spike.group.root()
+        if group.interested:
+            self._dirty[group] = None
         self._complete(activation)
         return activation

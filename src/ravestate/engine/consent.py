@@ -2,12 +2,14 @@
 
 A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause
 that writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if
-it holds a spike of the group, or if a live rule of the group may trigger it.
+it holds a spike of the group, or waits for a signal that a live rule of the group may cause.
+
+A rival that may never become ready is under pressure: it has its patience, once in each group (L16).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
@@ -25,20 +27,23 @@ class Refusal:
     Attributes:
         names: The names of the rules that the activation waits for.
         blockers: The live activations on whose progress the refusal depends.
-        pressed: (group, clause, activation or None) of each rival that may never be ready: its patience ends the wait.
-        hopes: Whether the refusal depends on live rules of other groups.
+        firm: For each rival that will be ready, or fail, by work in progress: the activations at work.
+        taken: Whether a slot is taken.
+        pressed: Whether a rival may never be ready, so that only its patience ends the wait.
+        hopes: What the refusal depends on outside its groups (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
-        recheck: The earliest time at which recovering utilities change the order (seconds); `NEVER` if none does.
+        recheck: The earliest time at which recovering utilities, or the age of a spike, may lift it (seconds).
     """
 
-    __slots__ = ("blockers", "hopes", "interests", "names", "pressed", "recheck")
+    __slots__ = ("blockers", "firm", "hopes", "interests", "names", "pressed", "recheck", "taken")
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
-        self.hopes = False
+        self.hopes: Iterable[tuple[int, int]] = ()
         self.names: dict[str, None] = {}
         self.blockers: dict[Activation, None] = {}
-        self.pressed: list[tuple[Group, Clause, Activation | None]] = []
+        self.firm: list[tuple[Activation, ...]] = []
+        self.taken = self.pressed = False
         self.recheck = NEVER
 
     @classmethod
@@ -47,6 +52,7 @@ class Refusal:
         refusal = cls()
         refusal.names[holder.clause.rule.name] = None
         refusal.blockers[holder] = None
+        refusal.taken = True
         refusal.interests = dict.fromkeys(activation.firm_groups())
         return refusal
 
@@ -54,110 +60,145 @@ class Refusal:
         return bool(self.names)
 
 
-def ask(engine: Engine, activation: Activation) -> Refusal:
-    """Ask every causal group of a ready activation for consent, and return the refusal; an empty refusal is consent."""
+def ask(
+    engine: Engine, activation: Activation, without: Collection[Activation] = (), *, commit: bool = True
+) -> Refusal:
+    """Ask every causal group of a ready activation for consent, and return the refusal; an empty refusal is consent.
+
+    Args:
+        engine: The engine.
+        activation: The activation.
+        without: Activations that count as doing nothing.
+        commit: Whether rivals come under pressure, and give up when their patience is over.
+    """
     refusal = Refusal()
     clause = activation.clause
     rule = clause.rule
+    slots = rule.slotset
+    groups = activation.firm_groups()
+    refusal.interests = dict.fromkeys(groups)
+    standing = engine.standing
     horizon: Horizon | None = None
-    for group in activation.firm_groups():
-        refusal.interests[group] = None
-        taken = False
+    visited: dict[Group, None] = {}
+    hopes: dict[tuple[int, int], None] = {}
+    for group in groups:
         for slot in rule.slots:
             for holder in group.taken.get(slot) or ():
-                taken = True
+                refusal.taken = True
                 refusal.names[holder.clause.rule.name] = None
                 refusal.blockers[holder] = None
-        if taken:
+        if not group.taken.keys().isdisjoint(slots):
             continue
-        for member in list(group.members):
-            if member in engine.alternatives and member is not activation:
-                engine.unfold(member)
-        for rival, member in _rivals(engine, activation, group):
-            if horizon is None:
-                horizon = engine.horizon()
-            strength, roots = horizon.judge(rival, member, group)
-            if strength == NO:
-                continue
-            refusal.names[rival.rule.name] = None
-            if strength == FIRM:
-                refusal.blockers.update(roots)
-            else:
-                refusal.pressed.append((group, rival, member))
+        engine.unfold_members(group)
+        for rival, members in _rivals(engine, activation, group):
             if clause.rule.cooldown or rival.rule.cooldown:
-                refusal.recheck = min(refusal.recheck, _crossing(engine, clause, rival))
+                refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
+            if not standing.refuses(rival, clause):
+                continue
+            if horizon is None:
+                horizon = _horizon(engine, activation, without)
+            apart = 0  # how many of its activations wait for the group's signals without a spike of the group
+            sure: list[Activation] = []
+            for member in (*members, *horizon.elsewhere(rival, group), None):
+                if member is None and apart:
+                    break  # the older activation takes the signal
+                if member is not None and (
+                    member.state >= RUNNING or member in horizon.still or any(_covers(older, member) for older in sure)
+                ):
+                    continue
+                strength, roots = horizon.judge(rival, member, group)
+                if strength == NO:
+                    continue
+                if strength == FIRM:
+                    refusal.blockers.update(dict.fromkeys(roots))
+                    refusal.firm.append(roots)
+                    if member is not None:
+                        sure.append(member)
+                elif engine.press(rival, member, group, activation, commit=commit) > engine.now:
+                    refusal.pressed = True
+                else:
+                    if commit and member is not None:
+                        engine.eliminate(member)
+                        visited.update(horizon.visited)
+                        hopes.update(horizon.hopes)
+                        horizon = _horizon(engine, activation, without)
+                    continue
+                apart += member is not None and member not in group.members
+                refusal.names[rival.rule.name] = None
     if horizon is not None:
+        refusal.interests.update(visited)
         refusal.interests.update(horizon.visited)
-        refusal.hopes = horizon.hopes
+        refusal.hopes = {**hopes, **horizon.hopes}
+        refusal.recheck = min(refusal.recheck, horizon.recheck)
     return refusal
 
 
-def _rivals(engine: Engine, activation: Activation, group: Group) -> Iterator[tuple[Clause, Activation | None]]:
-    """Yield the rivals of an activation in a group, each with its activation there, or None for one in stand-by."""
+def _horizon(engine: Engine, activation: Activation, without: Collection[Activation]) -> Horizon:
+    return Horizon(engine, {activation, *without, *_kept(engine, activation)})
+
+
+def _kept(engine: Engine, activation: Activation) -> Iterator[Activation]:
+    """Yield the activations that wait, or would wait, because of this one (L16)."""
     clause = activation.clause
     slots = clause.rule.slotset
-    worth = engine.effective(clause)
-    seen: set[Clause] = {clause}
+    for group in activation.firm_groups():
+        for other in group.members:
+            theirs = other.clause
+            if (
+                theirs is not clause
+                and other.state < RUNNING
+                and not theirs.rule.slotset.isdisjoint(slots)
+                and engine.standing.refuses(clause, theirs)
+            ):
+                yield other
+
+
+def _rivals(engine: Engine, activation: Activation, group: Group) -> list[tuple[Clause, list[Activation]]]:
+    """Return the clauses that may write one of the activation's slots for the group, in declaration order, each with
+    its activations there."""
+    clause = activation.clause
+    slots = clause.rule.slotset
+    worth = engine.standing.effective(clause)
+    found: dict[Clause, list[Activation]] = {}
     rules: dict[RulePlan, None] = {}
-    for member in tuple(group.members):  # a copy, because judging a rival may unfold alternatives
+    for member in group.members:
         theirs = member.clause
         rules[theirs.rule] = None
-        if theirs is clause or theirs.rule.slotset.isdisjoint(slots) or member.state >= RUNNING:
-            continue
-        if _beats(engine, theirs, clause, worth):
-            yield theirs, member
+        if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
+            found.setdefault(theirs, []).append(member)
     for rule in rules:
         for theirs in engine.policy.causes.downstream(rule):
             if theirs.base < worth:
                 break  # the best clauses come first, and a cooldown only lowers a utility
-            if theirs in seen or theirs.rule.slotset.isdisjoint(slots):
-                continue
-            seen.add(theirs)
-            if group.eliminated is not None and theirs.index in group.eliminated:
-                continue
-            if _beats(engine, theirs, clause, worth):
-                yield theirs, None
+            if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
+                found.setdefault(theirs, [])
+    return sorted(found.items(), key=_place)
 
 
-def _beats(engine: Engine, theirs: Clause, mine: Clause, worth: float) -> bool:
-    other = engine.effective(theirs)
-    return other > worth or (other == worth and theirs.index < mine.index)
+def _covers(older: Activation, younger: Activation) -> bool:
+    """Return whether an older activation, which is still to run, holds all the spikes of a younger one."""
+    return all(spike in older.spikes for spike in younger.firm_spikes())
 
 
-def _crossing(engine: Engine, mine: Clause, theirs: Clause) -> float:
-    """Return the earliest time (seconds) at which `mine` may overtake `theirs`; both utilities climb linearly."""
-    now = engine.now
-    my_worth, my_slope, my_end = engine.recovery(mine)
-    their_worth, their_slope, their_end = engine.recovery(theirs)
-    turn = min(end for end in (my_end, their_end, NEVER) if end > now)
-    closing = my_slope - their_slope
-    if closing > 0:
-        turn = min(turn, now + max(their_worth - my_worth, 0.0) / closing)
-    return turn if turn > now else NEVER
+def _place(rival: tuple[Clause, list[Activation]]) -> int:
+    return rival[0].index
 
 
-def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
-    """Return the best of the activations that wait only for each other, if there are any.
+def stalemate(engine: Engine) -> Activation | None:
+    """Return the best of the activations that wait for nothing but each other, if there are any.
 
     Two ready rules may each wait for a rival that the other might bring about. They would wait for ever, so the one
     with the greater effective utility goes first, or else the one declared first.
-
-    Args:
-        engine: The engine.
-        refused: The activations that were refused since the last search. A new stalemate contains at least one of
-            them, and the chains of blockers lead from these activations to all of its members.
     """
-    stuck: dict[Activation, None] = {}
-    reached = [activation for activation in refused if activation in engine.waiting]
-    while reached:
-        activation = reached.pop()
-        if activation not in stuck and activation in engine.waiting and not activation.speculative:
-            stuck[activation] = None
-            reached.extend(activation.blockers)
+    stuck = {one for one in engine.waiting if one.blockers and not (one.bounded or one.clause.rule.slots == ())}
     while stuck:
-        freed = [a for a in stuck if any(blocker not in stuck for blocker in a.blockers)]
+        freed = {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}
         if not freed:
             break
-        for activation in freed:
-            del stuck[activation]
+        stuck -= freed
+    while stuck:
+        freed = {one for one in stuck if ask(engine, one, stuck, commit=False)}
+        if not freed:
+            break
+        stuck -= freed
     return min(stuck, key=engine.order, default=None)

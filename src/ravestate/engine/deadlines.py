@@ -13,9 +13,9 @@ class Kind(enum.IntEnum):
     """A kind of deadline. Deadlines of the same time fall due in this order: gains before losses."""
 
     RIPEN = 0  # all spikes of an activation are old enough
-    RECHECK = 1  # the order of recovering utilities changes
-    PATIENCE = 2  # the patience of a pressured activation ends
-    STANDBY = 3  # the patience of a pressured stand-by rival ends
+    LOOK = 1  # a spike is old enough for a detached need
+    RECHECK = 2  # the order of recovering utilities changes
+    PATIENCE = 3  # the patience of a pressured rival ends
     EXPIRE = 4  # a spike is too old for an incomplete activation
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
@@ -23,7 +23,7 @@ class Kind(enum.IntEnum):
 
 
 # Reading an attribute of an enumeration costs more than using its value.
-RIPEN, RECHECK, PATIENCE, STANDBY, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
+RIPEN, LOOK, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
 

@@ -14,13 +14,12 @@ from typing import Any, get_args
 
 from ravestate.declare.wording import said
 from ravestate.engine import events, trace
-from ravestate.engine.activation import GATHERING, NEVER, RUNNING, WAITING, Activation
+from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
 from ravestate.engine.agenda import Agenda
-from ravestate.engine.deadlines import EXPIRE, PATIENCE, RECHECK, RIPEN, STANDBY, TIMEOUT, WATCH, Entry
+from ravestate.engine.deadlines import EXPIRE, LOOK, PATIENCE, RECHECK, RIPEN, TIMEOUT, WATCH, Entry
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
 from ravestate.engine.group import Group
-from ravestate.engine.horizon import FIRM, Horizon
 from ravestate.engine.slots import ABSENT, equal
 from ravestate.engine.spike import Spike
 from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredError, nearest
@@ -107,7 +106,7 @@ class Engine(Agenda):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
-            elif self._queue or self._asking or self._dirty or self._stirred:
+            elif self._queue or self._asking or self._dirty or self._stirred or self._refused:
                 self._consent_round()
             elif self._settle_flags():
                 pass
@@ -168,9 +167,9 @@ class Engine(Agenda):
         if signal is None:
             raise UndeclaredError(self._unknown("signal", event.signal, self.policy.signals))
         wiper = self._run(event.run)
-        known = dict.fromkeys(spike for spikes in self.live.values() for spike in spikes)
-        for spike in [s for s in {**known, **self._watched_by} if s.comes_from(signal.name)]:
-            for holder in list(spike.holders):
+        known = {spike for spikes in (*self.live.values(), self._watched_by) for spike in spikes}
+        for spike in sorted((s for s in known if s.comes_from(signal.name)), key=lambda spike: spike.id):
+            for holder in sorted(spike.holders, key=lambda holder: (holder.clause.index, holder.id)):
                 if holder.state == RUNNING and holder is not wiper and holder.clause.rule.interruptible:
                     self._cancel(holder, "wiped")
             self._kill(spike, "wiped")
@@ -226,7 +225,7 @@ class Engine(Agenda):
         if rule.cooldown and fired:
             self.ran[rule.index] = self.now
             self._asking.update(
-                (a, None) for a in self.waiting if rule.name in a.waits_for
+                (a, None) for a in self.waiting if rule.name in a.waits_for or a.clause.rule is rule
             )  # the rule's utility is lower now
         spikes = run.stands_on
         for clause in rule.until:
@@ -236,7 +235,7 @@ class Engine(Agenda):
             if not self._watches[clause]:
                 del self._watches[clause]
         if fired:
-            self._consume(run, spikes)
+            self._consume(run)
         else:
             self._relinquish(run, spikes)
             self._substitute(run)
@@ -283,7 +282,7 @@ class Engine(Agenda):
 
     # ------------------------------------------------------------------------------------ outcomes
 
-    def _consume(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
+    def _consume(self, run: Activation) -> None:
         """Settle a run as Done (L18): consume its slots in its groups; make their other writers give up the spikes."""
         rule = run.clause.rule
         if rule.slots:
@@ -302,8 +301,6 @@ class Engine(Agenda):
                     ):
                         self._lose(other, self._of_group(other, group), "consumed", run)
                 self._dirty[group] = None
-        else:
-            self._give_up(run, spikes, "consumed")
 
     def _relinquish(self, run: Activation, spikes: tuple[Spike, ...]) -> None:
         """Settle Resign, or Error before a write (L18): free the run's slots, and make its rule give up `spikes`."""
@@ -312,18 +309,6 @@ class Engine(Agenda):
                 group.free(slot, run)
             self._dirty[group] = None
         self._give_up(run, spikes, "resigned")
-
-    def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
-        """Make the run's rule give up `spikes` for good, in all its other activations."""
-        rule = run.clause.rule
-        for spike in spikes:  # mark all of them first: an activation that loses a spike looks for another at once
-            if spike.claims is not None and rule.index in spike.claims:
-                spike.claims[rule.index] = None
-            spike.refuse(rule.index)
-        for spike in spikes:
-            for other in list(spike.holders) if len(spike.holders) > 1 else ():
-                if other is not run and other.clause.rule is rule and other.state < RUNNING:
-                    self._lose(other, self._of_spike(other, spike), reason, run)
 
     def _retire(self, rule: RulePlan) -> None:
         """Remove a rule from the context (L18)."""
@@ -344,26 +329,14 @@ class Engine(Agenda):
         elif kind is RIPEN:
             owner.ripens = NEVER
             self._update(owner)
+        elif kind is LOOK:
+            looking, spike = owner
+            clause = self.policy.clause_plans[looking.clause.index]  # a rule may have been added since
+            need = clause.needs[looking.index]
+            if self._fits(need, spike):
+                self._show(need, spike)
         elif kind is PATIENCE:
-            owner.pressed = NEVER
-            if owner.state is not GATHERING:
-                return  # the activation has become ready in time
-            self._dirty.update(dict.fromkeys(owner.firm_groups()))
-            if self._pressed_for_nothing(owner):
-                return
-            for need in owner.clause.needs:
-                spike = owner.spikes[need.index]
-                if spike is not None and not need.detached:
-                    spike.refuse(owner.clause.rule.index)
-            self._end(owner, "eliminated")
-        elif kind is STANDBY:
-            group, clause, _ = owner
-            group = group.root()
-            del group.pressed[clause]
-            rival = self.policy.clause_plans[clause]
-            if Horizon(self).viable(rival, None, group, rival.rule.slotset) != FIRM:
-                group.eliminate(clause)
-            self._dirty[group] = None
+            self._dirty[owner[0].root()] = None  # the activations that wait there judge the rival again
         elif kind is RECHECK:
             owner.recheck = NEVER
             if owner.state == WAITING:

@@ -143,7 +143,7 @@ def _activation(engine: Engine, activation: Activation) -> ActivationState:
         for name in activation.waits_for:
             theirs = max(engine.effective(c) for c in engine.policy.rule_plan(name).clauses)
             waits.append((name, max(0.0, theirs - mine)))
-    bounds = [activation.ripens, activation.pressed, activation.deadline]
+    bounds = [activation.ripens, activation.patience_ends(), activation.deadline]
     if activation.state is GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)
         bounds += [spike.born + need.max_age for spike, need in held if spike is not None]

@@ -19,13 +19,12 @@ class Group:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
         members: Activation with non-detached spikes of the group → the number of these spikes; oldest activation first.
         interested: The waiting activations that ask again when something ends in the group.
-        pressed: Number of the clause of a pressured stand-by rival → the time at which its patience ends (seconds).
-        eliminated: The numbers of the clauses of stand-by rivals whose patience has run out.
+        pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
         answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
             them for the trace, while there is a tracer.
     """
 
-    __slots__ = ("answers", "eliminated", "id", "interested", "into", "members", "pressed", "taken")
+    __slots__ = ("answers", "id", "interested", "into", "members", "pressed", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
@@ -35,7 +34,6 @@ class Group:
         self.taken: Mapping[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: Mapping[Activation, None] = NOTHING
         self.pressed: dict[int, float] | None = None
-        self.eliminated: set[int] | None = None
         self.answers: Mapping[int, tuple[str, int]] = NOTHING
 
     def root(self) -> Group:
@@ -86,12 +84,6 @@ class Group:
         if activation in self.interested:
             self.interested.pop(activation)  # type: ignore[attr-defined]  # as above
 
-    def eliminate(self, clause: int) -> None:
-        """Note that the patience of a clause in stand-by has run out, so that it is no longer a rival."""
-        if self.eliminated is None:
-            self.eliminated = set()
-        self.eliminated.add(clause)
-
     def absorb(self, other: Group) -> None:
         """Make `other` part of this group. A slot that is taken for good in either group stays taken."""
         other.into = self
@@ -103,9 +95,12 @@ class Group:
         for activation in other.interested:
             self.concern(activation)
         if other.pressed:
-            self.pressed = {**other.pressed, **(self.pressed or {})}
-        if other.eliminated:
-            self.eliminated = other.eliminated | (self.eliminated or set())
+            mine = self.pressed or {}
+            self.pressed = {**mine, **{c: min(until, mine.get(c, until)) for c, until in other.pressed.items()}}
+        for activation in self.members:
+            until = activation.pressed.get(other)
+            if until is not None:
+                activation.pressed[self] = min(until, activation.pressed.get(self, until))
         if other.answers:
             self.answers = {**other.answers, **self.answers}
         other.members = {}

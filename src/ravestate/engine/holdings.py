@@ -17,7 +17,7 @@ from ravestate.engine.activation import (
     Activation,
 )
 from ravestate.engine.deadlines import EXPIRE, FORGET, RIPEN
-from ravestate.engine.group import Group
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.loops import MANY
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
@@ -44,6 +44,13 @@ class Holdings(State):
                             break
                 if best is not None:
                     self._acquire(activation, need, best)
+
+    def _swap(self, activation: Activation, need: Need, spike: Spike) -> None:
+        """Let a detached need hold another spike."""
+        self._release(activation, need, "")
+        self._acquire(activation, need, spike)
+        if activation.state is GATHERING:
+            self._update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
         """Give a need whose spike was lost the oldest live spike that fits, if there is one (L12)."""
@@ -111,6 +118,7 @@ class Holdings(State):
                 if activation.ripens != NEVER:
                     activation.ripens = NEVER
                 if not clause.guards or all(self.holds(s, g, clause.rule) for s, g in clause.guards):
+                    self.gated.pop(activation, None)
                     self._complete(activation)
                     return
                 self.gated[activation] = None
@@ -216,6 +224,8 @@ class Holdings(State):
         for group in activation.firm_groups():
             if group.interested:
                 self._dirty[group] = None
+        if self.hoping:
+            self.stir_rule(activation.clause.rule)
 
     def _unready(self, activation: Activation) -> None:
         """Put a ready or waiting activation back into the state `GATHERING`."""
@@ -250,27 +260,33 @@ class Holdings(State):
             self._asking.pop(activation, None)
             self._lose_interest(activation)
             activation.recheck = NEVER
-            activation.blockers = ()
+            activation.blockers = activation.firm = ()
         else:
             activation.deadline = NEVER
             activation.stands_on = activation.groups = ()
-        if activation.pressed != NEVER:
-            activation.pressed = NEVER
+        if activation.pressed:
+            activation.pressed = NOTHING
         if self.alternatives:
             self.alternatives.pop(activation, None)
         active = self.active[clause.rule.index]
         del active[activation]
         if not active:
             del self.active[clause.rule.index]
-        self._stirred = bool(self.hoping)
+        if self.hoping:
+            self.stir_rule(clause.rule)
         if not (clause.rule.background or clause.reflexive):
             self._busy -= 1
 
     def _lose_interest(self, activation: Activation) -> None:
         """Make an activation stop waiting: changes in its groups no longer make it ask again."""
         self.waiting.pop(activation, None)
-        self._refused.pop(activation, None)
-        self.hoping.pop(activation, None)
+        for hope in activation.hopes:
+            hoping = self.hoping.get(hope)
+            if hoping is not None:
+                hoping.pop(activation, None)
+                if not hoping:
+                    del self.hoping[hope]
+        activation.hopes = ()
         for group in activation.interests:
             group.root().forget(activation)
         activation.interests = ()
@@ -325,3 +341,13 @@ class Holdings(State):
             if spike is not None and not need.detached and spike.group.root() is group:
                 found.append(need)
         return found
+
+    def _give_up(self, run: Activation, spikes: tuple[Spike, ...], reason: str) -> None:
+        """Make the run's rule give up `spikes` for good, in all its other activations."""
+        rule = run.clause.rule
+        for spike in spikes:  # mark all of them first: an activation that loses a spike looks for another at once
+            spike.refuse(rule.index)
+        for spike in spikes:
+            for other in list(spike.holders) if len(spike.holders) > 1 else ():
+                if other is not run and other.clause.rule is rule and other.state < RUNNING:
+                    self._lose(other, [n for n in self._of_spike(other, spike) if not n.detached], reason, run)

@@ -13,6 +13,7 @@ A derivation has one of three strengths:
 ``NO``           nothing leads to the signal
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
+An activation that waits for the asking one cannot help either, until that one has had its turn: it counts as still.
 
 A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`: it yields
 the steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
@@ -20,10 +21,10 @@ the steps whose strengths it needs, and `_solve` keeps those that wait on a stac
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Set
 from typing import TYPE_CHECKING, Any
 
-from ravestate.engine.activation import RUNNING, Activation
+from ravestate.engine.activation import GATHERING, NEVER, RUNNING, Activation
 from ravestate.policy.model import Clause, Need
 
 if TYPE_CHECKING:
@@ -36,57 +37,91 @@ Slots = frozenset[int]
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
 
+RULE, OUTSIDE, SEEN = range(3)
+"""Kinds of hope: an activation of a rule elsewhere; a live rule that may raise a signal; a new spike to look at."""
+
 
 class Horizon:
-    """The horizons of the engine's groups at one moment.
+    """The horizons of the engine's groups at one moment, for one asking activation.
+
+    Args:
+        engine: The engine.
+        still: The activations that count as doing nothing: the asking one, and those that wait for it.
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups on whose state the latest results depend.
-        hopes: Whether a needed signal may come only from a live rule of another group.
+        hopes: What else the results depend on: pairs of a kind and the number of a rule or a signal.
+        recheck: The time at which a spike that a result depends on grows too old to be looked at (seconds).
     """
 
-    __slots__ = ("_by_rule", "_cuts", "_judged", "_known", "_path", "engine", "hopes", "roots", "visited")
+    __slots__ = ("_by_rule", "_cuts", "_known", "_path", "engine", "hopes", "recheck", "roots", "still", "visited")
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engine, still: Set[Activation]) -> None:
         self.engine = engine
-        engine.unfold_all()
+        self.still = still
         self._cuts = 0  # how often a cycle was cut
-        self._path: set[int] = set()  # the numbers of the signals whose derivation is in progress
+        self._path: set[tuple[int, Group]] = set()  # the signals whose derivation is in progress
         self._known: dict[tuple[int, Group, Slots], tuple[int, tuple[Activation, ...]]] = {}
-        self.hopes = False
+        self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
-        self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
-        self._judged: dict[tuple[Clause, Activation | None, Group], tuple[int, dict[Activation, None]]] = {}
+        self.hopes: dict[tuple[int, int], None] = {}
+        self.recheck = NEVER
 
-    def viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> int:
-        """Return the strength with which a clause may become ready in a group. `activation` is None for a stand-by.
+    def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
+        """Return how viable a clause is in a group, and the live activations on which a firm result rests.
 
-        A clause in stand-by has a stake in the group only if a signal of the group's horizon is among its needs.
+        `activation` is None for the clause's stand-by. Without a spike of the group, an activation has a stake there
+        only if a signal of the group's horizon is among its missing needs.
         """
-        return _solve(self._viable(clause, activation, group, slots))
+        self.roots.clear()
+        strength = _solve(self._viable(clause, activation, group, clause.rule.slotset))
+        return strength, tuple(dict.fromkeys(self.roots))
 
-    def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, dict[Activation, None]]:
-        """Return how viable a rival is, and the activations on which this depends. All askers get the same result."""
-        known = self._judged.get((clause, activation, group))
-        if known is None:
-            self.roots.clear()
-            strength = self.viable(clause, activation, group, clause.rule.slotset)
-            known = self._judged[clause, activation, group] = strength, dict.fromkeys(self.roots)
-        return known
+    def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
+        """Return a clause's activations that hold no spike of the group, but lack one that the group may cause."""
+        if clause.apart:
+            return []  # any spike that it lacks must come from the group that it stands on
+        active = self.engine.active.get(clause.rule.index)
+        reach = self._rules(group).keys()
+        ancestors = self.engine.policy.causes.ancestors
+        open_bits = 0
+        for need in clause.needs:
+            if not need.detached and not reach.isdisjoint(ancestors(need.signal.index)):
+                open_bits |= need.bit
+        if not open_bits:
+            return []
+        self.hopes[RULE, clause.rule.index] = None
+        return [
+            one
+            for one in active or ()
+            if one.clause is clause
+            and one.state is GATHERING
+            and one.missing & open_bits
+            and one not in self.still
+            and one not in group.members
+        ]
 
     def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> Step:
         rule = clause.rule
         if rule.index in self.engine.retired:
             return NO
         mark = len(self.roots)
+        member = False
+        others: list[Group] = []
         if activation is None:
             missing = clause.all_bits
             if group.taken and group.finished(rule.slots):
                 return NO
         else:
             missing = activation.missing
+            for home in activation.firm_groups():
+                if home is group:
+                    member = True
+                else:
+                    others.append(home)
+                    self.visited[home] = None
             if not missing:
                 self.roots.append(activation)  # the activation is ready, or will ripen
         # For each need, or set of kin needs: how firmly this group may meet it, and how firmly any group may.
@@ -97,57 +132,56 @@ class Horizon:
             if not need.bit & missing or need.bit & answered:
                 continue
             if need.detached:
-                mine, other = NO, (yield from self._detached(need, group, slots))
-            elif need.kin == need.bit:
-                mine = self._at_once(need.signal.index, group, slots)
-                if mine is None:
-                    mine = yield self._caused(need.signal.index, group, slots)
-                other = NO if mine == FIRM else self._anywhere(need, group)
+                mine, other = NO, (yield from self._seen(need, group, slots))
             else:
                 answered |= need.kin
-                mine, other = yield from self._kin(need, activation, missing, group, slots)
+                kin = [n for n in clause.needs if n.bit & need.kin & missing]
+                held = activation.held(need.kin) if activation is not None and need.kin != need.bit else None
+                home = None if held is None else held.group.root()
+                mine = other = NO
+                if home is None or home is group:
+                    mine = yield from self._all(kin, group, slots)
+                for there in others:
+                    if mine == FIRM or other == FIRM:
+                        break
+                    if home is None or home is there:
+                        strength = yield from self._all(kin, there, slots)
+                        other = max(other, strength)
+                if max(mine, other) == NO and home is None and all(self._outside(n, group) for n in kin):
+                    other = SPECULATIVE
             if mine == NO and other == NO:
                 del self.roots[mark:]
                 return NO
             here.append(mine)
             best.append(max(mine, other))
         strength = min(best, default=FIRM)
-        if activation is None:  # this group must meet one need itself: help from other groups creates no stake
-            strength = max(
-                (min(mine, *best[:k], *best[k + 1 :]) if len(best) > 1 else mine for k, mine in enumerate(here)),
-                default=NO,
-            )
+        if not member:  # this group must meet one need itself: help from other groups creates no stake
+            strength = max((min(mine, *best[:k], *best[k + 1 :], FIRM) for k, mine in enumerate(here)), default=NO)
         if strength == NO or (clause.guards and not (yield from self._guards(clause, group, slots))):
             del self.roots[mark:]
             return NO
         return strength
 
-    def _anywhere(self, need: Need, group: Group) -> int:
-        """Return the strength with which a live spike, an input, or a rule of another group may meet a need."""
-        if self._live(need):
-            return FIRM
-        return SPECULATIVE if self._elsewhere(need, group) else NO
+    def _all(self, needs: list[Need], group: Group, slots: Slots) -> Step:
+        """Return the strength with which one group may meet all of several needs."""
+        weakest = FIRM
+        for need in needs:
+            strength = yield from self._comes(need.signal.index, group, slots)
+            weakest = min(weakest, strength)
+            if not weakest:
+                break
+        return weakest
 
-    def _detached(self, need: Need, group: Group, slots: Slots) -> Step:
+    def _seen(self, need: Need, group: Group, slots: Slots) -> Step:
         """Return the strength with which anything may meet a detached need."""
-        if self._live(need):
+        self.hopes[SEEN, need.signal.index] = None
+        spike = self.engine.newest(need)
+        if spike is not None:
+            self.visited[spike.group.root()] = None
+            self.recheck = min(self.recheck, spike.born + need.max_age)
             return FIRM
-        return (yield from self._comes(need.signal.index, group, slots)) or self._anywhere(need, group)
-
-    def _kin(
-        self, need: Need, activation: Activation | None, missing: int, group: Group, slots: Slots
-    ) -> Generator[Any, int, tuple[int, int]]:
-        """Return how firmly this group, and how firmly any group, may meet the kin needs, all of them at once (L12)."""
-        kin = [n for n in need.clause.needs if n.bit & need.kin & missing]
-        held = activation.held(need.kin) if activation is not None else None
-        home = group if held is None else held.group.root()
-        mine = FIRM
-        for one in kin:
-            comes = yield from self._comes(one.signal.index, home, slots)
-            mine = min(mine, comes)
-        if held is not None or mine == FIRM:
-            return mine, NO
-        return mine, (SPECULATIVE if all(self._elsewhere(n, group) for n in kin) else NO)
+        strength = yield from self._comes(need.signal.index, group, slots)
+        return strength or (SPECULATIVE if self._outside(need, group) else NO)
 
     def _guards(self, clause: Clause, group: Group, slots: Slots) -> Generator[Any, int, bool]:
         """Return whether each of a clause's predicates on slots is true, or its slot may yet change in this group."""
@@ -159,28 +193,16 @@ class Horizon:
                 return False
         return True
 
-    def _live(self, need: Need) -> bool:
-        """Return whether a live spike could meet a need (L16 i)."""
-        spike = self.engine.live_spike(need)
-        if spike is not None:
-            self.visited[spike.group.root()] = None
-        return spike is not None
-
     def _comes(self, signal: int, group: Group, slots: Slots) -> Step:
         """Return the strength with which a signal lies in the horizon of a group."""
-        strength = self._at_once(signal, group, slots)
-        return (yield self._caused(signal, group, slots)) if strength is None else strength
-
-    def _at_once(self, signal: int, group: Group, slots: Slots) -> int | None:
-        """Return the strength with which a signal lies in a group's horizon, or None if a derivation must find it."""
-        if signal in self._path:
+        if (signal, group) in self._path:
             self._cuts += 1
             return NO
         if self._rules(group).keys().isdisjoint(self.engine.policy.causes.ancestors(signal)):
             return NO
         known = self._known.get((signal, group, slots))
         if known is None:
-            return None
+            return (yield self._caused(signal, group, slots))
         self.roots.extend(known[1])
         return known[0]
 
@@ -188,25 +210,32 @@ class Horizon:
         """Return the strength with which one of the rules that may raise a signal will do so."""
         cuts, mark = self._cuts, len(self.roots)
         by_rule, retired = self._by_rule[group], self.engine.retired
-        self._path.add(signal)
+        self._path.add((signal, group))
         best = NO
         for rule in self.engine.policy.causes.causes[signal]:
             if not rule.slotset.isdisjoint(slots) or rule.index in retired:
                 continue
             inner = slots | rule.slotset if rule.slots else slots
-            live = by_rule.get(rule.index, ())
-            for clause, activation in [*((a.clause, a) for a in live), *((c, None) for c in rule.clauses)]:
-                if activation is not None and activation.state >= RUNNING:
+            ways: list[tuple[Clause, Activation | None]] = []
+            for activation in by_rule.get(rule.index, ()):
+                if activation.state >= RUNNING:
                     self.roots.append(activation)
                     best = FIRM
-                else:
+                    break
+                if activation not in self.still:
+                    ways.append((activation.clause, activation))
+            if best != FIRM:
+                for clause in rule.clauses:
+                    ways += [(clause, activation) for activation in self.elsewhere(clause, group)]
+                    ways.append((clause, None))
+                for clause, activation in ways:
                     strength = yield self._viable(clause, activation, group, inner)
                     best = max(best, strength)
-                if best == FIRM:
-                    break
+                    if best == FIRM:
+                        break
             if best == FIRM:
                 break
-        self._path.discard(signal)
+        self._path.discard((signal, group))
         if self._cuts == cuts:  # the result does not depend on the path that led here
             self._known[signal, group, slots] = best, tuple(self.roots[mark:])
         return best
@@ -220,7 +249,7 @@ class Horizon:
                 found.setdefault(activation.clause.rule.index, []).append(activation)
         return found
 
-    def _elsewhere(self, need: Need, group: Group) -> bool:
+    def _outside(self, need: Need, group: Group) -> bool:
         """Return whether an input, or a live rule of another group, might raise the need's signal (L16 iii)."""
         signal = need.signal
         if signal.input:
@@ -228,10 +257,12 @@ class Horizon:
         causes = self.engine.policy.causes
         wide = causes.wide_ancestors(signal.index)
         if wide:
+            self.hopes[OUTSIDE, signal.index] = None
             narrow = causes.ancestors(signal.index)
             for rule, activations in self.engine.active.items():
-                if rule in wide and (rule not in narrow or any(a not in group.members for a in activations)):
-                    self.hopes = True
+                if rule in wide and any(
+                    a not in self.still and (rule not in narrow or a not in group.members) for a in activations
+                ):
                     return True
         return False
 

@@ -7,9 +7,10 @@ from typing import Any
 from ravestate.engine import trace
 from ravestate.engine.activation import CANCEL, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.conflict_sets import ConflictSets
-from ravestate.engine.deadlines import WATCH
+from ravestate.engine.deadlines import LOOK, PATIENCE, WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
+from ravestate.engine.horizon import SEEN
 from ravestate.engine.loops import MANY, Lineage
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
@@ -117,6 +118,8 @@ class Matching(ConflictSets):
             self._kill(next(iter(live)), "overflow")
         if signal.watchers and self._watches:
             self._watch(spike)
+        if self.hoping and (SEEN, signal.index) in self.hoping:
+            self._stirred[SEEN, signal.index] = None
         for need in signal.uncontested:
             self._offer(need, spike)
         if signal.contests:
@@ -151,10 +154,24 @@ class Matching(ConflictSets):
                     self._stir(activation)
                     self._update(activation)
         if need.detached and clause.asks_detached:
+            if need.min_age:
+                self._deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
+            else:
+                self._show(need, spike)
             return  # a detached need only looks: it starts no activation
         self._activations += 1
         activation = self._new_activation(clause, self._activations)
         self._acquire(activation, need, spike)
+        if not need.detached:
+            group = spike.group.root()
+            if group.interested:
+                self._dirty[group] = None
+            if group.pressed and clause.index in group.pressed:
+                # The stand-by was under pressure, and this is what became of it.
+                until = group.pressed[clause.index]
+                activation.pressed = {group: until}
+                if until > self.now:
+                    self._deadlines.add(until, PATIENCE, (group, activation))
         if clause.simple:
             self._complete(activation)
             return
@@ -165,6 +182,14 @@ class Matching(ConflictSets):
                 if other.bit & activation.missing:
                     self.lacking.setdefault(other, {})[activation] = None
         self._update(activation)
+
+    def _show(self, need: Need, spike: Spike) -> None:
+        """Give a new spike to the activations that look at its signal already, for they hold the newest (L19)."""
+        for activation in list(self.active.get(need.clause.rule.index, ())):
+            if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
+                held = activation.spikes[need.index]
+                if held is not None and held.id < spike.id:
+                    self._swap(activation, need, spike)
 
     def _watch(self, spike: Spike) -> None:
         """Offer a new spike to the `until` conditions of runs (L21)."""

@@ -23,7 +23,6 @@ class Spike:
         before: The number of the last activation that is older than the spike.
         source: The number of the run that raised the spike; 0 if code outside raised it.
         holders: The activations that hold the spike, in the order in which they took it.
-        claims: Number of a rule without slots → its activation that runs on the spike, or None after the run (L10).
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         refused: The numbers of the rules that gave the spike up for good.
         lineage: In an instant with many runs: the rules that led to the spike (L23).
@@ -42,7 +41,6 @@ class Spike:
     holders: dict[Activation, None] = field(init=False, default_factory=dict[Any, None])
     expiring: tuple[float, ...] = field(init=False, default=())
     refused: set[int] | None = field(init=False, default=None)
-    claims: dict[int, Activation | None] | None = field(init=False, default=None)
 
     def refuse(self, rule: int) -> None:
         """Note that a rule gives the spike up for good."""

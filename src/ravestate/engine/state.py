@@ -15,10 +15,10 @@ from ravestate.declare.core import RuleFailure
 from ravestate.engine.activation import RUNNING, Activation
 from ravestate.engine.deadlines import (
     EXPIRE,
+    LOOK,
     PATIENCE,
     RECHECK,
     RIPEN,
-    STANDBY,
     TIMEOUT,
     WATCH,
     Deadlines,
@@ -26,6 +26,7 @@ from ravestate.engine.deadlines import (
 )
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.group import Group
+from ravestate.engine.horizon import OUTSIDE, RULE
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
 from ravestate.engine.trace import Tracer
@@ -61,8 +62,8 @@ class State:
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
         """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
         them have had an activation; the activation number just before theirs."""
-        self.hoping: dict[Activation, None] = {}
-        """Waiting activations with a rival that a live rule of another causal group may yet help."""
+        self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
+        """What waiting activations depend on outside their groups (`Horizon.hopes`) → these activations."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.retired: set[int] = set()
@@ -75,9 +76,9 @@ class State:
         self._acts = False  # whether one of these effects starts or cancels a run
         self._free: list[Activation] = []  # ready activations that need no consent
         self._asking: dict[Activation, None] = {}  # ready or waiting activations that are about to ask for consent
-        self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
+        self._refused = False  # whether an activation was refused since the last search for a stalemate
         self._dirty: dict[Group, None] = {}  # groups in which something ended
-        self._stirred = False  # whether something ended that the `hoping` activations may have hoped for
+        self._stirred: dict[tuple[int, int], None] = {}  # the keys of `hoping` that have changed
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
         self._watched_by: dict[Spike, dict[Watch, None]] = {}  # spike → the watches that hold it
         # Failures that ``core:error`` has not reported yet, each with the rules that led to it.
@@ -100,7 +101,19 @@ class State:
         active[activation] = None
         if not (rule.background or clause.reflexive):
             self._busy += 1
+        if self.hoping:
+            self.stir_rule(rule)
         return activation
+
+    def stir_rule(self, rule: RulePlan) -> None:
+        """Note that an activation of a rule has come, changed or gone, for those whose turn depends on it elsewhere."""
+        for kind, number in self.hoping:
+            if (
+                number == rule.index
+                if kind == RULE
+                else kind == OUTSIDE and rule.index in self.policy.causes.wide_ancestors(number)
+            ):
+                self._stirred[kind, number] = None
 
     def _stands(self, entry: Entry) -> bool:
         """Return whether a deadline still counts: its owner lives, and has no other deadline of this kind."""
@@ -110,11 +123,12 @@ class State:
         if kind is RIPEN:
             return owner.ripens == time
         if kind is PATIENCE:
-            return owner.pressed == time
-        if kind is STANDBY:
-            group, clause, until = owner
-            pressed = group.root().pressed
-            return pressed is not None and pressed.get(clause) == until
+            group, rival = owner
+            if isinstance(rival, int):
+                return bool(group.root().interested)
+            return rival.state < RUNNING and rival.pressed.get(group.root()) == time
+        if kind is LOOK:
+            return owner[1] in self.live.get(owner[1].signal.index, ())
         if kind is RECHECK:
             return owner.recheck == time
         if kind is TIMEOUT:
@@ -136,19 +150,19 @@ class State:
             self.values[slot] = default
             return self.values[slot]
 
-    def live_spike(self, need: Need) -> Spike | None:
-        """Return the oldest live spike that fits a need, or None."""
-        return next((spike for spike in self.live.get(need.signal.index, ()) if self._fits(need, spike)), None)
+    def newest(self, need: Need) -> Spike | None:
+        """Return the newest live spike that fits a need, or None."""
+        return next(
+            (spike for spike in reversed(self.live.get(need.signal.index, {})) if self._fits(need, spike)), None
+        )
 
     def _fits(self, need: Need, spike: Spike) -> bool:
         """Return whether a live spike may meet a need: age and payload fit, and the rule has not lost it for good."""
         rule = need.clause.rule
-        if spike.born + need.max_age <= self.now and need.max_age:
+        if spike.born + need.max_age <= self.now and (need.max_age or spike.born < self.now):
             return False
         if not need.detached:
             if spike.refused is not None and rule.index in spike.refused:
-                return False
-            if spike.claims is not None and rule.index in spike.claims:
                 return False
             if spike.group.root().finished(rule.slots):
                 return False

@@ -29,6 +29,8 @@ WISHES = frozenset({"quiet", "stop", "forget_me", "farewell", "play"})
 
 _NEGATION = re.compile(r"\b(?:do not|don['’]?t|did not|didn['’]?t|not|never)\s+(?:you |ever )?", re.IGNORECASE)
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
+_ASKED = re.compile(r"(?:will|can|could|would|should|do|did|are) (?:i|you|we|they)\b", re.IGNORECASE)
+"""The beginning of a question: "will you be here tomorrow" is no farewell."""
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
@@ -73,7 +75,7 @@ def only(act: str, sentences: Sequence[str]) -> bool:
     """
     parts = _read(sentences)
     names = {match.name for part in parts for match in part.acts}
-    if act not in names or names - COURTESY - {act}:
+    if act not in names or names - COURTESY - {act} or _ASKED.match(sentences[-1]):
         return False
     others = [word for part in parts for word in part.others]
     if not others:

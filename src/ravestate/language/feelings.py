@@ -12,7 +12,7 @@ from .shape import shape
 
 SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
 """Feelings of the user's in which cheerfulness or a remark out of boredom would hurt."""
-SORROW_LASTS = 6
+SORROW_LASTS = 12
 """The user's utterances for which sorrow counts, the one with it included."""
 SURE = 0.8
 """The confidence from which a question is one of surprise: "how do you know that?"."""

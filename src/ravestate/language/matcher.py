@@ -232,11 +232,11 @@ class _Learnt:
         weights = inverse @ targets
         # The scores of each example from a classifier that has learnt all the others, in closed form.
         left_out = targets - weights / np.diag(inverse)[:, None]
-        margins, others = _margins(left_out), left_out.argmax(axis=1)
+        margins, others = margins_of(left_out), left_out.argmax(axis=1)
         wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))
         return {
             "weights": weights,
-            "curve": np.array(_calibrated(margins.astype(np.float64), others == self._of)),
+            "curve": np.array(calibrated(margins.astype(np.float64), others == self._of)),
             "confused": np.stack([wrong, others[wrong]], axis=1),
         }
 
@@ -278,7 +278,7 @@ class _Learnt:
         return kernel
 
 
-def _margins(scores: NDArray[Any]) -> NDArray[Any]:
+def margins_of(scores: NDArray[Any]) -> NDArray[Any]:
     """Return the distance of the best score in each row from the next best."""
     import numpy as np
 
@@ -286,7 +286,7 @@ def _margins(scores: NDArray[Any]) -> NDArray[Any]:
     return two[:, -1] - two[:, 0]
 
 
-def _calibrated(margins: NDArray[Any], right: NDArray[Any]) -> tuple[float, float]:
+def calibrated(margins: NDArray[Any], right: NDArray[Any]) -> tuple[float, float]:
     """Return slope and centre of the logistic curve from a margin to the share of right answers (Platt scaling)."""
     import numpy as np
 

@@ -39,6 +39,8 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
                 if need.detached:
                     continue
                 roots, kin = causes.roots(need.signal.index), need.bit
+                if need.signal.slot is not None:  # the signals of a slot cohere: they may come from one write
+                    roots |= 1 << (len(causes.signals) + need.signal.slot)
                 apart: list[tuple[int, int]] = []
                 for others in families:
                     if others[0] & roots:
@@ -48,6 +50,7 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
                 families = [*apart, (roots, kin)]
             for need in clause.needs:
                 need.kin = next((kin for _, kin in families if kin & need.bit), need.bit)
+            clause.apart = len(families) == 1
 
 
 def find_contests(signals: Iterable[SignalPlan]) -> None:

@@ -22,6 +22,11 @@ def triples(reader: Pipeline, text: str) -> str:
         ("Are your parents still married?", "(your parents, be, married)"),
         ("There is something I want to tell you.", "(something, be, -) (I, want to tell, something)"),
         ("can't find my keys", "(I, not find, my keys)"),
+        ("my husband's Albert", "(my husband, be, Albert)"),
+        ("my uncle Bert is a cook and my aunt Vera is a pilot", "(my uncle Bert, be, cook) (my aunt Vera, be, pilot)"),
+        ("moved to Leeds in May", "(I, move, Leeds)"),
+        ("born in Rome", "(I, be born, Rome)"),
+        ("we like swimming and tennis", "(we, like, swimming) (we, like, tennis)"),
     ],
 )
 def test_a_misread_clause_has_its_triple(text: str, expected: str, reader: Pipeline) -> None:
@@ -64,3 +69,13 @@ def test_a_tree_without_faults_stays_as_it_is(reader: Pipeline) -> None:
 def test_the_kinds_of_questions_without_marks_and_auxiliaries(text: str, kind: str, reader: Pipeline) -> None:
     found = question_of(reader.read(text)[0])
     assert (found.name if found else "-") == kind
+
+
+def test_a_noun_with_a_capital_inside_a_sentence_is_a_name(reader: Pipeline) -> None:
+    (statement,) = statements_of(reader.read("my girlfriend Chiara bakes wonderful cakes")[0])
+    assert statement.subject.names == ("Chiara",) and statement.subject.head == "girlfriend"
+
+
+@pytest.mark.parametrize("text", ["I'm thinking of moving to Bern", "we are moving to Bern"])
+def test_what_somebody_thinks_of_doing_is_a_plan(text: str, reader: Pipeline) -> None:
+    assert all(statement.plan for statement in statements_of(reader.read(text)[0]))

@@ -249,7 +249,7 @@ def test_it_is_not_cheerful_in_a_sad_stretch_of_the_talk() -> None:
         for text in ("He made me laugh so often, and that was wonderful!", "Wow!", "Thanks.", "Why is that so?"):
             sim.say(text)
         assert not {"happy", "surprised"} & set(felt(sim))
-        for _ in range(2):
+        for _ in range(9):
             sim.say("The table has four legs.")
         sim.say("I passed my exam!")
         assert felt(sim)[-1] == "happy"

@@ -382,7 +382,7 @@ class Server:
         for key in [key for key in self.faults if key[0] == bot]:
             del self.faults[key]
 
-    async def do_said(self, bot: str, count: int = 0, wait: float = 20.0) -> Any:
+    async def do_said(self, bot: str, count: int = 0, wait: float = 100.0) -> Any:
         """Return the bot's messages in all chats, once there are `count` messages, or after some seconds."""
 
         def said() -> list[Any]:
@@ -395,7 +395,7 @@ class Server:
                 await self.changed.wait_for(lambda: self.all(query, bot)[0][0] >= count)
         return said()
 
-    async def do_called(self, bot: str, method: str, count: int = 0, wait: float = 20.0) -> Any:
+    async def do_called(self, bot: str, method: str, count: int = 0, wait: float = 100.0) -> Any:
         """The calls of a method, once there are `count`, or after some seconds; and how many came in a flood wait."""
 
         def calls() -> list[Any]:

@@ -60,7 +60,7 @@ class Bot:
         return {"token": self.token, "base_url": f"{self.telegram.root}/bot", "rate": 1000.0}
 
     async def do(self, order: str, **arguments: Any) -> Any:
-        async with httpx.AsyncClient(timeout=60.0, verify=False, trust_env=False) as client:
+        async with httpx.AsyncClient(timeout=120.0, verify=False, trust_env=False) as client:
             answer = await client.post(f"{self.telegram.root}/control/{self.token}/{order}", json=arguments)
             return answer.raise_for_status().json()
 

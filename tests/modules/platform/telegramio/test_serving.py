@@ -10,13 +10,14 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.telegramio.conftest import Bot
+from modules.platform.telegramio.conftest import Bot, free_port
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio, telegramio
+from ravestate.modules.platform.chats.voice import spoken
 from ravestate.runtime.agent import Agent
 
 parrot = rs.Module("parrot", requires=(rawio, interloc))
-PATIENCE = 30.0
+PATIENCE = 60.0
 
 
 @parrot.rule(when=rawio.input.changed, writes=rawio.output)
@@ -99,10 +100,10 @@ async def test_the_agent_answers(bot: Bot, tmp_path: Path) -> None:
 async def test_two_hundred_chats_at_once_and_none_crossed(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.do(
-            "crowd", messages=[{"chat": chat, "text": f"{n} of {chat}"} for n in range(3) for chat in range(1, 201)]
+            "crowd", messages=[{"chat": chat, "text": f"{n} of {chat}"} for n in range(2) for chat in range(1, 201)]
         )
-        said = await bot.said(600)
-    assert sorted(said) == sorted(f"{chat}: {n} of {chat}" for n in range(3) for chat in range(1, 201))
+        said = await bot.said(400)
+    assert sorted(said) == sorted(f"{chat}: {n} of {chat}" for n in range(2) for chat in range(1, 201))
 
 
 @live
@@ -259,6 +260,33 @@ async def test_only_those_who_are_allowed_get_an_answer(bot: Bot, tmp_path: Path
         assert sorted(await settled(bot)) == ["7: Hello", "8: Hello"]
 
 
+@live
+async def test_a_voice_note_is_understood_and_answered_by_voice(bot: Bot, tmp_path: Path) -> None:
+    note = await spoken("Hello, how are you today?")
+    assert note is not None
+    async with running(bot, tmp_path):
+        file = await bot.do("upload", hexed=note.hex())
+        await bot.say(7, voice={**file, "duration": 2})
+        [answer] = await bot.do("said", count=1)
+    assert "how are you" in answer["caption"].lower()
+    assert answer["voice"]["file_size"] > 1000
+
+
+@live
+async def test_a_webhook_takes_the_place_of_polling(bot: Bot, tmp_path: Path) -> None:
+    port = free_port()
+    address = {"webhook": f"http://127.0.0.1:{port}/telegram", "port": port}
+    async with running(bot, tmp_path, **address):
+        await bot.say(7, "one")
+        assert await bot.said(1) == ["7: one"]
+    await bot.say(7, "two")  # while the agent is down
+    async with running(bot, tmp_path, **address):
+        assert await bot.said(2) == ["7: one", "7: two"]
+    async with running(bot, tmp_path):
+        await bot.say(7, "three")
+        assert await bot.said(3) == ["7: one", "7: two", "7: three"]
+
+
 # ------------------------------------------------------------------------------------ faults
 
 
@@ -365,6 +393,25 @@ async def test_another_program_that_gets_the_messages_is_named(bot: Bot, tmp_pat
     async with running(bot, tmp_path) as task:
         with pytest.raises(PlatformError, match="another program gets the messages"):
             await task
+
+
+def test_of_two_agents_of_one_bot_the_newcomer_gives_up(
+    bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    @live
+    async def test(bot: Bot, folder: Path) -> None:
+        monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.SETTLED", 0.0)
+        async with running(bot, folder):
+            await bot.say(7, "one")
+            await bot.said(1)
+            monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.SETTLED", 60.0)
+            async with running(bot, folder, path=folder / "other.sqlite") as newcomer:
+                with pytest.raises(PlatformError, match="another program gets the messages"):
+                    await newcomer
+            await bot.say(7, "two")
+            assert await bot.said(2) == ["7: one", "7: two"]
+
+    test(bot, tmp_path)
 
 
 @live

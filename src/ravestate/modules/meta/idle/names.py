@@ -33,7 +33,7 @@ bored = module.signal("bored")
 """Nothing happens for ``bored_after`` seconds. Raised once for each silence, including the one after startup.
 
 A rule that reacts to it ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, the
-agent stays quiet until the user speaks again; after words of sorrow, for six utterances.
+agent stays quiet until the user speaks again; after words of sorrow, for twelve utterances.
 """
 
 hushed = module.signal("hushed")

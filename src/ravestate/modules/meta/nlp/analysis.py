@@ -13,6 +13,7 @@ from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
 from ravestate.language.feelings import clauses, feelings
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
+from ravestate.language.moves import Move, bundled_moves, compared
 from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
@@ -57,6 +58,9 @@ class Analysis:
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
 
+    move: Move | None = None
+    """The move that a good listener makes next: rejoice, console, advise..."""
+
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
 
@@ -98,7 +102,10 @@ def analyse(
     sentences = sentences_of(normal.text)
     parsed = Clause.all_in(tree)
     statements = statements_of(tree, entities, parsed)
-    bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names)])  # one run of the encoder for all matchers
+    bundled_matcher("acts").prepare(
+        [*sentences, *clauses(sentences, names), *compared(sentences)]
+    )  # one run of the encoder for all matchers
+    question = question_of(tree, parsed)
     return Analysis(
         text=text,
         normal=normal,
@@ -106,12 +113,13 @@ def analyse(
         entities=entities,
         triples=tuple(statement.triple for statement in statements),
         yesno=yesno_of(normal.text if "?" in text else normal.text.replace("?", ".")),  # an added mark is a guess
-        question=question_of(tree, parsed),
+        question=question,
         about_agent=_is_about_agent(tree, names),
         sentences=sentences,
         statements=statements,
         acts=acts(sentences),
         feelings=feelings(sentences, names),
+        move=bundled_moves().move(sentences, asks=question is not None or "?" in text),
         intents=_intents(designed, sentences) if designed else {},
     )
 

@@ -10,6 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
 from ravestate.language.matcher import bundled_matcher
+from ravestate.language.moves import bundled_moves
 from ravestate.modules import interloc, rawio
 
 from . import names
@@ -37,6 +38,7 @@ def learn(ctx: rs.RuleContext) -> None:
     try:
         for name in (*MATCHERS, "answers"):
             bundled_matcher(name).load()
+        bundled_moves().load()
         give_back()
     except ModelMissing as error:
         warn_once(ctx.log, error)

@@ -177,7 +177,9 @@ class _Assertion:
             return False
         if self._tense == "past":
             return not (lemma in _HABITS and self._when)
-        goes_on = self._low & {"since", "for", "always", "been", "all"}  # I have lived here since 2010
+        clauses = self._tree.children(self._clause.verb, "advcl")
+        low = self._low | {word.low for word in self._tree.children_of(clauses, "mark")}
+        goes_on = low & {"since", "for", "always", "been", "all"}  # I have lived here since 2010
         return self._tense == "perfect" and lemma in ("live", "work", "study") and not goes_on
 
     # ---------------------------------------------------------------------------------------- reading

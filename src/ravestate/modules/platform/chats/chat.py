@@ -16,6 +16,7 @@ from ravestate.modules._text import printable, without_controls
 
 from . import people
 from .commands import COMMANDS, FORGOTTEN, NOT_FORGOTTEN, UNCLEAR, UNHEARD, UNSEEN, Command, explanation
+from .leaving import agent_left
 from .messages import DeliveryError, Outgoing, Person
 from .sender import back_off
 from .splitting import split
@@ -134,19 +135,11 @@ class Chat:
         async with context:
             self.context = context
             context.put(self._room.slot, self)
-            stopped = asyncio.create_task(context.until_stopped())
-            hearing = asyncio.create_task(self._hear_all())
             try:
-                await asyncio.wait((stopped, hearing), return_when=asyncio.FIRST_COMPLETED)
-                if stopped.done():
-                    stopped.result()
-                else:
-                    hearing.result()
+                if not await agent_left(context, self._hear_all()):
                     await self._answered(FAREWELL)
                 self._end(finished=not self._room.closing)
             finally:
-                stopped.cancel()
-                hearing.cancel()
                 self._end(finished=False)
                 self._mute = True  # a chat is put to rest in silence
 
@@ -241,7 +234,7 @@ class Chat:
             context.emit(self._room.command, command)
 
     def _leave_soon(self, context: Context, person: Person, forgotten: bool = False) -> None:
-        people.leave(context, self._room.name, person)
+        people.leave(context, people.key(self._room.name, person))
         if not context.read(interloc.users) or forgotten:
             self._leave = True
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
 MEMORY = "ontology:memory"
-PATIENCE = 5.0
+PATIENCE = 30.0
 """The seconds to wait for memory; after that the conversation begins without it."""
 
 
@@ -43,15 +43,20 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
                 node = await memory.together(lambda graph: _known(graph, account, person.name))
                 name = Recognised(node["name"], node) if node.get("name") else name
     except (RavestateError, TimeoutError) as error:
-        log.warning("memory was not asked about a person: %s", error or "it took too long")
-    users = context.read(interloc.users)
-    context.put(interloc.users, {**users, key(platform, person): name})
+        log.warning("memory was not asked about a person: %s", str(error) or "it took too long")
+        name = None  # their name alone might be that of another person, of whom memory knows more
+    join(context, key(platform, person), name)
 
 
-def leave(context: Context, platform: str, person: Person) -> None:
-    """Remove a person from the users who are present."""
+def join(context: Context, key: str, name: str | None) -> None:
+    """Add a user to those who are present."""
+    context.put(interloc.users, {**context.read(interloc.users), key: name})
+
+
+def leave(context: Context, key: str) -> None:
+    """Remove a user from those who are present."""
     users = context.read(interloc.users)
-    context.put(interloc.users, {k: user for k, user in users.items() if k != key(platform, person)})
+    context.put(interloc.users, {each: user for each, user in users.items() if each != key})
 
 
 def present(context: Context, platform: str, person: Person) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import hmac
 import json
@@ -65,9 +66,13 @@ async def listen(
         raise PlatformError(f"the webhook cannot listen on {address[0]}, port {address[1]}: {error.strerror}") from None
     app = Starlette(routes=[Route(urlsplit(url).path or "/", post, methods=["POST"])])
     server = _Server(uvicorn.Config(app, log_config=None, access_log=False, server_header=False, lifespan="off"))
-    with listener:
+    serving = asyncio.create_task(server.serve(sockets=[listener]))
+    try:
         await announce()
-        await server.serve(sockets=[listener])
+        await asyncio.shield(serving)
+    finally:
+        server.should_exit = server.force_exit = True
+        await serving
 
 
 class _Server(uvicorn.Server):

@@ -30,6 +30,9 @@ POLL = 30
 CONFLICTS = 4
 """The number of conflicts in a row after which the bot gives up: another program polls it all the time."""
 
+SETTLED = 60.0
+"""The seconds after which the bot no longer gives up: then the other program is the newcomer, and should."""
+
 CONFLICT_WAIT = 2.0
 """The seconds to wait after the first conflict. After a crash, the server still holds the old process's request."""
 
@@ -102,6 +105,8 @@ class Inlet:
     async def poll(self) -> None:
         """Ask the server for updates."""
         offset, attempt, conflicts, ready = 0, 0, 0, False
+        now = asyncio.get_running_loop().time
+        settled = now() + SETTLED
         # `Bot.get_updates` would fail for all updates of an answer if one of them is malformed.
         post: Any = self._bot._post  # pyright: ignore[reportPrivateUsage]
         while True:
@@ -116,12 +121,13 @@ class Inlet:
                 raise PlatformError("telegramio: the token is no longer valid: @BotFather has the new one") from None
             except Conflict as error:
                 conflicts += 1
-                if conflicts >= CONFLICTS:
+                if conflicts >= CONFLICTS and now() < settled:
                     raise PlatformError(
                         "telegramio: another program gets the messages of this bot: end it, or make another bot "
                         f"({error.message})"
                     ) from None
-                await asyncio.sleep(CONFLICT_WAIT * conflicts)
+                log.warning("another program asks for the messages of this bot")
+                await asyncio.sleep(CONFLICT_WAIT * min(conflicts, CONFLICTS))
             except (TelegramError, TypeError, KeyError, ValueError) as error:
                 log.log(logging.WARNING if attempt == 3 else logging.INFO, "no updates: %s", error)
                 await asyncio.sleep(error.seconds if isinstance(error, FloodError) else back_off(attempt))

@@ -4,31 +4,14 @@ from __future__ import annotations
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
+from ravestate.modules.platform.chats.rules import carry
 
 from .names import module, page
 
 SLOW = 0.3  # the seconds of waiting after which the page shows that the agent is working
 
 
-@module.rule(when=rawio.output.changed.max_age(None).detached(), reads=page)
-async def show(ctx: rs.RuleContext) -> None:
-    """Show each utterance of the agent on the page."""
-    if session := ctx[page]:
-        session.utter(ctx.payload(rawio.output.changed))
-
-
-@module.rule(when=rawio.piece.max_age(None).detached(), reads=page, background=True)
-async def show_piece(ctx: rs.RuleContext) -> None:
-    """Show each piece of a growing utterance on the page."""
-    if session := ctx[page]:
-        session.grow(ctx.payload(rawio.piece))
-
-
-@module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=page, background=True)
-async def end_piece(ctx: rs.RuleContext) -> None:
-    """End a growing utterance that no rule has written as a whole."""
-    if session := ctx[page]:
-        session.fall_silent()
+carry(module, page)
 
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), reads=page)

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Literal, Protocol
 from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable, without_controls
+from ravestate.modules.platform.chats import people
+from ravestate.modules.platform.chats.leaving import agent_left
 
 from .line import PageLine, Window
 from .names import page
@@ -176,10 +178,9 @@ class Session:
                 context.put(page, self)
                 if self.line is not None:
                     context.put(rawio.sound, self.line)
-                context.put(interloc.users, {**context.read(interloc.users), self.visitor: self.name})
+                people.join(context, self.visitor, self.name)
                 await self._until_left()
-                users = self.context.read(interloc.users)
-                self.context.put(interloc.users, {key: user for key, user in users.items() if key != self.visitor})
+                people.leave(context, self.visitor)
                 async with asyncio.timeout(FAREWELL):
                     await context.quiet()
         except TimeoutError:
@@ -202,17 +203,11 @@ class Session:
             self._left.set()
 
     async def _until_left(self) -> None:
-        left = asyncio.create_task(self._left.wait())
-        stopped = asyncio.create_task(self.context.until_stopped())
         try:
-            await asyncio.wait((left, stopped), return_when=asyncio.FIRST_COMPLETED)
-            self._left.set()  # from now on the session takes no input
-            if stopped.done():
+            if await agent_left(self.context, self._left.wait()):
                 self._reason = Ending.LEFT
-                stopped.result()
         finally:
-            left.cancel()
-            stopped.cancel()
+            self._left.set()  # from now on the session takes no input
 
     @property
     def leaving(self) -> bool:

@@ -24,6 +24,10 @@ from .remarks import act_in, remark_in
 from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
+CERTAIN = 0.7
+"""The confidence in a topic from which it needs no second sign that the question is about the agent."""
+STATED = 0.85
+"""The same for a statement: *I don't know what to say* is no question about the agent."""
 TURNS = 6
 """The user's utterances before which the agent does not offer to be asked."""
 
@@ -75,6 +79,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     told, seen = ctx[life], ctx.payload(nlp.analysis.changed)
     if told is None or seen is None:
         return rs.Resign("the agent has no life yet, or nothing was said")
+    if seen.question is None and seen.move is not None and seen.move.listens:
+        return rs.Resign(f"the user wants another answer: {seen.move.name}")
     route = router_of(told).route
     found: Match | Miss = Miss("")
     if ctx[idle.asked] and await asyncio.to_thread(_returns, seen):
@@ -85,6 +91,9 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
+    certain = CERTAIN if seen.question is not None or "?" in seen.text else STATED
+    if seen.move is not None and found.score < certain and "self" not in (seen.move.name, seen.move.second):
+        return rs.Resign(f"{found.topic} is only likely, and the user wants another answer: {seen.move.name}")
     ctx.log.debug("%s", found)
     ctx.emit(asked, found)
     return None

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ravestate.language.entity import Entity
+from ravestate.language.moves import LISTENING
 from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.analysis import Analysis
@@ -283,7 +284,16 @@ def not_asked(heard: Parse, analysis: Analysis) -> str:
     words = [word for word in heard.asked if word.pos != "PUNCT"]
     if len(words) == 1 and not words[0].index and words[0].tag not in WH and len(analysis.sentences) > 1:
         return "it only repeats a word"  # "Holiday? In this weather?"
-    if heard.kind is not None or scaled(analysis.text):
+    if scaled(analysis.text):
+        return ""
+    told = (
+        analysis.question is None
+        and "?" not in analysis.text
+        and any(word.tag in FINITE for word in analysis.tree.words)
+    )
+    if analysis.move is not None and (analysis.move.listens or (told and analysis.move.name in LISTENING)):
+        return f"the user wants another answer: {analysis.move.name}"
+    if heard.kind is not None:
         return ""
     if any(match.score >= 0.5 for match in analysis.acts.values()):
         return "it is small talk"

@@ -67,7 +67,8 @@ class Reader:
         self.tree = seen.tree
         self.words = {word.low for word in seen.tree.words}
         self.asked = asked
-        self.person = person or self.without_name()
+        owned = (self.relative(said.object.head) for said in seen.statements if said.subject.person == "I")
+        self.person = person or next(filter(None, owned), "")
 
     def facts(self, known: Facts | None = None) -> list[Fact]:
         """Return the facts that the user states, one for each topic; `known` are those of before."""
@@ -234,7 +235,11 @@ class Reader:
             nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
             before = f"{self._word_before(phrase)} {phrase.preposition}"
             keys = [f"{'have' if has else predicate} {object.head} {phrase.preposition}"] if phrase != object else []
-            keys += [] if nominal else [f"{predicate} {phrase.preposition}".strip()]
+            keys += (
+                []
+                if nominal or (predicate == "be" and phrase != object and phrase.preposition != "from")
+                else [f"{predicate} {phrase.preposition}".strip()]
+            )
             found = next(filter(None, map(SAYS.get, (*keys, before))), None)
             if phrase.text and found:
                 topic = "childhood" if child and found[0] == "home" else found[0]

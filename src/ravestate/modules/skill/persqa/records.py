@@ -28,7 +28,7 @@ def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
 
 
 def has_talked(graph: ontology.Graph, person: ontology.Node) -> bool:
-    """Return whether a person of memory has talked to the agent: others have only told of those who have not."""
+    """Return whether a person of memory has talked to the agent; others may only have mentioned them."""
     relations = graph.relations(person)
     return not relations or any(relation.source.id == person.id for relation in relations)
 

@@ -188,13 +188,14 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
     verb = reader.verb(said)
     gets = said.verb == "get" and verb is not None and verb.low == "got"
     thing = reader.written(said.object)
-    return (gets or said.verb in ("have", "own")) and max(likeness(thing, "possession"), likeness(thing, "trait")) > 0.1
+    kept = max(likeness(thing, "possession"), likeness(thing, "trait")) > 0.1
+    animal = gets and TOPICS[NOUNS.get(said.object.head, NAME)].type == "Animal"
+    return animal or ((gets or said.verb in ("have", "own")) and kept)
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether it is an event with a name or a time: *I went to Prague*, *I saw a fox yesterday*."""
-    content = said.object.text and (said.object.names or said.when)
-    return bool(content) and said.verb in WORDS["events"] and _happened(reader, said)
+    """Return whether it is an event with a name: *I went to Prague*, but not *I went to the shop*."""
+    return bool(said.object.names) and said.verb in WORDS["events"] and _happened(reader, said)
 
 
 def _happened(reader: Reader, said: nlp.Statement) -> bool:
@@ -208,14 +209,15 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     """Return the subject of a statement about the user or somebody they know; empty for others."""
     subject, object = said.subject, said.object
     if subject.person == "I":
-        mine = "my" in object.text.lower().split() and not _happened(reader, said)
+        mine = {"my", "our"} & set(object.text.lower().split()) and not _happened(reader, said)
+        mine = mine or said.verb in ("name", "call")
         verb = reader.verb(said)
         deictic = _DEICTIC.match(reader.written(object)) or (verb is not None and verb.dep == "relcl")
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
         there = (
             object.preposition and not object.text[:1].isupper()
         )  # I drive for Transkorn, but not I wait for the bus
-        fits = object.text and (not there or _happened(reader, said)) and not mine and not deictic
+        fits = object.text and not there and not mine and not deictic
         if said.verb == "be":
             fits = fits and likeness(object.text, "trait") > 0.1
         elif said.verb in ("have", "get", "own"):

@@ -51,6 +51,8 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         return None  # between jobs
     if kind != "name" and (_DEICTIC if kind in ("activity", "thing") else _ANYTHING).match(text):
         return None
+    if text.lower() in topic.nouns:  # I go to university
+        return None
     if kind == "number":
         number = number_in(text)
         return number if 0 < int(number or 0) < 120 else None

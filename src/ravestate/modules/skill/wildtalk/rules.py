@@ -21,7 +21,18 @@ from .llama import LlamaBackend, checked_model
 from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
 from .openai import OpenAIBackend
 from .progress import ProgressBar
-from .small_talk import follow_up, gate_for, heard_in, is_open, learn_all, listen, listener, notes_for, traces
+from .small_talk import (
+    follow_up,
+    gate_for,
+    heard_in,
+    is_open,
+    learn_all,
+    listen,
+    listener,
+    needs_comfort,
+    notes_for,
+    traces,
+)
 from .transformers import TransformersBackend
 from .utterance import Utterance
 
@@ -237,6 +248,21 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     if not said:
         return rs.Resign("it is neither a move in a game nor a short answer")
     ctx[rawio.output] = said
+    return None
+
+
+@module.rule(
+    when=nlp.analysis.changed.where(needs_comfort),
+    reads=(model, interloc.users, overheard, history),
+    writes=(rawio.output, listening),
+    weight=4.0,  # outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
+)
+async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Answer sorrow first, whatever else was said."""
+    seen = ctx.payload(nlp.analysis.changed)
+    if seen is None or not isinstance(ctx[model], ListeningBackend):
+        return rs.Resign("a language model answers")
+    ctx[rawio.output] = await listen(ctx, heard_in(ctx, seen.text, seen))
     return None
 
 

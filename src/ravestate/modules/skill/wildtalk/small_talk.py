@@ -21,6 +21,11 @@ LATELY = 12
 MENTIONED = 4
 """The number of the last utterances that an answer may refer to."""
 
+SORROWFUL = frozenset(("console", "mourn"))
+"""Moves in reply to a sorrow."""
+OVERHEARD = 6
+"""The last utterances whose traces are kept until the skill answers."""
+
 _TONES = {
     "sad": "The user is sad. Be gentle and brief.",
     "angry": "The user is angry. Stay calm, and take them seriously.",
@@ -52,6 +57,13 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
     return Heard(text, seen, users[0] if len(users) == 1 else "")
 
 
+def needs_comfort(seen: nlp.Analysis | None) -> bool:
+    """Return whether the user is in sorrow: the feeling and the likely move agree."""
+    if seen is None or seen.question is not None or seen.move is None:
+        return False
+    return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
+
+
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
     """Return the answer of the listening skill, and remember it."""
     state = up_to_date(ctx, heard.text)
@@ -79,8 +91,10 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
         text: The utterance to be answered; its own entry in `overheard` is skipped.
     """
     state = ctx[listening]
-    for one in ctx[overheard]:
-        if one.text not in (text, state.before):
+    since = list(ctx[overheard])
+    answered = [place for place, one in enumerate(since) if one.text == state.before]
+    for one in since[answered[-1] + 1 :] if answered else since:
+        if one.text != text:
             state = replace(state.toned(one.tone, one.lasts), being=one.being or state.being, before=one.text)
     answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
     words = [answer for answer in answers if any(map(str.isalpha, answer))]
@@ -91,8 +105,8 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
 
 
 def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
-    """Return the records of the last two utterances, newest last: their tone and person, also where another module answers."""
-    return (*ctx[overheard][-1:], listener().overhear(seen, ctx[listening].being))
+    """Return the records of the last utterances, newest last: their tone and person, also where another module answers."""
+    return (*ctx[overheard][1 - OVERHEARD :], listener().overhear(seen, ctx[listening].being))
 
 
 def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:

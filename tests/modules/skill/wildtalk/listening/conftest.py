@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from ravestate.language.matcher import bundled_matcher
+from ravestate.language.moves import bundled_moves
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
@@ -37,6 +38,7 @@ def seen(text: str) -> Analysis:
 def _models() -> None:
     for name in ("acts", "feelings"):
         bundled_matcher(name).load()
+    bundled_moves().load()
     Listener().load()
 
 

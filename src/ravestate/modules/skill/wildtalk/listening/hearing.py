@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import random
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ravestate.language.feelings import clauses
+from ravestate.language.contractions import word_set
+from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
-from ravestate.modules.skill.wildtalk.facts import facts_matcher
 
 from .material import Material, Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
-SURE, MEANT = 0.8, 0.7
-"""The confidence in a moment and an act from which they decide."""
-HALF, HALF_ASKED = 0.7, 0.68
-"""The confidence in a moment that needs a second sign: a word in common with its example; and that in a question."""
-PLAIN = 0.75
-"""The confidence in a question that needs no second sign."""
+SURE, MEANT = 0.85, 0.7
+"""The confidence in a moment and in an act from which they decide."""
+EXACT = 0.97
+"""The confidence in a moment from which it needs no likely move."""
 FINER = 0.1
 """The advantage of a moment over a feeling or an act, which are broader."""
 FELT, GLAD, AMAZED = 0.65, 0.8, 0.9
@@ -42,53 +40,23 @@ SHORT = 4
 """The words of a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that are only taken for sure ones."""
-_CONTENT = ("NOUN", "VERB", "ADJ", "PROPN")
-_COMMON = frozenset(
-    ("be", "do", "have", "go", "get", "say", "tell", "know", "think", "want", "come", "make", "see", "take")
-)
-_ASKING = frozenset(
-    (
-        "who",
-        "what",
-        "when",
-        "where",
-        "why",
-        "which",
-        "how",
-        "whose",
-        "do",
-        "does",
-        "did",
-        "is",
-        "are",
-        "was",
-        "can",
-        "could",
-        "will",
-        "would",
-        "should",
-        "may",
-        "have",
-    )
+_ASKING = word_set(
+    "who what when where why which how whose do does did is are was can could will would should may have"
 )
 """Closed-class words that begin a question."""
-_TAGGED = re.compile(
-    r"\W(?:right|huh|eh|innit|yeah|okay|ok)\?+$|\b(?:n't|not|\w+n't) (?:i|you|he|she|it|we|they)\?+$", re.IGNORECASE
-)
-"""The end of a statement that wants a nod: *we did it, right?*"""
 _LEAVING = re.compile(
     r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
 )
 """The farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The offer to tell something."""
-_RHETORICAL = re.compile(r"(?:\?[?!]|!\?)[?!]*$")
-"""The end of a question that vents."""
-_UNENDING = frozenset(
-    ("and", "but", "or", "because", "if", "the", "a", "an", "my", "your", "is", "'s", "are", "'re", "'m", "to")
-)
+_AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
+"""The end of a statement that astonishes: *he ate it all, can you believe it?*"""
+_UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
 """Closed-class words that end no utterance."""
-_SAD = frozenset(("grief", "illness", "sadness", "loneliness", "worry", "failure", "anger", "tiredness"))
+_SAD = SORROWS | {"tiredness"}
+_JUDGING = frozenset(("think", "feel", "know"))
+"""Verbs of questions such as *what do you think about jazz*."""
 _THIRD = frozenset(("he", "she", "they"))
 
 
@@ -113,19 +81,20 @@ class Hearing:
     """The feelings, acts and moments, best first."""
     moment: str = ""
     """The name of the moment that it resembles most, even a little."""
-    verb: Moment | None = None
+    moves: tuple[str, ...] = ()
+    """The moves that may come next, the likeliest first: one, or two if both are likely; none if that is unknown."""
     topic: Moment | None = None
     thing: str = ""
     """The thing that the agent's opinion is asked for."""
 
 
-def hear(phrases: Material, heard: Heard, state: State, chance: random.Random) -> Hearing:
+def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
     """Return what an utterance is."""
     seen, text = heard.seen, heard.text
     tongue = tongue_of(text, phrases.tongues)
     signs = {"number": is_number(text), "foreign": tongue != "", "nonsense": is_nonsense(text)}
     signs |= {"signs": not any(map(str.isalnum, text)), "asking": text.rstrip().endswith("?")}
-    signs |= {"coin": chance.random() < 0.5, "unparsed": seen is None, state.tone: True, "tone": state.tone != ""}
+    signs |= {"unparsed": seen is None, state.tone: True, "tone": state.tone != ""}
     found = Hearing({tag for tag, holds in signs.items() if holds}, tongue=tongue)
     if seen is not None:
         _understand(found, phrases, heard, seen, state)
@@ -134,17 +103,22 @@ def hear(phrases: Material, heard: Heard, state: State, chance: random.Random) -
 
 def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis, state: State) -> None:
     asking = asking_sentence(seen)
-    moment, sentence, score = moment_of(phrases, seen, asking)
+    found.moves = likely(phrases, seen)
+    if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
+        found.tags.add("shown")
+    moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
         match = seen.feelings[feeling.name]
         feeling = feeling if match.score >= TURNED and match.text not in asking else None
+    if feeling is not None and not _fits(feeling, found.moves):
+        feeling = None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
-    roles = roles.having(user=heard.user, before=state.before.strip().rstrip(".!?")[:80])
+    last = state.said[-1] if state.said else ""
+    roles = roles.having(user=heard.user, last="" if last.endswith("?") else last)
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
-    found.meanings = _ranked(phrases, seen, state, asking, moment, score, feeling)
-    about = moment if moment is not None and moment.name in phrases.topics else None
+    found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
     low = {word.low for word in seen.tree.words}
@@ -152,183 +126,137 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
-    refused = [word.low for word in seen.tree.words[:2]]
-    starts_no = (
-        refused[:1] in (["no"], ["nah"], ["nope"])
-        and (  # not "no milk left"
-            refused[1:] in ([","], ["."], ["!"], ["no"]) or "i" in refused or "you" in refused
-        )
-    )
     choice = _choice_in(seen)
     tags = {
         kind: True,
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,
-        "shown": bool(state.said and state.shown) and state.said[-1].endswith(state.shown[-1]),
         "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
-        "single": size <= 1,
         "leaving": not asking and bool(_LEAVING.search(seen.text)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
         "sure": score >= SURE,
-        "certain": score >= TURNED,
-        "topical": moment is not None and size > 2,
         "others": others,
         "asserting": verb and others,
-        "fragment": size <= SHORT + 2,
         "called": called != "",
-        "request": is_request(seen) and seen.question is None,
         "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
-        and not statement.conditional,
+        and not statement.conditional and "thing" in roles.values,
+        "request": is_request(seen) and seen.question is None and len(seen.sentences) == 1,
         "broken": _is_broken(seen, size),
-        "correcting": starts_no and verb and size > SHORT and bool(state.said) and seen.question is None
-        and not (pending is not None and pending.closed),
+        **dict.fromkeys(found.moves, True),
     }  # fmt: skip
     if asking:
         tags |= _question_tags(found, phrases, seen, asking, low) | {"choice": choice[0] != ""}
     elif statement is not None:
-        tags |= _statement_tags(phrases, seen, statement, roles, low)
-        name = f"not {statement.verb}" if statement.negated else statement.verb
-        found.verb = next((one for one in phrases.verbs.values() if name in one.words), None)
+        tags |= _statement_tags(phrases, seen, statement, roles)
         heads = {
             word.lemma.lower()
             for word in seen.tree.words
             if word.dep in ("nsubj", "nsubjpass", "dobj", "attr") and seen.tree.head(word).dep == "ROOT"
         } & {statement.object.head, statement.subject.head}
-        about = next((one for one in phrases.topics.values() if heads & one.words), None) or about
-    found.topic = about
+        found.topic = next((one for one in phrases.topics.values() if heads & one.words), None)
     found.tags |= {tag for tag, holds in tags.items() if holds}
     found.roles = roles.having(called=called, first=choice[0], second=choice[1])
+
+
+def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
+    """Return the moves that may come next: the likeliest, and the second one unless the first is likely enough."""
+    move = seen.move
+    if move is None:
+        return ()
+    return (move.name,) if move.score >= phrases.replies[move.name].least else (move.name, move.second)
 
 
 def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: str, low: set[str]) -> dict[str, bool]:
     asked = next((one for one in seen.statements if one.question), None)
     subject = "" if asked is None else asked.subject_person
     about = _about_in(seen)
+    about = about if about.split()[-1:] and about.split()[-1].lower() in asking.lower() else ""
     found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
-    owned = asked is not None and asked.subject.of("you") and about != ""
-    opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opinion"].words
+    opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
     polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
     words = re.findall(r"[\w']+", asking.lower())
     addressed = bool({"you", "u", "your", "yourself"}.intersection(words))
     opened = bool(words) and (words[0] in _ASKING or not polar)
     pointed = asked is not None and asked.subject.text.lower() in ("it", "this", "that", "there", "everything")
-    tagged = _TAGGED.search(asking) is not None
     feeling = "tone" in found.tags or any(word.pos == "ADJ" for word in seen.tree.words)
-    recalled = {"remember", "recall"} & low
     mine = asked is not None and (asked.subject.of("I") or asked.object.of("I"))
     return {
         "question": True,
         "polar": polar,
-        "tagged": tagged,
-        "rhetorical": _RHETORICAL.search(asking) is not None and (subject in ("I", "you") or "tone" in found.tags),
-        "contested": polar
-        and not opened
-        and bool({"said", "told", "wrong"}.intersection(words))
-        and ("you" in words or (subject == "I" and tagged)),
-        "opened": opened,
         "offer": _OFFER.match(asking) is not None,
         "will": bool(modal & {"will", "'ll"}),
-        "worried": polar and not addressed and (subject == "I" or (pointed and (feeling or "will" in modal))),
+        "worried": polar
+        and not addressed
+        and not low & {"should", "if"}
+        and (subject == "I" or (pointed and (feeling or "will" in modal))),
         "world": not polar or (opened and (subject in ("", "other") or asked is None or asked.verb == "know")),
         "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
         "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
-        "should": not polar
-        and subject == "I"
-        and (
-            seen.question is QuestionWord.FORM
-            or bool(modal & {"should", "must", "shall"})
-            or (bool(modal) and bool(low & {"do", "say"}))
-        ),
-        "agree": polar and subject != "you" and asked is not None and asked.negated,
-        "you_think": polar and subject == "you" and asked is not None and asked.verb in ("think", "believe", "suppose"),
-        "told": (not polar and mine and subject != "you" and not modal)
-        or (
-            subject == "I"
-            and words[0] in _ASKING
-            and "we" not in words
-            and not polar
-            and not modal | low & {"am", "'m"}
-            and seen.question is not QuestionWord.FORM
-        )
-        or bool(recalled and "you" in low)
+        "should": not polar and subject == "I" and (seen.question is QuestionWord.FORM or bool(modal)),
+        "told": (not polar and (mine or subject == "I") and subject != "you" and not modal)
+        or bool({"remember", "recall"} & low and "you" in low)
         or ("know" in words and subject == "you" and "my" in words),
-        "why": seen.question is QuestionWord.REASON,
-        "fact": facts_matcher().loaded and any(facts_matcher().match_all(seen.sentences)),
-        "hypothetical": bool(low & {"would", "if", "imagine"}),
-        "agent": seen.about_agent,
         "to_agent": addressed and (asked is None or subject == "you" or asked.subject.of("you")),
-        "of_user": subject == "I",
-        "opinion": found.thing != "" and (owned or opining),
+        "able": polar and subject == "you" and bool(modal & {"can", "could"}),
+        "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
 
-def _statement_tags(
-    phrases: Material, seen: Analysis, statement: Statement, roles: Roles, low: set[str]
-) -> dict[str, bool]:
-    mine = statement.subject_person == "I" and statement.object.person != "you"
+def _statement_tags(phrases: Material, seen: Analysis, statement: Statement, roles: Roles) -> dict[str, bool]:
     return {
-        "mine": mine,
+        "mine": statement.subject_person == "I" and statement.object.person != "you",
         "living": is_living(phrases, statement) and "they" in roles.values,
-        "about_me": statement.subject_person == "you",
-        "thing_told": statement.subject_person == "other" and statement.subject.head != "",
-        "described": statement.verb in ("be", "have"),
         "past": is_past(statement.verb, seen),
-        "used": statement.past and "used" in low,
-        "plan": statement.plan,
         "negated": statement.negated,
-        "imagined": statement.conditional,
-        "age": statement.verb == "be" and statement.object.head.isdigit(),
     }
 
 
 def _ranked(
-    phrases: Material,
-    seen: Analysis,
-    state: State,
-    asking: str,
-    moment: Moment | None,
-    score: float,
-    feeling: Moment | None,
+    phrases: Material, seen: Analysis, state: State, found: Hearing, asking: str, score: float, feeling: Moment | None
 ) -> list[Moment]:
     """Return the feelings, acts and moments that decide, best first."""
     ranked: list[tuple[float, Moment]] = []
+    moment = phrases.moments.get(found.moment)
     light = moment is not None and moment.tone != "sad" and "sad" not in moment.groups
     if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
-        score = score if score >= TURNED else 0.0  # no light talk in grief
+        score = (
+            score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
+        )  # no light talk
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
         score = score if score >= CLOUDED else 0.0  # tears of joy
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
         score = 0.0  # "I must tell you, I am afraid"
-    if moment is not None and moment.name in phrases.moments and score >= SURE:
+    if moment is not None and score >= SURE:
         ranked.append((score + FINER, moment))
     if feeling is not None:
         ranked.append((seen.feelings[feeling.name].score, feeling))
-    for act in seen.acts.values():
-        sad = feeling is not None and feeling.tone == "sad" and act.text == seen.feelings[feeling.name].text
-        sad = sad or (moment is not None and moment.tone == "sad" and score >= act.score and len(seen.sentences) == 1)
-        leaves = act.name == "farewell" and act.text in seen.sentences[-1:] and not sad
-        few = len(act.text.split()) <= FEW_WORDS
-        least = SURE if leaves else ASKED if act.name in ENDINGS else FEW if few else MEANT
+    for act in (act for act in seen.acts.values() if act.name in phrases.acts):
+        few, last = len(act.text.split()) <= FEW_WORDS, act.text in seen.sentences[-1:]
+        least = ASKED if act.name in ENDINGS else FEW if few else MEANT
+        whole = len(seen.sentences) == 1 and len(act.text) >= len(seen.sentences[0]) - 1
         beside = (
             act.text != asking or act.name in ("greeting", "farewell")
             if asking
-            else few and len(seen.sentences) > 1 and not leaves
+            else few and not whole and not (last and act.name == "farewell")
         )
-        if act.name in phrases.acts and act.score >= least and not beside:
-            ranked.append((act.score + leaves, phrases.acts[act.name]))
-        elif act.name == "greeting" and act.score >= MEANT and not asking:  # better than nothing
-            ranked.append((0.0, phrases.acts[act.name]))
+        if act.score >= least and not beside and (_fits(phrases.acts[act.name], found.moves) or (whole and few)):
+            ranked.append((act.score, phrases.acts[act.name]))
     return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
+
+
+def _fits(moment: Moment, moves: Sequence[str]) -> bool:
+    """Return whether a moment may answer one of the likely moves."""
+    return not moves or not moment.moves or not moment.moves.isdisjoint(moves)
 
 
 def asking_sentence(seen: Analysis) -> str:
     """Return the question among the sentences of an utterance; empty if it asks nothing."""
-    if seen.question is None or not seen.sentences:
+    if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
         return ""
     marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
     opened = [
@@ -346,57 +274,30 @@ def asking_sentence(seen: Analysis) -> str:
     return [*seen.sentences, *opened, *marked][-1]
 
 
-def moment_of(phrases: Material, seen: Analysis, asking: str = "") -> tuple[Moment | None, str, float]:
-    """Return the moment or topic that a sentence resembles most, with the sentence and the confidence.
+def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
+    """Return the moment that a sentence resembles most, with the sentence and the confidence.
 
-    If the user asks something, only the question and sad moments count.
+    Only a moment that may answer one of the moves counts, or one whose example the user says nearly word for word. If the
+    user asks something, only the question counts.
     """
     best, sentence, score = None, "", 0.0
-    size = sum(word.pos != "PUNCT" for word in seen.tree.words)
-    typical = {word for word in seen.tree.words if word.pos in _CONTENT and word.lemma.lower() not in _COMMON}
-    content = {form for word in typical for form in (word.low, word.lemma.lower())}
-    half, least = (HALF_ASKED, PLAIN) if asking else (HALF, SURE)
-    texts = list(dict.fromkeys((*seen.sentences[:4], *clauses(seen.sentences[:4]))))
+    imagined = any(one.conditional for one in seen.statements)
+    texts = [asking] if asking else list(seen.sentences[:4])
     for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
-        if match is None:
+        if match is None or match.score <= score:
             continue
-        sad, beside = _is_sad(phrases, match), asking != "" and match.text not in asking
-        if beside and not sad and match.score < TURNED:
-            continue
-        found, part = phrases.moments.get(match.name), match.text not in seen.sentences
-        few = len(match.text.split()) <= (FEW_WORDS if part else 2)
-        if few and (
-            (size > FEW_WORDS and not (sad and match.score >= SURE)) or match.score < SURE_OF_FEW
-        ):  # "sorry", "lol" decide nothing if more was said
-            continue
-        if (
-            match.score < (TURNED if asking else CLOUDED)
-            and not beside
-            and (asking != "") != _is_question(match.example)
-        ):
-            continue
-        if found is not None and not has_head(phrases, found, seen):
-            continue
-        second = match.score >= half and bool(content & set(match.example.split()))  # a word in common
-        sure = max(match.score, SURE) if second or match.score >= least else match.score
-        weight = sure if found else match.score / 2
-        if weight > score:
-            best, sentence, score = found or phrases.topics[match.name], match.text, weight
+        found = phrases.moments[match.name]
+        few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry": more was said
+        fits = match.score >= EXACT or (_fits(found, heard.moves) and not imagined)
+        if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
+            best, sentence, score = found, match.text, match.score
     return best, sentence, score
-
-
-def _is_question(example: str) -> bool:
-    return example.split()[0] in _ASKING
 
 
 def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
     """Return whether an utterance has one of the words that a moment needs: nobody is mourned without a word for it."""
     needed = phrases.heads.get(moment.heads, frozenset())
     return not needed or any(needed & {word.low, word.lemma.lower()} for word in seen.tree.words)
-
-
-def _is_sad(phrases: Material, match: Match) -> bool:
-    return match.name in phrases.moments and phrases.moments[match.name].tone == "sad"
 
 
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:

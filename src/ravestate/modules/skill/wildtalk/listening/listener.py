@@ -92,7 +92,7 @@ class Listener:
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
-        hearing = hear(self._phrases, heard, state, chance)
+        hearing = hear(self._phrases, heard, state)
         played = self._play(heard, state, chance, hearing.moment)
         if played is not None:
             text, after = played
@@ -166,7 +166,7 @@ class Listener:
             known = [line for line in lines if line.roles <= roles.values.keys()]
             fit = [line for line in known if not _said_lately(line.text, roles.fill(line.text), state)]
             if fit:
-                return chance.choice([line for line in fit if line.refers and not source.weak] or fit)
+                return chance.choice([line for line in fit if line.roles] or fit)
         return None
 
     def _sources(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -201,6 +201,20 @@ class Listener:
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
             yield _Source(moment.lines(*groups, "say", "again"), moment)
 
+    def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the replies of the likely move; of two likely ones, replies that suit both."""
+        tags, replies = hearing.tags, self._phrases.replies
+        sure, unsure = len(hearing.moves) == 1, "ask" if "question" in tags else "tell"
+        groups = ["asked"] if {"question", "request"} & tags else []
+        if "plainly" in tags and not tags & {"negated", "tone", "felt"}:
+            groups += ["plain"] if "mine" in tags else ["thing"]
+        if hearing.roles.being is not None and "question" not in tags:
+            groups.append(hearing.roles.being.kind)
+        groups += [state.tone, "say"]
+        if sure:
+            yield _Source(replies[hearing.moves[0]].lines(*groups), replies[hearing.moves[0]])
+        yield _Source(replies[unsure].lines(*groups))
+
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion; it is chosen once. It has none of people."""
         roles, stances = hearing.roles, self._phrases.plain["stances"]
@@ -210,13 +224,6 @@ class Listener:
             yield _Source([[stances.groups["as_before"][STANCES.index(before)]]])
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
-
-    def _verb(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the questions about the verb of a statement."""
-        if hearing.verb is not None:
-            tense = "past" if "past" in hearing.tags else "present"
-            names = ("theirs",) if "living" in hearing.tags else (tense, "say")
-            yield _Source(hearing.verb.lines(*names))
 
     def _topic(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the questions about a topic; about others, only those that speak of them."""

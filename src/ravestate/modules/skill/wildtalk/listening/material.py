@@ -19,9 +19,8 @@ from .state import LASTING
 ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
-"""The files of situations in a talk."""
-_POINTING = re.compile(r"\b(?:it|that|they|them)\b", re.IGNORECASE)
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads"))
+"""The files of situations in a talk. Each situation names the moves for which it may answer."""
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,11 +40,6 @@ class Line:
         """Whether it ends with a question."""
         return self.text.endswith("?")
 
-    @property
-    def refers(self) -> bool:
-        """Whether it takes up what was said, by a role or a pronoun."""
-        return bool(self.roles or _POINTING.search(self.text))
-
 
 @dataclass(frozen=True, slots=True)
 class Moment:
@@ -59,6 +53,12 @@ class Moment:
     examples: tuple[str, ...] = ()
     words: frozenset[str] = frozenset()
     """The nouns or verbs that are typical of it."""
+    moves: frozenset[str] = frozenset()
+    """The moves for which it may answer (language/moves.py)."""
+    after: str = ""
+    """A tag that the utterance needs: ``shown`` for remarks about a joke."""
+    least: float = 0.0
+    """The confidence in a move from which its replies are used."""
     heads: str = ""
     """The list in heads.yaml with the words of which it needs one."""
 
@@ -84,10 +84,10 @@ class Material:
     def __init__(self) -> None:
         self.feelings = _moments("feelings")
         self.acts = {**self.feelings, **_moments("acts")}
-        files = {file: _moments(file) for file in (*MOMENTS, "topics")}
+        files = {file: _moments(file) for file in MOMENTS}
         self.none = files["moments"].pop("none").examples
-        """Sentences that belong to none of the moments and topics."""
-        self.topics = {**_moments("subjects"), **files["topics"]}
+        """Sentences that belong to none of the moments."""
+        self.topics = {**_moments("subjects"), **_moments("topics")}
         self.moments = {name: one for file in MOMENTS for name, one in files[file].items()}
         none = (*self.none, *bundled("none").none)
         self.matchers = [
@@ -96,8 +96,8 @@ class Material:
         ]
         """One matcher a file: all of them together learn faster than one of all examples."""
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
-        self.verbs = _moments("verbs")
-        self.plain = _moments("plain")
+        self.replies = _moments("replies")
+        self.plain = {**_moments("plain"), **self.replies}
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
         self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}
@@ -133,7 +133,16 @@ def _moments(name: str) -> dict[str, Moment]:
         words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
         lasts = int(value.get("lasts", LASTING))
         found[key] = Moment(
-            key, groups, value.get("tone", ""), lasts, tuple(value.get("examples", ())), words, value.get("heads", "")
+            key,
+            groups,
+            value.get("tone", ""),
+            lasts,
+            tuple(value.get("examples", ())),
+            words,
+            frozenset(value.get("moves", ())),
+            value.get("after", ""),
+            float(value.get("least", 0.0)),
+            value.get("heads", ""),
         )
     return found
 

@@ -24,6 +24,7 @@ _POINTING = frozenset(("it", "that", "this", "there"))
 _SINGULAR = {"are": "is", "were": "was", "have": "has", "do": "does"}
 _ASIDES = frozenset(("think", "guess", "suppose", "believe"))
 _BESIDE = frozenset(("relcl", "prep", "pobj", "cc", "conj", "appos", "punct", "advcl", "acl"))
+_VAGUE = frozenset(("any", "some", "no", "what", "which", "its", "such", "every", "each", "all"))
 _NOMINAL = frozenset(("NOUN", "PROPN", "ADJ", "NUM", "DET", "PRON", "PART"))
 _TURNED = {
     "my": "your",
@@ -149,7 +150,7 @@ def _thing(tree: Tree, statement: Statement) -> str:
         for word in tree.words:
             if word.low == last and word.pos in ("NOUN", "PROPN"):
                 words = [part for part in tree.subtree(word) if part.dep not in _BESIDE]
-                odd = words[-1:] != [word] or any(part.pos not in _NOMINAL for part in words)
+                odd = words[-1:] != [word] or any(part.pos not in _NOMINAL or part.low in _VAGUE for part in words)
                 return "" if odd else turned(tree, words)
     return ""
 

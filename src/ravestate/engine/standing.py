@@ -1,0 +1,78 @@
+"""Standing: which of two clauses goes first, now and in time (L9, L15).
+
+The effective utility of a clause is its utility x weight x recovery. Recovery climbs linearly over the rule's cooldown.
+Two clauses that are both worth 0 compare by weight x recovery. Equals compare by declaration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf
+
+from ravestate.policy.model import Clause
+
+SAME = 1e-9
+"""Worths whose relative difference is at most this count as equal: two lines that cross do so at a rounded time."""
+
+
+class Standing:
+    """The worth of clauses at the present moment of an engine; `ran` is a rule's number → the time of its last run."""
+
+    __slots__ = ("now", "ran")
+
+    def __init__(self, ran: Mapping[int, float]) -> None:
+        self.ran = ran
+        self.now = 0.0
+
+    def recovery(self, clause: Clause) -> tuple[float, float]:
+        """Return how far the clause's rule has recovered (0 to 1), and how fast it does (per second)."""
+        rule = clause.rule
+        if rule.cooldown:
+            ran = self.ran.get(rule.index)
+            if ran is not None and self.now - ran < rule.cooldown:
+                return (self.now - ran) / rule.cooldown, 1.0 / rule.cooldown
+        return 1.0, 0.0
+
+    def effective(self, clause: Clause) -> float:
+        """Return the effective utility of a clause now, in nats (L9)."""
+        return clause.base * self.recovery(clause)[0] if clause.rule.cooldown else clause.base
+
+    def refuses(self, theirs: Clause, mine: Clause) -> bool:
+        """Return whether a clause goes before another, both now and in the moment after."""
+        if not (theirs.rule.cooldown or mine.rule.cooldown):
+            return theirs.base > mine.base or (theirs.base == mine.base and theirs.index < mine.index)
+        (far, fast), (my_far, my_fast) = self.recovery(theirs), self.recovery(mine)
+        worth = (theirs.utility * theirs.rule.weight, mine.utility * mine.rule.weight)
+        weight = (theirs.rule.weight, mine.rule.weight)
+        now = (worth[0] * far, worth[1] * my_far)
+        trend = (worth[0] * fast, worth[1] * my_fast)
+        bare = (weight[0] * far, weight[1] * my_far)
+        lead = _lead(now)
+        soon = lead or _lead(trend)
+        if now == (0.0, 0.0):
+            lead = _lead(bare)
+            if trend == (0.0, 0.0):
+                soon = lead or _lead((weight[0] * fast, weight[1] * my_fast))
+        first = 1 if theirs.index < mine.index else -1
+        return (lead or first) > 0 and (soon or first) > 0
+
+    def crossing(self, one: Clause, other: Clause) -> float:
+        """Return when the order of two clauses changes next by recovery (seconds); `inf` if it does not."""
+        (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
+        closing = one.base * fast - other.base * their_fast
+        behind = other.base * their_far - one.base * far
+        turn = inf
+        if closing * behind > 0:
+            turn = self.now + behind / closing
+        for clause in (one, other):
+            ran = self.ran.get(clause.rule.index)
+            if ran is not None and self.now < ran + clause.rule.cooldown < turn:
+                turn = ran + clause.rule.cooldown
+        return turn if turn > self.now else inf
+
+
+def _lead(pair: tuple[float, float]) -> int:
+    one, other = pair
+    if abs(one - other) <= SAME * max(abs(one), abs(other)):
+        return 0
+    return 1 if one > other else -1

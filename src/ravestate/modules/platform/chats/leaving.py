@@ -1,0 +1,31 @@
+"""Waiting until a conversation ends: the user leaves, or the agent does."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ravestate.runtime.context import Context
+
+
+async def agent_left(context: Context, user: Coroutine[Any, Any, object]) -> bool:
+    """Wait until a coroutine that follows the user returns, or until the agent stops its context.
+
+    Returns:
+        Whether the agent has stopped its context. The coroutine is then cancelled.
+
+    Raises:
+        RavestateError: The agent has stopped because of this error.
+        Exception: The coroutine has raised it.
+    """
+    following = asyncio.create_task(user)
+    stopped = asyncio.create_task(context.until_stopped())
+    try:
+        await asyncio.wait((following, stopped), return_when=asyncio.FIRST_COMPLETED)
+        (stopped if stopped.done() else following).result()
+        return stopped.done()
+    finally:
+        following.cancel()
+        stopped.cancel()

@@ -1,0 +1,57 @@
+"""Standing: which of two clauses goes first, now and in time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import ravestate as rs
+from laws.short import output, writer
+from ravestate.engine.standing import Standing
+
+
+def standing(ran: dict[int, float], now: float, **options: dict[str, Any]) -> tuple[Standing, list[Any]]:
+    """Return a standing at a time, and the clauses of the rules with these options, all on one signal."""
+    m = rs.Module("m")
+    a, out = m.signal("a"), output(m)
+    for name, given in options.items():
+        writer(m, name, a, out, **given)
+    policy = rs.compile(m)
+    found = Standing(ran)
+    found.now = now
+    return found, [rule.clauses[0] for rule in policy.rule_plans]
+
+
+def test_of_equals_the_first_declared_goes_first() -> None:
+    here, (one, other) = standing({}, 0.0, one={}, other={})
+    assert here.refuses(one, other)
+    assert not here.refuses(other, one)
+
+
+def test_the_weight_of_rules_worth_nothing_counts() -> None:
+    here, (one, other) = standing({}, 0.0, one={}, other={"weight": 2.0})
+    assert here.refuses(other, one)
+    assert not here.refuses(one, other)
+
+
+def test_a_rule_that_recovers_faster_from_nothing_is_refused_by_none() -> None:
+    here, (slow, fast) = standing({0: 5.0, 1: 5.0}, 5.0, slow={"cooldown": 20.0}, fast={"cooldown": 5.0})
+    assert not here.refuses(slow, fast)  # they are equal now, but not in the moment after
+    assert not here.refuses(fast, slow)  # and now the first declared goes first
+    here.now = 6.0
+    assert here.refuses(fast, slow)
+
+
+def test_the_order_changes_where_the_lines_cross() -> None:
+    here, (one, other) = standing({0: 0.0}, 1.0, one={"cooldown": 10.0, "weight": 2.0}, other={})
+    assert here.refuses(other, one)
+    assert here.crossing(one, other) == here.crossing(other, one) == 5.0
+    here.now = 5.0
+    assert not here.refuses(other, one)
+    here.now = 10.0
+    assert here.refuses(one, other)
+
+
+def test_a_crossing_at_a_rounded_time_is_a_crossing() -> None:
+    here, (one, other) = standing({0: 0.1}, 0.7, one={"cooldown": 0.9, "weight": 1.7}, other={"weight": 1.1})
+    here.now = here.crossing(one, other)
+    assert not here.refuses(other, one)

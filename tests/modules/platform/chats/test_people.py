@@ -1,0 +1,30 @@
+"""People are known by their accounts: two of one name are not confused, and a person is known again later."""
+
+import asyncio
+from pathlib import Path
+
+from modules.platform.chats.messenger import Post, letter, letters
+from ravestate.modules import persqa
+from ravestate.modules.platform.chats import Person, Room
+from ravestate.runtime.agent import Agent
+
+ADA, OTHER = Person("1", "Ada"), Person("2", "Ada")
+
+
+def test_a_stranger_of_the_same_name_hears_nothing_of_what_the_first_one_told(tmp_path: Path) -> None:
+    async def talk(*said: tuple[Person, str]) -> list[str]:
+        settings = {"ontology": {"path": tmp_path / "memory.lbug"}, "letters": {"path": tmp_path / "letters.db"}}
+        post = Post()
+        async with asyncio.timeout(120), Room(Agent(persqa, letters, settings=settings), "letters", post, "me") as room:
+            for person, text in said:
+                count = len(post.sent)
+                room.receive([letter(text, chat=person.id, person=person)])
+                await post.said(count + 1)
+        return [each.text for each in post.sent]
+
+    first = asyncio.run(talk((ADA, "I live in Hannover."), (OTHER, "Where do I live?"), (ADA, "Where do I live?")))
+    assert "Hannover" not in first[1]
+    assert "Hannover" in first[2]
+    later = asyncio.run(talk((OTHER, "Where do I live?"), (ADA, "Where do I live?")))
+    assert "Hannover" not in later[0]
+    assert "Hannover" in later[1]

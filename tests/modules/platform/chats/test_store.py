@@ -1,0 +1,137 @@
+"""The store: what it keeps over the death of a process, and what it forgets."""
+
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from modules.platform.chats.messenger import letter
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats import Outgoing, Person
+from ravestate.modules.platform.chats.store import TRIES, Answer, Entry, Store
+
+
+def opened(path: Path) -> Store:
+    return Store(path / "folder" / "store.db")
+
+
+def answer(text: str, entry: Entry | None = None, chat: str = "a") -> Answer:
+    return Answer(Outgoing(key=text, chat=chat, text=text), None if entry is None else entry.n)
+
+
+def test_a_message_is_pending_until_it_is_done_and_its_key_is_known_afterwards(tmp_path: Path) -> None:
+    store, message = opened(tmp_path), letter("one")
+    entry = store.take(message)
+    assert entry is not None
+    assert store.pending() == [entry]
+    assert store.take(message) is None
+    store.commit([answer("yes", entry)], [entry])
+    assert store.pending() == []
+    store.close()
+    again = opened(tmp_path)
+    assert again.take(message) is None
+    assert again.chats_to_send() == ["a"]
+    assert again.knows("a", message.person)
+    assert not again.knows("b", message.person)
+
+
+def test_what_a_killed_process_has_kept_is_there_and_what_it_had_not_finished_is_not(tmp_path: Path) -> None:
+    code = f"""
+import os, signal, sys
+sys.path.insert(0, {str(Path(__file__).parents[3])!r})
+from pathlib import Path
+from modules.platform.chats.messenger import letter
+from modules.platform.chats.test_store import answer, opened
+store = opened(Path({str(tmp_path)!r}))
+entry = store.take(letter("one"))
+with store.batch():
+    store.take(letter("two"))
+    store.commit([answer("never", entry)], [entry])
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == -9
+    store = opened(tmp_path)
+    assert [entry.message.text for entry in store.pending()] == ["one"]
+    assert store.chats_to_send() == []
+
+
+def test_an_answer_goes_from_queued_over_begun_to_sent(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("one"))
+    assert entry is not None
+    store.commit([answer("first", entry), answer("second")])
+    item = store.next("a")
+    assert item is not None
+    assert (item.message.text, item.begun) == ("first", False)
+    begun = store.begin(item, "7")
+    assert (begun.begun, begun.message.trace) == (True, "7")
+    found = store.next("a")
+    assert found is not None
+    assert (found.begun, found.message.trace) == (True, "7")
+    store.undo(found)
+    assert not store.next("a").begun  # type: ignore[union-attr]
+    store.sent(begun, "id 1")
+    assert store.next("a").message.text == "second"  # type: ignore[union-attr]
+    assert [each.text for each in store.recorded(entry.n)] == ["first"]  # to compare, if the message is heard again
+    store.commit((), [entry])
+    assert store.recorded(entry.n) == []
+
+
+def test_the_answer_to_the_newest_message_alone_is_found_for_an_edit(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    first = store.take(letter("one", id="m1"))
+    assert first is not None
+    store.commit([answer("yes", first)])
+    store.sent(store.next("a"), "a1")  # type: ignore[arg-type]
+    edit = store.take(letter("two", id="m1", kind="edit"))
+    assert edit is not None
+    assert store.answer_to(edit) == "a1"
+    store.take(letter("three", id="m2"))
+    late = store.take(letter("four", id="m1", kind="edit"))
+    assert late is not None
+    assert store.answer_to(late) is None
+    unanswered = store.take(letter("five", id="m2", kind="edit"))
+    assert unanswered is not None
+    assert store.answer_to(unanswered) is None  # an edit of the first message came in between
+
+
+def test_a_message_that_kills_each_process_is_given_up(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    store.take(letter("deadly"))
+    assert [len(store.pending()) for _ in range(TRIES + 2)] == [1] * TRIES + [0, 0]
+
+
+def test_a_forgotten_chat_leaves_no_text_in_the_file(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("a very secret word", person=Person("p", "Ada")))
+    store.commit([answer("another secret word", entry)])
+    store.forget("a")
+    assert (store.pending(), store.chats_to_send()) == ([], [])
+    store.close()
+    whole = b"".join(file.read_bytes() for file in (tmp_path / "folder").iterdir())
+    assert b"secret" not in whole
+
+
+def test_a_chat_that_moves_takes_its_messages_along(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    store.take(letter("one"))
+    store.commit([answer("yes")])
+    store.begin(store.next("a"), "7")  # type: ignore[arg-type]
+    store.move("a", "b")
+    assert [entry.message.chat for entry in store.pending()] == ["b"]
+    item = store.next("b")
+    assert item is not None
+    assert (item.message.chat, item.begun) == ("b", False)
+
+
+def test_one_process_at_a_time_and_only_the_user_may_read(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    with pytest.raises(PlatformError, match="another agent uses it"):
+        opened(tmp_path)
+    assert stat.S_IMODE(store.path.stat().st_mode) == 0o600
+    store.close()
+    store.path.write_bytes(b"no database at all, but some text that is long enough" * 100)
+    with pytest.raises(PlatformError, match="cannot be opened"):
+        opened(tmp_path)

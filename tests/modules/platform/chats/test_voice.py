@@ -1,0 +1,31 @@
+"""Voice notes: with the real recogniser and voice, and where these are missing."""
+
+import asyncio
+import sys
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats.voice import VOICE, spoken, words_in
+
+
+def test_a_spoken_text_is_understood_again() -> None:
+    async def there_and_back() -> str:
+        note = await spoken("Hello, how are you today?")
+        assert note is not None
+        assert note.startswith(b"OggS")
+        return await words_in(note)
+
+    assert "how are you" in asyncio.run(there_and_back()).lower()
+
+
+def test_a_damaged_note_is_refused() -> None:
+    with pytest.raises(PlatformError):
+        asyncio.run(words_in(b"no sound at all"))
+
+
+def test_without_speech_there_is_a_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, VOICE, None)
+    assert asyncio.run(spoken("Hello")) is None
+    with pytest.raises(PlatformError, match=r"pip install 'ravestate\[voice\]'"):
+        asyncio.run(words_in(b""))

@@ -1,0 +1,58 @@
+"""The webhook: it takes what shows the secret, and acknowledges it afterwards."""
+
+import asyncio
+import contextlib
+import socket
+from typing import Any
+
+import httpx
+import pytest
+
+from modules.platform.telegramio.conftest import free_port
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.chats import webhook
+
+
+def test_only_requests_with_the_secret_and_of_a_sane_size_are_taken() -> None:
+    taken: list[Any] = []
+
+    async def test() -> None:
+        port, ready = free_port(), asyncio.Event()
+
+        async def announce() -> None:
+            ready.set()
+
+        address = ("127.0.0.1", port)
+        task = asyncio.create_task(
+            webhook.listen("https://bot.example/in", address, "x-secret", "s3cret", taken.append, announce)
+        )
+        await ready.wait()
+        url = f"http://127.0.0.1:{port}/in"
+        async with httpx.AsyncClient(trust_env=False) as client:
+            right = {"x-secret": "s3cret"}
+
+            async def status(headers: dict[str, str], **body: Any) -> int:
+                return (await client.post(url, headers=headers, **body)).status_code
+
+            assert await status(right, json={"update_id": 1}) == 200
+            assert await status({}, json={"update_id": 2}) == 403
+            assert await status({"x-secret": "wrong"}, json={"update_id": 3}) == 403
+            assert await status(right, content=b"no json") == 400
+            assert await status(right, content=b"x" * (webhook.LARGEST + 1)) == 413
+            assert (await client.get(url)).status_code == 405
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+
+    asyncio.run(test())
+    assert taken == [{"update_id": 1}]
+
+
+def test_a_port_in_use_is_named() -> None:
+    async def never() -> None:
+        raise AssertionError
+
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(PlatformError, match=f"cannot listen on 127.0.0.1, port {port}"):
+            asyncio.run(webhook.listen("https://bot.example/", ("127.0.0.1", port), "x", "y", print, never))

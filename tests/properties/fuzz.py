@@ -1,0 +1,146 @@
+"""Random worlds, played on the engine and on the interpreter of the laws (``laws/model.py``).
+
+``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, fresh ones or those from FIRST. It prints the
+smallest world for each of the first MOST differences.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import time
+from typing import Any
+
+from laws.model import Model
+from properties.random_worlds import world_of
+from properties.shrinking import shrink
+from properties.worlds import Counted, Endless, Play, World
+from ravestate.declare.core import RuleFailure
+from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
+
+BIRTHS = 2_000
+MOMENTS = 300
+"""Moments of a play that are compared."""
+
+STEPS = 3_000
+"""Steps of derivations after which the interpreter, which has no cache, leaves a play."""
+
+
+ENOUGH = "too long to go on"
+
+
+class Enough(Exception):
+    """The rest of a play would take the interpreter too long."""
+
+
+class Interpreter(Model):
+    """The interpreter; it notices when an instant has no end."""
+
+    births = 0
+
+    def effects(self) -> list[Effect]:
+        if self.steps > STEPS:
+            raise Enough
+        return super().effects()
+
+    def birth(self, *args: Any) -> None:
+        self.births += 1
+        if self.births > BIRTHS:
+            raise Endless(f"more than {BIRTHS} spikes at {self.now} s")
+        super().birth(*args)
+
+
+def story(world: World, machine: Any) -> list[str]:
+    """Play a world; return what a machine did, a line for each effect."""
+    lines: list[str] = []
+    numbers: dict[int, int] = {}
+
+    def told(play: Play, effect: Effect) -> None:
+        line = f"{play.now:10.6f} "
+        match effect:
+            case Run():
+                run = play.engine.running[effect.run]
+                numbers[effect.run] = len(numbers)
+                needs = run.clause.needs
+                held = run.held if isinstance(play.engine, Model) else run.spikes
+                spikes = [f"{n.signal.name}={shown(held[n.index].payload)}@{held[n.index].born:g}" for n in needs]
+                values = sorted((name, dict(v) if hasattr(v, "keys") else v) for name, v in effect.values.items())
+                line += f"run {effect.rule.name}[{run.clause.number}] on {' '.join(spikes)}, reading {values}"
+            case Ended():
+                line += f"end of run {numbers[effect.run]} of {effect.rule}: {effect.outcome} {effect.fired}"
+            case Cancel():
+                line += f"cancel run {numbers[effect.run]}: {effect.reason}"
+            case Failed():
+                line += f"failure of {effect.rule}: {type(effect.exception).__name__}"
+            case _:
+                line += repr(effect)
+        lines.append(line)
+
+    play = Play(world, started=told, machine=machine, budget=4)
+    try:
+        for _ in range(MOMENTS):
+            if not play.step():
+                break
+    except Endless as endless:
+        lines.append(f"endless: {endless}")
+    except Enough:
+        lines.append(ENOUGH)
+    return lines
+
+
+def shown(payload: Any) -> str:
+    """Return a payload as text; a failure without its wording."""
+    if isinstance(payload, RuleFailure):
+        return f"{payload.rule}: {type(payload.exception).__name__}"
+    return repr(payload)
+
+
+def difference(world: World) -> str:
+    """Return where the engine departs from the laws, in words; an empty text if it does not."""
+    laws, engine = story(world, Interpreter), story(world, Counted)
+    for number in range(max(len(laws), len(engine))):
+        one = laws[number] if number < len(laws) else "nothing more"
+        other = engine[number] if number < len(engine) else "nothing more"
+        if one == ENOUGH:
+            break
+        if one != other:
+            before = "\n".join(laws[:number])
+            return f"{before}\n  laws:   {one}\n  engine: {other}"
+    return ""
+
+
+def verdict(world: World) -> str:
+    """Return whether the engine keeps to the laws: an empty text, ``differs``, or the name of an exception."""
+    try:
+        return "differs" if difference(world) else ""
+    except Exception as exception:
+        return repr(exception)
+
+
+def main(count: int, first: int, most: int = 1) -> int:
+    """Play `count` seeds; stop after `most` differences. Return how many there were."""
+    faults: list[int] = []
+    start = time.process_time()
+    for seed in range(first, first + count):
+        world = world_of(seed)
+        fault = verdict(world)
+        if fault:
+            print(f"seed {seed}: {fault}", flush=True)
+            faults.append(seed)
+            if len(faults) <= most:
+                least = shrink(world, verdict)
+                try:
+                    words = difference(least)
+                except Exception as exception:
+                    words = f"breaks: {exception!r}"
+                print(f"seed {seed}: {least!r}\n{words}\n", flush=True)
+    print(
+        f"{count} seeds from {first}: {len(faults)} differences {faults[:20]}, {time.process_time() - start:.1f} s of CPU"
+    )
+    return len(faults)
+
+
+if __name__ == "__main__":
+    arguments = [int(argument) for argument in sys.argv[1:]]
+    begin = arguments[1] if len(arguments) > 1 else random.SystemRandom().randrange(10**9)
+    sys.exit(min(1, main(arguments[0] if arguments else 20_000, begin, arguments[2] if len(arguments) > 2 else 1)))
