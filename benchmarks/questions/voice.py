@@ -249,7 +249,9 @@ def interruptions(many: int) -> tuple[list[float], float, float]:
         stories = [one for one in said if one.speaker == "agent" and one.cut]
         for onset in onsets:
             cut = [one for one in stories if one.start < onset and abs(one.end - onset) < 2.0]
-            delays.append(min((one.end for one in cut), default=onset + 2.0) - onset)
+            spoke = any(one.speaker == "agent" and one.start < onset < one.end + 2.0 for one in said)
+            if cut or spoke:  # else nothing was there to interrupt
+                delays.append(min((one.end for one in cut), default=onset + 2.0) - onset)
             off += [
                 _words_off(one.text, played[2 * round(one.start * 16000) : 2 * round((one.end + 0.1) * 16000)])
                 for one in cut[:1]
