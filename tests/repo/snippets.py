@@ -9,7 +9,8 @@ The rules, for who writes documentation:
   page run. A later block can read, import or run it. Its namespace is its own: later blocks import its names. `title="hello.py, continued"` adds to the file.
 - A block whose title begins with `test_` is run by pytest too, as its reader will do; and where a block has functions
   `test_*`, it must have such a title, as else nothing would call them.
-- A block right under `<!-- in: pipecat -->` is run in the environment `.venvs/pipecat`, in a process of its own.
+- A block right under `<!-- in: pipecat -->` is run in the environment `.venvs/pipecat`, in a process of its own; one that
+  a shown test of that environment imports is run by that test.
 - A block right under `<!-- not run: the reason -->` is skipped, and the reason is shown. Rarely needed.
 - Blocks of other languages (`bash`, `console`, `yaml`, `text`, ...) are not run.
 """
@@ -136,13 +137,20 @@ class Page:
         if not block.runs or block.not_run is not None:
             return
         if block.environment is not None:
-            run_apart(block, self.folder)
+            if not self._is_imported(file):
+                run_apart(block, self.folder)
             return
         module = self.files.setdefault(file, self._namespace(file)) if file else self.module
         with self._known(module):
             (run_pycon if LANGUAGES[block.language] == "pycon" else run_python)(block, module)
         if block.has_tests:
             run_tests(block, self.folder)
+
+    def _is_imported(self, file: str) -> bool:
+        """Whether a test of an environment of its own imports a file."""
+        line = rf"^(?:from|import) {re.escape(file.removesuffix('.py'))}\b"
+        tests = [block for block in self.blocks if block.environment is not None and block.has_tests]
+        return bool(file) and any(re.search(line, test.code, re.MULTILINE) for test in tests)
 
     def leavings(self) -> list[str]:
         """The files that its blocks have made, apart from those that the page shows."""

@@ -1,4 +1,4 @@
-"""Secrets stay out of the log, whoever writes them."""
+"""Secrets stay out of the log, also of other libraries."""
 
 import logging
 

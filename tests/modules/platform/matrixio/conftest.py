@@ -48,6 +48,7 @@ class Homeserver:
             "macaroon_secret_key": SECRET,
             "form_secret": SECRET,
             "report_stats": False,
+            "bcrypt_rounds": 4,
             "trusted_key_servers": [],
             "max_upload_size": "50M",
             "presence": {"enabled": False},

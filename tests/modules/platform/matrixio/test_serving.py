@@ -191,26 +191,23 @@ def test_the_password_is_never_logged(homeserver: Homeserver, tmp_path: Path, ca
 # ------------------------------------------------------------------------------------ the death of the server
 
 
-def test_the_server_is_killed_and_nothing_is_lost_or_doubled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_server_is_killed_and_nothing_is_lost_or_doubled(
+    homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("ravestate.modules.platform.chats.sender.LONGEST_WAIT", 0.5)
-    server = Homeserver(tmp_path)
-    server.start()
 
     async def test() -> None:
-        async with asyncio.timeout(120), accounts(server, "Robin", "Ada") as (robin, ada):
+        async with asyncio.timeout(120), accounts(homeserver, "Robin", "Ada") as (robin, ada):
             rooms = [await ada.room(robin.id) for _ in range(5)]
             async with running(robin, tmp_path):
                 await asyncio.gather(*(ada.say(room, f"0 in {room}") for room in rooms))
                 await ada.listen(1)
-                server.kill()
-                server.start()
+                homeserver.kill()
+                homeserver.start()
                 await asyncio.gather(*(ada.say(room, f"1 in {room}") for room in rooms))
                 said = await ada.listen(10)
                 await ada.say(rooms[0], "the last")
                 assert len(await ada.listen(11)) == 11
             assert sorted(said) == sorted(f"{room}: {n} in {room}" for n in range(2) for room in rooms)
 
-    try:
-        asyncio.run(test())
-    finally:
-        server.kill()
+    asyncio.run(test())

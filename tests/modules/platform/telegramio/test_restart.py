@@ -69,7 +69,7 @@ def in_order(said: list[str]) -> bool:
     )
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_agent_is_killed_and_nothing_is_lost_or_doubled(own_telegram: Telegram, tmp_path: Path, seed: int) -> None:
     bot = Bot(own_telegram)
     chance = random.Random(seed)
@@ -94,10 +94,9 @@ def test_the_agent_is_killed_and_nothing_is_lost_or_doubled(own_telegram: Telegr
     asyncio.run(test())
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_the_server_is_killed_and_nothing_is_lost_or_doubled(own_telegram: Telegram, tmp_path: Path, seed: int) -> None:
+def test_the_server_is_killed_and_nothing_is_lost_or_doubled(own_telegram: Telegram, tmp_path: Path) -> None:
     bot = Bot(own_telegram)
-    chance = random.Random(seed)
+    chance = random.Random(7)
 
     async def test() -> None:
         async with asyncio.timeout(120):

@@ -7,6 +7,7 @@ import contextlib
 import secrets
 import zlib
 from collections import Counter, deque
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -155,7 +156,7 @@ class Chat:
             self._following = None
         if finished and self._hearing is not None:
             self._open.append(self._hearing)
-        self._commit(finished)
+        self._commit(self._open if finished else ())
         self._hearing = None
         self._open = []
         self._repeated.clear()
@@ -208,6 +209,7 @@ class Chat:
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(FAREWELL):
                 await context.quiet()
+        await people.recalled(context)
         self._mute = self._gone
         self._room.called.add(context.read(interloc.agent))
         return new
@@ -319,7 +321,7 @@ class Chat:
         key = secrets.token_hex(12)
         self._said.append(Answer(replace(message, key=key), None if cause is None else cause.n))
         if self._flush is None:
-            self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._commit, False)
+            self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._commit)
 
     def grow(self, piece: str) -> None:
         """Take a piece of an utterance that is still growing. Messengers get it once it is whole."""
@@ -341,13 +343,15 @@ class Chat:
         assert self.context is not None  # the conversation runs
         work = asyncio.create_task(self._show_work())
         try:
-            await self.context.quiet(rawio.output)
+            while self._open:
+                heard = tuple(self._open)
+                await self.context.quiet(rawio.output)
+                self._commit(heard)
         except RavestateError:
             return  # the conversation has failed
         finally:
             work.cancel()
         self._following = None
-        self._commit(finished=True)
 
     async def _show_work(self) -> None:
         await asyncio.sleep(SLOW)
@@ -356,20 +360,18 @@ class Chat:
                 await self._room.carrier.show_work(self.id)
             await asyncio.sleep(SHOWN)
 
-    def _commit(self, finished: bool) -> None:
-        """Keep the answers in the store; with `finished`, also that all messages heard so far are done."""
+    def _commit(self, done: Sequence[Entry] = ()) -> None:
+        """Keep the answers in the store, and that some messages are done."""
         if self._flush is not None:
             self._flush.cancel()
             self._flush = None
         if self._gone:
             return
-        done = self._open if finished else []
         if self._said or done:
             self._room.store.commit(self._said, done)
         if self._said:
             self._room.sender.wake(self.id)
         self._said = []
-        if finished:
-            self._open = []
-            if self._hearing is None:
-                self._repeated.clear()
+        self._open = [entry for entry in self._open if entry not in done]
+        if not self._open and self._hearing is None:
+            self._repeated.clear()

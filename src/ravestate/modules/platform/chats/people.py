@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 from typing import TYPE_CHECKING
 
@@ -46,6 +47,15 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
         log.warning("memory was not asked about a person: %s", str(error) or "it took too long")
         name = None  # their name alone might be that of another person, of whom memory knows more
     join(context, key(platform, person), name)
+
+
+async def recalled(context: Context) -> None:
+    """Wait until memory has answered what rules asked about a person who has come, and they have taken note of it."""
+    with contextlib.suppress(RavestateError, TimeoutError):
+        async with asyncio.timeout(PATIENCE):
+            for _ in range(2):  # the rules may ask again after the first answer; memory answers in order
+                if (memory := await _memory(context)) is not None:
+                    await memory.together(lambda _: None)
 
 
 def join(context: Context, key: str, name: str | None) -> None:

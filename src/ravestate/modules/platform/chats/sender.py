@@ -68,13 +68,15 @@ class Sender:
     def wake(self, chat: str) -> None:
         """Deliver the messages to a chat that the store has."""
         if chat not in self._tasks:
-            task = self._tasks[chat] = asyncio.create_task(self._drain(chat))
-            task.add_done_callback(lambda task: self._ended(chat, task))
+            self._tasks[chat] = asyncio.create_task(self._deliver(chat))
 
-    def _ended(self, chat: str, task: asyncio.Task[None]) -> None:
-        self._tasks.pop(chat, None)
-        if not task.cancelled() and (error := task.exception()) is not None:
-            self._log.error("a message was not sent: %s", error, exc_info=error)
+    async def _deliver(self, chat: str) -> None:
+        try:
+            await self._drain(chat)
+        except Exception:
+            self._log.exception("the messages to chat %s are not sent", chat)
+        finally:
+            del self._tasks[chat]  # at once, so that no message is overlooked that comes now
 
     async def close(self, grace: float) -> None:
         """Deliver what can be delivered within `grace` seconds; the rest stays in the store."""

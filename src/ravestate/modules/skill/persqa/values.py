@@ -71,7 +71,8 @@ def _typed(name: str, seen: nlp.Analysis) -> str:
     at = seen.normal.text.lower().find(name.lower())
     start, end = seen.normal.span(at, at + len(name)) if at >= 0 else (0, 0)
     typed = seen.normal.original[start:end]
-    return name if typed.lower() == name.lower() or not typed.replace(" ", "").isalpha() else typed
+    same = typed.lower() == name.lower() or len(typed) > 60
+    return name if same or not typed.replace(" ", "").isalpha() else typed
 
 
 def number_in(text: str) -> str:

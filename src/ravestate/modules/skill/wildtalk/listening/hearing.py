@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
+from ravestate.language.normal import plain
+from ravestate.language.shape import shape
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
@@ -202,7 +204,11 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         or bool({"remember", "recall"} & low and "you" in low)
         or ("know" in words and subject == "you" and "my" in words),
         "to_agent": addressed and (asked is None or subject == "you" or asked.subject.of("you")),
-        "able": polar and subject == "you" and bool(modal & {"can", "could"}),
+        "able": polar
+        and subject == "you"
+        and bool(modal & {"can", "could"})
+        and asked is not None
+        and asked.verb not in phrases.plain["able"].words,
         "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
@@ -288,7 +294,8 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
             continue
         found = phrases.moments[match.name]
         few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry": more was said
-        fits = match.score >= EXACT or (_fits(found, heard.moves) and not imagined)
+        told = asking != "" and shape(plain(match.example))[3] == 0
+        fits = match.score >= EXACT or (not told and _fits(found, heard.moves) and not imagined)
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
