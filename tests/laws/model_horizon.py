@@ -16,7 +16,7 @@ NO, PERHAPS, SURE = 0, 1, 2
 class Derivation:
     """Whether missing spikes may still come (L16). The activations in `still` do nothing.
 
-    What may come to a group is a least fixed point: `known` grows from nothing until nothing more follows.
+    The signals that may come to a group are a least fixed point: `known` grows until nothing more follows.
     """
 
     def __init__(self, model: Model, still: frozenset[Act]) -> None:

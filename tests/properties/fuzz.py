@@ -122,6 +122,8 @@ def main(count: int, first: int, most: int = 1) -> int:
     faults: list[int] = []
     start = time.process_time()
     for seed in range(first, first + count):
+        if seed > first and (seed - first) % 500 == 0:
+            print(f"{seed - first} of {count} seeds: {len(faults)} differences", file=sys.stderr, flush=True)
         world = world_of(seed)
         fault = verdict(world)
         if fault:

@@ -103,7 +103,7 @@ class Activation:
     firm: tuple[tuple[Activation, ...], ...] = ()
     """While it waits: for each rival that work in progress will make ready, or not, the activations at work."""
     hopes: tuple[tuple[int, int], ...] = ()
-    """While it waits: what else its turn depends on (`Horizon.hopes`)."""
+    """While it waits: the things outside its groups on which its turn depends (`Horizon.hopes`)."""
     bounded: bool = False
     """Whether it waits for a taken slot, or for a rival whose patience ends the wait."""
     recheck: float = NEVER

@@ -133,9 +133,9 @@ class Agenda(Slots):
         for entry in later:
             heapq.heappush(queue, entry)
         if self._refused and not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
-            best = stalemate(self)
+            best = stalemate(self, self._refused)
             if best is None:
-                self._refused = False
+                self._refused.clear()
             else:
                 self._start(best)
 
@@ -167,8 +167,7 @@ class Agenda(Slots):
         """Make an activation wait, for the reasons in `refusal`."""
         activation.step(REFUSE)
         self._lose_interest(activation)
-        self.waiting[activation] = None
-        self._refused = True
+        self.waiting[activation] = self._refused[activation] = None
         names = tuple(refusal.names)
         changed = activation.waits_for != names
         activation.waits_for = names

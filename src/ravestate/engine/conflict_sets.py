@@ -2,15 +2,14 @@
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
 the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
-its run resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations where that
-could make a difference: to judge a rival, to explain something, to retire or add a rule. The number of each activation
-is fixed from the start, so it does not matter when a queue unfolds.
+its run resigns or fails, the next clause takes its place. To explain something, and to retire or add a rule, the queue
+is *unfolded* into ordinary activations. The number of each activation is fixed from the start, and no rival depends on
+an alternative (`find_contests`). So it does not matter when a queue unfolds.
 """
 
 from __future__ import annotations
 
 from ravestate.engine.activation import Activation
-from ravestate.engine.group import Group
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.spike import Spike
 from ravestate.policy.model import Clause, SignalPlan
@@ -26,13 +25,6 @@ class ConflictSets(Holdings):
         assert spike is not None  # it is ready, or runs
         for position in range(made, len(clauses)):
             self._activate(clauses[position], base + position + 1, spike)
-
-    def unfold_members(self, group: Group) -> None:
-        """Create the activations of the alternatives in the queues of a group's members."""
-        if self.alternatives:
-            for member in list(group.members):
-                if member in self.alternatives:
-                    self.unfold(member)
 
     def unfold_all(self) -> None:
         """Create the activations of the alternatives in all queues."""

@@ -2,7 +2,7 @@
 
 A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause
 that writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if
-it holds a spike of the group, or waits for a signal that a live rule of the group may cause.
+it holds a spike of the group, or lacks a signal that a rule of the group may cause.
 
 A rival that may never become ready is under pressure: it has its patience, once in each group (L16).
 """
@@ -30,7 +30,7 @@ class Refusal:
         firm: For each rival that will be ready, or fail, by work in progress: the activations at work.
         taken: Whether a slot is taken.
         pressed: Whether a rival may never be ready, so that only its patience ends the wait.
-        hopes: What the refusal depends on outside its groups (`Horizon.hopes`).
+        hopes: Things outside its groups on which the refusal depends (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
         recheck: The earliest time at which recovering utilities, or the age of a spike, may lift it (seconds).
     """
@@ -79,8 +79,6 @@ def ask(
     refusal.interests = dict.fromkeys(groups)
     standing = engine.standing
     horizon: Horizon | None = None
-    visited: dict[Group, None] = {}
-    hopes: dict[tuple[int, int], None] = {}
     for group in groups:
         for slot in rule.slots:
             for holder in group.taken.get(slot) or ():
@@ -89,7 +87,6 @@ def ask(
                 refusal.blockers[holder] = None
         if not group.taken.keys().isdisjoint(slots):
             continue
-        engine.unfold_members(group)
         for rival, members in _rivals(engine, activation, group):
             if clause.rule.cooldown or rival.rule.cooldown:
                 refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
@@ -118,17 +115,14 @@ def ask(
                     refusal.pressed = True
                 else:
                     if commit and member is not None:
+                        horizon.forget(member)
                         engine.eliminate(member)
-                        visited.update(horizon.visited)
-                        hopes.update(horizon.hopes)
-                        horizon = _horizon(engine, activation, without)
                     continue
                 apart += member is not None and member not in group.members
                 refusal.names[rival.rule.name] = None
     if horizon is not None:
-        refusal.interests.update(visited)
         refusal.interests.update(horizon.visited)
-        refusal.hopes = {**hopes, **horizon.hopes}
+        refusal.hopes = horizon.hopes
         refusal.recheck = min(refusal.recheck, horizon.recheck)
     return refusal
 
@@ -184,13 +178,23 @@ def _place(rival: tuple[Clause, list[Activation]]) -> int:
     return rival[0].index
 
 
-def stalemate(engine: Engine) -> Activation | None:
+def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
     """Return the best of the activations that wait for nothing but each other, if there are any.
 
     Two ready rules may each wait for a rival that the other might bring about. They would wait for ever, so the one
     with the greater effective utility goes first, or else the one declared first.
+
+    Args:
+        engine: The engine.
+        refused: The activations that were refused since the last search: at least one is in any new stalemate.
     """
-    stuck = {one for one in engine.waiting if one.blockers and not (one.bounded or one.clause.rule.slots == ())}
+    stuck: set[Activation] = set()
+    reached = list(refused)
+    while reached:
+        one = reached.pop()
+        if one not in stuck and one in engine.waiting and one.firm and not one.bounded:
+            stuck.add(one)
+            reached += [root for roots in one.firm for root in roots]
     while stuck:
         freed = {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}
         if not freed:

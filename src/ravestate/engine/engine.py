@@ -23,7 +23,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.slots import ABSENT, equal
 from ravestate.engine.spike import Spike
 from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredError, nearest
-from ravestate.policy.model import RulePlan, SlotPlan
+from ravestate.policy.model import Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 OUTCOMES = get_args(events.OutcomeKind)
@@ -330,7 +330,8 @@ class Engine(Agenda):
             owner.ripens = NEVER
             self._update(owner)
         elif kind is LOOK:
-            looking, spike = owner
+            looking: Need = owner[0]
+            spike: Spike = owner[1]
             clause = self.policy.clause_plans[looking.clause.index]  # a rule may have been added since
             need = clause.needs[looking.index]
             if self._fits(need, spike):

@@ -27,9 +27,9 @@ from ravestate.policy.model import Clause, Need, SignalPlan
 class Holdings(State):
     """The layer of the engine that gives spikes to activations and takes them away."""
 
-    def _look(self, activation: Activation) -> None:
+    def _look(self, activation: Activation, needs: Iterable[Need]) -> None:
         """Give each detached need without a spike the newest live spike that fits, if possible an old enough one."""
-        for need in activation.clause.needs:
+        for need in needs:
             if not need.bit & activation.missing:
                 continue
             live = self.live.get(need.signal.index)
@@ -55,7 +55,7 @@ class Holdings(State):
     def _rematch(self, activation: Activation, need: Need) -> None:
         """Give a need whose spike was lost the oldest live spike that fits, if there is one (L12)."""
         if need.detached:
-            self._look(activation)
+            self._look(activation, (need,))
         else:
             for spike in self.live.get(need.signal.index, ()):
                 if self._fits(need, spike) and self._coherent(activation, need, spike):
@@ -280,6 +280,7 @@ class Holdings(State):
     def _lose_interest(self, activation: Activation) -> None:
         """Make an activation stop waiting: changes in its groups no longer make it ask again."""
         self.waiting.pop(activation, None)
+        self._refused.pop(activation, None)
         for hope in activation.hopes:
             hoping = self.hoping.get(hope)
             if hoping is not None:

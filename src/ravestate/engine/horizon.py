@@ -51,7 +51,7 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups on whose state the latest results depend.
-        hopes: What else the results depend on: pairs of a kind and the number of a rule or a signal.
+        hopes: Pairs of a kind and the number of a rule or signal: changes of these may change the results.
         recheck: The time at which a spike that a result depends on grows too old to be looked at (seconds).
     """
 
@@ -78,6 +78,18 @@ class Horizon:
         self.roots.clear()
         strength = _solve(self._viable(clause, activation, group, clause.rule.slotset))
         return strength, tuple(dict.fromkeys(self.roots))
+
+    def forget(self, activation: Activation) -> None:
+        """Leave out an activation that is about to end, and what was derived while it lived."""
+        self._known.clear()
+        for home in activation.firm_groups():
+            there = self._by_rule.get(home)
+            if there is not None:
+                same = there.get(activation.clause.rule.index, [])
+                if activation in same:
+                    same.remove(activation)
+                if not same:
+                    there.pop(activation.clause.rule.index, None)
 
     def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
         """Return a clause's activations that hold no spike of the group, but lack one that the group may cause."""

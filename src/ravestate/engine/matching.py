@@ -176,7 +176,7 @@ class Matching(ConflictSets):
             self._complete(activation)
             return
         if clause.asks_detached:
-            self._look(activation)
+            self._look(activation, clause.needs)
         if activation.missing:
             for other in clause.needs:
                 if other.bit & activation.missing:

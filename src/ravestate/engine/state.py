@@ -63,7 +63,7 @@ class State:
         """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
         them have had an activation; the activation number just before theirs."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
-        """What waiting activations depend on outside their groups (`Horizon.hopes`) → these activations."""
+        """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.retired: set[int] = set()
@@ -76,7 +76,7 @@ class State:
         self._acts = False  # whether one of these effects starts or cancels a run
         self._free: list[Activation] = []  # ready activations that need no consent
         self._asking: dict[Activation, None] = {}  # ready or waiting activations that are about to ask for consent
-        self._refused = False  # whether an activation was refused since the last search for a stalemate
+        self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred: dict[tuple[int, int], None] = {}  # the keys of `hoping` that have changed
         self._watches: dict[Clause, dict[Activation, Watch]] = {}

@@ -122,6 +122,19 @@ class Causes:
                     stack.append(cause.index)
         return frozenset(rules)
 
+    def leading_to_slots(self) -> frozenset[int]:
+        """Return the signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
+        found = {s.index for r in self.rules for c in r.clauses for slot, _ in c.guards for s in slot.signals}
+        rules = [rule for rule in self.rules if rule.slots or not found.isdisjoint(rule.raises)]
+        seen = set(rules)
+        for rule in rules:  # the list grows
+            for signal in {need.signal.index for need in _needs(rule)} - found:
+                found.add(signal)
+                more = [cause for cause in self.all_causes[signal] if cause not in seen]
+                rules += more
+                seen.update(more)
+        return frozenset(found)
+
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
         """Return the clauses of slot-writing rules that `rule` may trigger by non-detached effects, the best first."""
         found = self._downstream.get(rule.index)

@@ -74,7 +74,7 @@ def build(
         raise DeclarationErrors([DeclarationError(fault) for fault in found])
     find_kin(numbered.plans, causes)
     completion = _assign_utilities(names.signals, numbered.plans, causes)
-    find_contests(names.signals)
+    find_contests(names.signals, causes)
     return Policy(
         modules=tuple(modules),
         declared=tuple(rules),

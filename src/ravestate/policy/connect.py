@@ -53,19 +53,21 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
             clause.apart = len(families) == 1
 
 
-def find_contests(signals: Iterable[SignalPlan]) -> None:
-    """Set the contests of each signal. A contest is a group of clauses that compete for each spike of the signal.
+def find_contests(signals: Sequence[SignalPlan], causes: Causes) -> None:
+    """Set the contests of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
-    One such spike makes every clause of the contest ready. The clauses write the same slots, and their order never
-    changes. Only the first clause gets consent, unless it resigns or fails. The engine makes no activation of the
-    other clauses before that (``engine/conflict_sets.py``).
+    One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
+    Only the first clause can get consent, unless it resigns or fails. Until then the engine makes no activation of
+    the others (``engine/conflict_sets.py``). So none of their effects may help a rule that writes a slot: else other
+    activations would wait for what they may yet cause (L16).
     """
+    helpful = causes.leading_to_slots()
     for signal in signals:
         contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}
         for need in signal.listeners:
             clause, rule = need.clause, need.clause.rule
             fixed = not (need.detached or clause.cyclic or rule.cooldown)
-            if clause.simple and rule.slots and fixed:
+            if clause.simple and rule.slots and fixed and helpful.isdisjoint(rule.raises):
                 contests.setdefault((rule.slotset, rule.background), []).append(clause)
         signal.contests = tuple(
             tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
