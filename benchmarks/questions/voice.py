@@ -178,9 +178,8 @@ async def wait_for_answer(model: str, rounds: int) -> list[dict[str, float]]:
             await context.next(rawio.heard.changed, timeout=60)
             assert line.first is not None
             end = line.begun + 0.6 + sound.seconds(asked, rawio.IN_RATE)
-            (heard, understood), (_, judged), (asked_voice, sounded) = (
-                times[x][-1] for x in ("recognise", "complete", "speak")
-            )
+            (heard, understood), (_, judged) = times["recognise"][-1], times["complete"][-1]
+            asked_voice, sounded = times["speak"][0]  # the first sentence
             thinking = max(understood, judged) - heard
             own = (line.first - heard) - thinking - (sounded - asked_voice)
             if number:  # the first round loads everything
@@ -250,7 +249,9 @@ def interruptions(many: int) -> tuple[list[float], float, float]:
         stories = [one for one in said if one.speaker == "agent" and one.cut]
         for onset in onsets:
             cut = [one for one in stories if one.start < onset and abs(one.end - onset) < 2.0]
-            delays.append(min((one.end for one in cut), default=onset + 2.0) - onset)
+            spoke = any(one.speaker == "agent" and one.start < onset < one.end + 2.0 for one in said)
+            if cut or spoke:  # else nothing was there to interrupt
+                delays.append(min((one.end for one in cut), default=onset + 2.0) - onset)
             off += [
                 _words_off(one.text, played[2 * round(one.start * 16000) : 2 * round((one.end + 0.1) * 16000)])
                 for one in cut[:1]

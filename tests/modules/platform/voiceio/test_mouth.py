@@ -33,7 +33,7 @@ def mouth() -> Mouth:
 
 @pytest.mark.parametrize(
     ("seconds", "heard"),
-    [(0.1, ""), (0.29, ""), (0.31, "one"), (1.2, "one two"), (1.4, "one two three"), (2.4, TEXT), (9.0, TEXT)],
+    [(0.1, ""), (0.2, ""), (0.31, "one"), (1.2, "one two"), (1.4, "one two three"), (2.4, TEXT), (9.0, TEXT)],
 )
 def test_the_heard_part_is_right_to_the_word(seconds: float, heard: str) -> None:
     async def listen() -> None:

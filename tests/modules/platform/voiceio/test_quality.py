@@ -18,8 +18,8 @@ def voice(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_pauses_are_not_taken_for_ends_nor_ends_for_pauses(voice: Any) -> None:
-    cuts, missed, count = voice.ends_of_turns("tiny.en", 10)
-    assert count == 10 and cuts <= 0.2 and missed <= 0.1
+    cuts, missed, count = voice.ends_of_turns("tiny.en", 8)
+    assert count == 8 and cuts <= 0.25 and missed <= 0.25
 
 
 def test_the_agents_own_voice_is_no_utterance(voice: Any) -> None:

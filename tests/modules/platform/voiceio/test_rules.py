@@ -182,6 +182,17 @@ def test_a_pause_within_a_sentence_is_no_end(tmp_path: Path, monkeypatch: pytest
     assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the whole turn was heard
 
 
+def test_two_people_are_not_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(monkeypatch, "I would like to go to the", "I would like to go to the", "No, that is much too far.")
+    first, second = (
+        spoken("I would like to go to the", "espeak:en-us"),
+        spoken("No, that is much too far.", "espeak:en+f3"),
+    )
+    file = wav(tmp_path / "in.wav", track((0.5, first), (0.5 + len(first) / 32000 + 0.5, second), length=5.0))
+    said = [one for one in talk(file, None, storyteller(), settings=FAST) if one.speaker == "user"]
+    assert len(said) == 2 and said[0].end < said[1].start
+
+
 def test_captions_show_the_words_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "I", "I would", "I would like a story.")
     seen: list[str] = []
@@ -253,6 +264,34 @@ def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.Mo
         assert sim.said == [WHOLE] and sim.read(rawio.heard) == WHOLE
         sim.put(rawio.sound, None)
         assert sim.read(voiceio.conversation) is None
+
+
+def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A page brings its line in the instant in which its context begins."""
+    import asyncio
+
+    from modules.platform.voiceio.test_wav_line import run
+    from ravestate.modules.platform.voiceio.wav_line import WavLine
+
+    script(monkeypatch, "Good evening.")
+    file = wav(tmp_path / "in.wav", track((0.5, "Good evening."), length=2.0))
+    opened: list[object] = []
+
+    async def serve(_: Any) -> None: ...
+
+    platform = rs.Module("page", requires=[rawio], serve=serve)
+
+    async def follow() -> None:
+        async with rs.Context(storyteller(), platform, voiceio, settings=FAST) as context:
+            context.put(rawio.sound, WavLine(file))
+            opened.append(await context.next(voiceio.conversation.changed, timeout=5))
+            said = await context.next(rawio.output.changed, timeout=5)
+            opened.append(context.read(voiceio.conversation))
+            assert said == "Good night."
+            await asyncio.sleep(0)
+
+    run(follow)
+    assert opened[0] is opened[1]
 
 
 def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:

@@ -20,7 +20,8 @@ SETTINGS = Settings(pause=0.2, doubtful_pause=0.7, longest_pause=1.4)
     ("text", "complete", "silence"),
     [
         ("What time is it?", 0.9, 0.2),
-        ("What time is it?", 0.1, 0.7),
+        ("What time is it?", 0.3, 0.7),
+        ("What time is it?", 0.1, 1.4),
         ("What time is it?", None, 0.7),
         ("I think that", 0.9, 0.7),
         ("I would like to go to the", 0.9, 1.4),

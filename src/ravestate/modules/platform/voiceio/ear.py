@@ -14,6 +14,7 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .activity import CHUNK, Activity
 from .echo import FRAME
 from .leak import Leak
+from .pitch import is_another
 from .sound import Samples, samples
 
 BEFORE = 12
@@ -31,7 +32,10 @@ LONGEST = 60.0
 CLIPPED = 0.02
 """The share of samples at the limit above which a second of speech counts as clipped."""
 
-Event = Literal["onset", "articulate", "pause"]
+COMPARED = 2.0
+"""The seconds of each of two voices that are compared."""
+
+Event = Literal["onset", "articulate", "another", "pause"]
 
 
 class Canceller(Protocol):
@@ -56,6 +60,8 @@ class Turn:
     agent_spoke: bool = False
     full: bool = False
     chunks: list[bytes] = field(default_factory=list[bytes])
+    continued: tuple[int, float, float] | None = None
+    """The last continuation after a pause: its first chunk, its time, and the time at which speech had ended before."""
 
     @property
     def sound(self) -> bytes:
@@ -77,6 +83,8 @@ class Ear:
         """The turn that is under way, also during a pause; None before the next onset."""
         self.speaking = False
         """Whether the user speaks."""
+        self.parted: Turn | None = None
+        """The turn of the person who spoke before another one went on (event ``another``)."""
         self.clipped = False
         """Whether the sound is so loud that it is cut off at the limit."""
         self._activity = Activity()
@@ -165,6 +173,8 @@ class Ear:
         self.turn.full = now - self.turn.start > LONGEST
         if self._silent >= self._pause or self.turn.full:
             self.speaking = False
+            if self._part():
+                yield "another"
             yield "pause"
 
     def _begin(self, now: float, agent_speaks: bool) -> None:
@@ -173,6 +183,26 @@ class Ear:
         if self.turn is None:
             self.turn = Turn(now, now, agent_speaks, chunks=list(self._before))
             self._before.clear()
+        else:
+            first = max(1, len(self.turn.chunks) - ONSET - 2)
+            self.turn.continued = first, now, self.turn.end
+
+    def _part(self) -> bool:
+        """Part the turn in two if another person has spoken since the last pause; return whether it is so."""
+        turn = self.turn
+        if turn is None or turn.continued is None:
+            return False
+        first, begun, ended = turn.continued
+        turn.continued = None
+        size = round(COMPARED * IN_RATE / CHUNK)
+        if not is_another(
+            samples(b"".join(turn.chunks[max(0, first - size) : first])),
+            samples(b"".join(turn.chunks[first : first + size])),
+        ):
+            return False
+        self.parted = Turn(turn.start, ended, turn.agent_spoke, chunks=turn.chunks[:first])
+        self.turn = Turn(begun, turn.end, turn.agent_spoke, turn.full, turn.chunks[first:])
+        return True
 
     def _note_clipping(self, sound: Samples) -> None:
         self._at_limit += int(np.count_nonzero(np.abs(sound.astype(np.int32)) >= 32700))

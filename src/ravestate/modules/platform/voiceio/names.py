@@ -14,6 +14,7 @@ from .manner import Prosody
 from .utterances import Utterance
 
 if TYPE_CHECKING:
+    from .ear import Turn
     from .mouth import Speech
     from .opening import Conversation
 
@@ -57,7 +58,7 @@ class Settings(rs.Settings):
     """The probability of speech above which a sound counts as speech."""
     pause: Annotated[float, Field(ge=0.1)] = 0.2
     """Seconds of silence after which the turn may be over."""
-    doubtful_pause: Seconds = 0.7
+    doubtful_pause: Seconds = 1.0
     """Seconds of silence that end a turn if the words or the melody sound unfinished."""
     longest_pause: Seconds = 1.4
     """Seconds of silence that end every turn."""
@@ -75,6 +76,9 @@ class Settings(rs.Settings):
 
 
 module = rs.Module("voiceio", requires=[rawio, verbaliser], settings=Settings)
+
+another_speaks: rs.Signal[Turn] = module.signal("another_speaks", payload=cast("type[Turn]", object))
+"""Another person has gone on in the pause of the first one, whose turn this is."""
 
 utterance: rs.Signal[Utterance] = module.signal("utterance", payload=Utterance)
 """The user has finished a turn. The words also go to ``rawio.input`` if the recogniser is confident enough."""

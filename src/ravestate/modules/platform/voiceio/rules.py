@@ -15,6 +15,7 @@ from .feelings import add_feelings
 from .names import (
     Settings,
     agent_speaking,
+    another_speaks,
     back_channel,
     barge_in,
     conversation,
@@ -47,7 +48,7 @@ LONGEST_END = 300.0
     when=rs.startup.detached() | rawio.sound.changed.max_age(None).detached(),
     reads=rawio.sound,
     writes=(conversation, user_speaking),
-    emits=spoke_up,
+    emits=(spoke_up, another_speaks),
     until=rawio.sound.changed,
     detached=True,  # each onset is a cause of its own
     background=True,
@@ -58,8 +59,8 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
         return rs.Resign("this user has no line: their platform brings one in rawio.sound")
-    if ctx[conversation] is not None:
-        return rs.Resign("the line is open already")
+    if line is not None and ctx.payload(rawio.sound.changed) is None:
+        return rs.Resign("another run of this rule opens the line that came at once")
 
     def warn(text: str) -> None:
         ctx.log.warning("%s", text)
@@ -102,6 +103,8 @@ async def _follow(ctx: rs.RuleContext, talk: Conversation) -> None:
             for event in ear.feed(block, ctx.now, far, agent_speaks=mouth.speaking):
                 if event == "articulate":
                     ctx.emit(spoke_up)
+                elif event == "another":
+                    ctx.emit(another_speaks, ear.parted)
                 else:
                     ctx[user_speaking] = event == "onset"
             if ear.clipped and not clipped:
@@ -181,6 +184,25 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx.emit(utterance, Utterance(text, found.confidence, turn.start, turn.end))
     elif what == "back_channel":
         ctx.emit(back_channel, text)
+    else:
+        ctx.emit(false_alarm, text)
+    return None
+
+
+@module.rule(when=another_speaks, reads=conversation, emits=(utterance, false_alarm))
+async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Take the turn of the person who spoke first: two people are not one sentence."""
+    talk, turn = ctx[conversation], ctx.payload(another_speaks)
+    if talk is None:
+        return rs.Resign("the line is closed")
+    try:
+        found, _ = await talk.judge(turn)
+    except PlatformError as error:
+        ctx.log.error("%s", error)
+        return None
+    what, text = talk.verdict(turn, found)
+    if what == "utterance":
+        ctx.emit(utterance, Utterance(text, found.confidence, turn.start, turn.end))
     else:
         ctx.emit(false_alarm, text)
     return None

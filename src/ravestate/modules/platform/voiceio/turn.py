@@ -19,6 +19,9 @@ from .names import Settings
 WINDOW = 8.0
 """The last seconds of a turn, which the model of the melody hears."""
 
+UNFINISHED = 0.3
+"""The part of the setting `complete` below which the melody alone says that the turn goes on."""
+
 _SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+-?)+")
 """Laughter, and hums as a recogniser writes them: "hahaha", "mm-hmm", "m-h-m"."""
 _EDGES = ".,!?…;:\"'“”‘’()-–— "
@@ -62,7 +65,7 @@ def wanted_silence(text: str, complete: float | None, settings: Settings) -> flo
         settings: The limits.
     """
     words = completeness(text, settings.language)
-    if words == "open":
+    if words == "open" or (complete is not None and complete < UNFINISHED * settings.complete):
         return settings.longest_pause
     sure = words == "complete" and complete is not None and complete >= settings.complete
     return min(settings.pause if sure else settings.doubtful_pause, settings.longest_pause)
