@@ -84,7 +84,7 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet, says goodbye or is sad; emit `hushed` in the first case.
 
-    The encoder may take a few milliseconds, so it runs in a thread. This counts as activity: the silence begins after it.
+    The encoder may take a few milliseconds, so it runs in a thread. This is activity: the silence begins after it.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})

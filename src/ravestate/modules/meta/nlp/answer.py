@@ -1,6 +1,6 @@
 """Recognise answers: yes, no, or unsure.
 
-The answer is at the beginning of a text. This file reads *yes*, *no* and short answers (*I do*) word for word. All other
+The answer is at the beginning of a text. This file reads *yes*, *no* and short answers (*I do*) word for word. Other
 answers are compared with the examples in ``answers.yaml``. Each part between commas is read on its own.
 """
 

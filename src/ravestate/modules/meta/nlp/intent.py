@@ -116,7 +116,7 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
     """Return a matcher of intents and acts. An act that shares an example with an intent gives way to it.
 
-    A designer writes a few examples, and an act has hundreds. Only `OF_ACT` of them compete, or the acts would always win.
+    A designer writes few examples, and an act has hundreds. Only `OF_ACT` of these compete, or acts would always win.
     """
     taken = {plain(text) for _, texts in intents for text in texts}
     acts = bundled("acts")

@@ -1,4 +1,4 @@
-"""Read triples and statements from a dependency tree: what each clause says, and whether it is so, by the README's conventions."""
+"""Read triples and statements from a dependency tree, by the conventions of the README."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def statements_of(
 
 
 class _Assertion:
-    """The flags that all triples of one clause share: whether it is so, was so once, is imagined, wanted, or reported."""
+    """The flags that all triples of one clause share: whether it is true, past, imagined, wanted, or reported."""
 
     def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
         self._tree = clause.tree

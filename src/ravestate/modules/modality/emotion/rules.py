@@ -39,9 +39,9 @@ def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, reads=(interloc.agent, sorrow), writes=sorrow, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
-    """Raise the feeling that fits the user's words, or a spontaneous feeling. After a sorrow, raise no cheerful feeling.
+    """Raise the feeling that fits the user's words, or a spontaneous one. After a sorrow, raise no cheerful feeling.
 
-    The encoder takes a few milliseconds, so this runs in a thread. Without it, only words that equal an example count."""
+    The encoder takes a few milliseconds, so this runs in a thread. Without it, only words of an example count."""
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)

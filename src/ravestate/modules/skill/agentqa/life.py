@@ -22,8 +22,8 @@ class Topic:
     otherwise: tuple[str, ...] = ()
     """Answers if every phrase lacks a fact. Without such answers, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """For each fact, answers to a question that names one of its values. ``{it}`` is that value, and ``{that}`` the other
-    text of a pair."""
+    """For each fact, answers to a question that names one of its values. ``{it}`` is that value, and ``{that}`` the
+    other text of a pair."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()

@@ -39,8 +39,8 @@ _TOLD = ("phrases", "otherwise", "unnamed")
 def read_life(own: Path | None = None) -> Life:
     """Read the agent's life: the module's file, changed by the user's `own`.
 
-    A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions and
-    remarks to the module's topic, and replaces its phrases; ``~`` removes the topic. All other topics are new.
+    A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions
+    and remarks to the module's topic, and replaces its phrases; ``~`` removes the topic. All other topics are new.
 
     Raises:
         DeclarationError: The file has a mistake; the message names the line.

@@ -1,4 +1,4 @@
-"""Remarks that the agent must answer: first distress, found by fixed expressions; then acts and feelings of the user."""
+"""Remarks that the agent must answer: first distress, found by fixed expressions; then the user's acts and feelings."""
 
 from __future__ import annotations
 

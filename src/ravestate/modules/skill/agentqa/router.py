@@ -53,7 +53,7 @@ class Miss:
 class Router:
     """A classifier for questions: a topic of the agent, or none. Thread-safe.
 
-    It is a `Matcher` over the example questions of a life. Until it is loaded, only questions that equal an example count.
+    It is a `Matcher` over the example questions of a life. Before `load`, only questions that equal an example count.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:

@@ -189,7 +189,7 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases. Braces that are left in a phrase belong to a fact, so they are escaped."""
+    """Return an intent with finished phrases. Braces left in a phrase belong to a fact, so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

@@ -1,7 +1,7 @@
 """The process of a model: llama.cpp's server on the loopback interface.
 
 `llama_process` runs this file by itself, so it imports nothing from Ravestate. It reads its configuration as one line of
-JSON, and writes the server's address as one line. It ends when standard input does, and so with its parent.
+JSON, and writes the server's address as one line. It ends when standard input ends, and so with its parent.
 """
 
 from __future__ import annotations
