@@ -32,8 +32,8 @@ module = rs.Module("idle", requires=[rawio], settings=Settings)
 bored = module.signal("bored")
 """Nothing happens for ``bored_after`` seconds. Raised once for each silence, including the one after startup.
 
-A rule that speaks ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, no signal comes
-until the user speaks again; after words of sorrow, none comes for twelve utterances.
+A rule that speaks ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, no signal
+comes until the user speaks again; after words of sorrow, none comes for twelve utterances.
 """
 
 hushed = module.signal("hushed")
