@@ -96,7 +96,7 @@ class Gate:
         return self._admitted, bool(self.reason)
 
     def refuse(self, sentence: str) -> str:
-        """Return why the agent must not say a sentence; empty if it may. Then, note the sentence as said."""
+        """Return the reason to refuse a sentence. If there is none, note the sentence as said, and return ""."""
         reason = self._form(sentence) or self._repetition(sentence) or self._claims(sentence) or self._meaning(sentence)
         if not reason:
             self._passed.append(plain(sentence))
