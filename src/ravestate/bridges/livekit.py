@@ -32,8 +32,8 @@ log = logging.getLogger("ravestate.livekit")
 class RavestateAgent(Agent):
     """A LiveKit agent that answers with a Ravestate agent, in the place of a language model.
 
-    The session needs no ``llm``. The agent may also speak of its own accord. LiveKit's preemptive generation is off,
-    because it would say words to the agent that the user may not have finished.
+    The session needs no ``llm``. The agent may also speak unasked. LiveKit's preemptive generation is off, because
+    it would send the agent words before the user has finished.
 
     Args:
         agent: The Ravestate agent; see `AnyAgent`.
@@ -59,7 +59,7 @@ class RavestateAgent(Agent):
 
     async def on_enter(self) -> None:
         """Start the agent."""
-        self._known |= {item.id for item in self.chat_ctx.items}  # from before the agent's time
+        self._known |= {item.id for item in self.chat_ctx.items}  # ignore messages from before the agent's start
         await self._begun()
 
     async def on_exit(self) -> None:
@@ -77,7 +77,7 @@ class RavestateAgent(Agent):
     ) -> AsyncGenerator[str | FlushSentinel, None]:
         """Tell the agent what the user has said, and yield its answer."""
         words = self._new_words(chat_ctx)
-        if not words:  # LiveKit asks for a reply without words of the user
+        if not words:  # LiveKit asks for a reply, although the user has said nothing
             return
         conversation = await self._begun()
         gap = ""
@@ -100,7 +100,7 @@ class RavestateAgent(Agent):
         return self._conversation
 
     def _say(self, utterance: Utterance) -> None:
-        """Say an utterance for which LiveKit has not asked."""
+        """Say an utterance that LiveKit has not asked for."""
         if self._conversation is None:
             return
         try:
@@ -129,7 +129,7 @@ class RavestateAgent(Agent):
     def _on_item(self, event: ConversationItemAddedEvent) -> None:
         item = event.item
         if self._conversation is not None and isinstance(item, llm.ChatMessage) and item.role == "assistant":
-            self._conversation.heard(item.text_content or "")  # if it was interrupted, only the words before
+            self._conversation.heard(item.text_content or "")  # after an interruption, only the words before it
 
     def _on_user_state(self, event: UserStateChangedEvent) -> None:
         if self._conversation is not None and event.new_state == "speaking":
@@ -140,7 +140,7 @@ class RavestateAgent(Agent):
             self._conversation.notice_speech(event.transcript)
 
     def _new_words(self, context: llm.ChatContext) -> str:
-        """Return what the user has said since the last call."""
+        """Return the user's words since the last call."""
         said = [item for item in context.items if isinstance(item, llm.ChatMessage) and item.role == "user"]
         words = [item.text_content or "" for item in said if item.id not in self._known]
         self._known |= {item.id for item in said}

@@ -63,7 +63,7 @@ class RavestateProcessor(FrameProcessor):
         self._guessed = False  # whether the last words may not be the user's whole turn
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
-        """Tell the agent what a frame means for it, and pass the frame on unless it is meant for a language model."""
+        """Tell the agent about a frame, and pass the frame on unless it is meant for a language model."""
         await super().process_frame(frame, direction)
         conversation = self._conversation
         match frame:
@@ -94,7 +94,7 @@ class RavestateProcessor(FrameProcessor):
                 while not self._utterances.empty():
                     self._utterances.get_nowait()
                     self._utterances.task_done()
-                await self._utterances.join()  # the end of the interrupted response goes before the interruption
+                await self._utterances.join()  # the end of the interrupted response precedes the interruption
             case EndFrame():
                 await conversation.end()
                 await self._utterances.join()
@@ -128,14 +128,14 @@ class RavestateProcessor(FrameProcessor):
             await self.push_error(str(failure), exception=failure, force_treat_as_permanent=True)
 
     def _new_words(self, context: LLMContext) -> str:
-        """Return what the user has said since the last call; the framework may cut a sentence into several messages."""
+        """Return the user's words since the last call; the framework may cut a sentence into several messages."""
         words: list[str] = []
         newest = self._taken
         for message in reversed([cast("dict[str, Any]", m) for m in context.get_messages() if isinstance(m, dict)]):
             role = message["role"]
             if message is self._taken or (role != "user" and (words or role != "assistant")):
                 break
-            if role == "user":  # the agent's message before it may have been added after it
+            if role == "user":  # the agent's earlier message may come after it
                 content = message["content"]
                 newest = newest if words else message
                 words.insert(0, content if isinstance(content, str) else _text_in(content))

@@ -145,7 +145,7 @@ class Conversation:
             self._fall_silent()
 
     async def until_agent_leaves(self) -> None:
-        """Wait until the agent ends the conversation (``ctx.stop()``); if `end` does, wait for ever.
+        """Wait until the agent ends the conversation (``ctx.stop()``). If `end` ends it instead, wait for ever.
 
         Raises:
             RavestateError: The agent has failed.
@@ -183,7 +183,7 @@ class Conversation:
     async def answer(self, text: str) -> AsyncGenerator[Utterance, None]:
         """Tell the agent what the user has said, and yield all utterances until the answer is complete.
 
-        If the caller closes the generator before, that is an interruption. An answer begins after the one before it.
+        Closing the generator earlier is an interruption. An answer begins only after the previous answer has ended.
         """
         async with self._turn:
             utterances: asyncio.Queue[Utterance | None] = asyncio.Queue()

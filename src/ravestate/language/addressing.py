@@ -10,7 +10,7 @@ _AGREEING = {"is": "are", "does": "do", "has": "have", "was": "were"}
 
 
 def addressed(sentence: str, names: Collection[str]) -> str:
-    """Return a sentence with *you* for the agent's names and *this robot*; beside *you*, a name only calls the agent.
+    """Replace the agent's names and *this robot* by *you*. Beside another *you*, drop names that only call the agent.
 
     Example:
         >>> addressed("What are Robin's hobbies?", ["Robin"]), addressed("Robin, how are you?", ["Robin"])

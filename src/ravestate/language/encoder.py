@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 BUNDLED = "bge_small_en"
 REMEMBERED = 1024
-"""The latest sentences whose vectors an encoder keeps: all skills ask for those of one utterance."""
+"""The number of vectors that an encoder keeps, because all skills ask for the same sentences."""
 
 
 class Encoder:
     """An encoder of sentences: similar meanings give similar vectors.
 
-    Making an encoder is free: the process shares its model, which the first use loads (0.3 s). Any thread may use it.
+    Making an encoder takes no time. Its first use loads the shared model (0.3 s). Any thread may use it.
 
     Example:
         ::
@@ -38,7 +38,7 @@ class Encoder:
 
         Args:
             folder: The folder of a model for sentence-transformers: ``model.onnx``, ``tokenizer.json``, and
-                ``1_Pooling/config.json`` if there is one. None: the bundled bge-small-en-v1.5 (English, 384 dimensions).
+                perhaps ``1_Pooling/config.json``. None: the bundled bge-small-en-v1.5 (English, 384 dimensions).
         """
         self._folder = folder
         self._model: SentenceModel | None = None
@@ -48,19 +48,19 @@ class Encoder:
         self._running: dict[str, threading.Event] = {}
 
     def load(self) -> None:
-        """Load the model now; otherwise the first call of another method does, with the same errors.
+        """Load the model now. Without this call, the first use of another method loads it, with the same errors.
 
         Raises:
-            PlatformError: A package or the model is missing or broken. The message says what to do.
+            PlatformError: A package or the model is missing or broken. The message says how to mend that.
         """
         self._loaded()
 
     def encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return a row for each text: shape (n, d), float32, each of length 1.
 
-        A new sentence takes about 3 ms on one core, one of the latest nothing. The model reads the first 512 tokens.
+        A new sentence takes about 3 ms on one core; a recent one takes no time. The model reads the first 512 tokens.
         """
-        model = self._loaded()  # first: it says what to install
+        model = self._loaded()  # before numpy: its error says what to install
         import numpy as np
 
         mine = threading.Event()
@@ -86,15 +86,15 @@ class Encoder:
         return np.stack([known[text] for text in texts]) if texts else np.zeros((0, model.width), dtype=np.float32)
 
     def _remember(self, known: Mapping[str, NDArray[np.float32]]) -> None:
-        """Keep vectors as the latest."""
+        """Keep these vectors; drop the oldest ones."""
         others = {text: vector for text, vector in self._latest.items() if text not in known}
         self._latest = dict([*others.items(), *known.items()][-REMEMBERED:])
 
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        """Return the vectors of texts that stay the same from start to start, such as examples.
+        """Return the vectors of texts that stay the same each time the program starts, such as examples.
 
-        Those of the built-in examples come with the package. The first call encodes the others, and writes a file to the
-        user's cache. A file that is missing or broken does no harm.
+        The vectors of the built-in examples come with the package. The first call encodes all other texts, and writes
+        their vectors to a file in the user's cache. If that file is missing or broken, they are encoded again.
         """
         model = self._loaded()
         import numpy as np
@@ -110,12 +110,12 @@ class Encoder:
 
     @property
     def size(self) -> int:
-        """The bytes of the model's file."""
+        """The size of the model's file in bytes."""
         return (self._loaded().folder / "model.onnx").stat().st_size
 
     @property
     def identity(self) -> list[object]:
-        """The place, size and date of the model: no other model has the same."""
+        """The folder, size and date of the model; together they identify it."""
         folder = self._loaded().folder
         return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns]
 
@@ -133,7 +133,7 @@ class Encoder:
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
         for number, text in enumerate(
             texts
-        ):  # one by one: a quantised model scales over a batch, so that each changes the others
+        ):  # one by one: a quantised model scales over a batch, so each text would change the others' vectors
             _, hidden, mask = next(model.run([text]))
             rows[number] = _pooled(hidden, mask, self._mean)[0]
         norms = np.linalg.norm(rows, axis=1, keepdims=True)
@@ -142,7 +142,7 @@ class Encoder:
 
 def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any]:
     """Return one vector for each text, from its tokens' vectors of shape (n, tokens, d)."""
-    if hidden.ndim == 2:  # the model has pooled them
+    if hidden.ndim == 2:  # the model itself has pooled the tokens
         return hidden
     if not mean:
         return hidden[:, 0]
@@ -151,7 +151,7 @@ def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any
 
 
 def _pools_by_mean(folder: Path) -> bool:
-    """Return whether the model averages over its tokens. Otherwise it takes the first, as bge does."""
+    """Return whether the vector of a text is the mean over its tokens. If not, it is the first token's, as in bge."""
     try:
         config = json.loads((folder / "1_Pooling" / "config.json").read_text(encoding="utf-8"))
         return bool(config["pooling_mode_mean_tokens"])

@@ -26,7 +26,7 @@ class Examples:
 
 
 def read_examples(file: Path | Traversable) -> Examples:
-    """Read examples: a mapping from a class to its sentences; ``none`` has those of no class.
+    """Read a mapping from classes to sentences; the key ``none`` has the sentences of no class.
 
     Raises:
         DeclarationError: The file is not such a mapping.

@@ -11,13 +11,13 @@ from .normal import plain
 from .shape import shape
 
 SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
-"""Feelings of the user's in which cheerfulness or a remark out of boredom would hurt."""
+"""Feelings of the user that forbid cheerful words, and remarks out of boredom."""
 SORROW_LASTS = 12
-"""The user's utterances for which sorrow counts, the one with it included."""
+"""The number of the user's utterances for which a sorrow counts, including the utterance that shows it."""
 SURE = 0.8
-"""The confidence from which a question is one of surprise: "how do you know that?"."""
+"""The least confidence with which a question shows surprise: "how do you know that?"."""
 SHORTEST = 3
-"""The minimum number of words of a clause that shows a feeling of its own: "brilliant, it is broken" is no praise."""
+"""The minimum number of words in a clause that shows a feeling by itself: "brilliant, it is broken" is not praise."""
 
 _CLAUSE_END = re.compile(
     r"[,;:()–—…]+|\s-+\s|\b(?:but|although|though|however|because|while|yet|and (?=(?:i|you|we|he|she|it|they|my|your|our)\b))",
@@ -29,7 +29,7 @@ _ASKED = frozenset({"affection", "astonishing"})
 
 
 def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str, Match]:
-    """Return the feelings in the sentences of an utterance, each with its best clause.
+    """Return the feelings in the sentences of an utterance, each with the clause that shows it best.
 
     Args:
         sentences: The sentences, in the normal form.
@@ -52,18 +52,18 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
 
 
 def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
-    """Return all that `feelings` compares with the examples: the sentences and their clauses."""
+    """Return the texts that `feelings` compares with the examples: the sentences and their clauses."""
     spoken = [addressed(sentence, names) for sentence in sentences]
     return [*spoken, *(clause for sentence in spoken for clause in _clauses(sentence, alone=False))]
 
 
 def _clauses(sentence: str, alone: bool) -> list[str]:
-    """Return the clauses of a compound sentence; only the longer ones if the sentence shows no feeling as a whole."""
+    """Return the clauses of a compound sentence; with `alone`, only those of at least `SHORTEST` words."""
     parts = [part for part in _CLAUSE_END.split(sentence) if plain(part)]
     least = SHORTEST if alone else 1
     return [part for part in parts if len(part.split()) >= least] if len(parts) > 1 else []
 
 
 def _asks(sentence: str) -> bool:
-    """Return whether a sentence asks for yes or no. The examples decide about those with a question word."""
+    """Return whether a sentence is a yes/no question. For other questions, the examples decide."""
     return "?" in sentence and shape(plain(sentence))[3] < 2

@@ -1,4 +1,4 @@
-"""Memory that the process needed only while it loaded a model."""
+"""Free the memory that loading a model leaves behind."""
 
 from __future__ import annotations
 

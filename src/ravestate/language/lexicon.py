@@ -1,7 +1,7 @@
-"""The words of English: which are common, and which are names.
+"""The words of English: common words and names.
 
-Two packages hold the data; the first use loads it. *pyspellchecker* has words with their frequencies in subtitles, and
-proposes corrections. The English dictionary of Hunspell, a file in *spylls*, writes names with capitals.
+The first use loads the data from two packages. *pyspellchecker* has the frequencies of words in subtitles, and proposes
+corrections. Hunspell's English dictionary, a file in *spylls*, has names with their capitals.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from typing import Any
 from .contractions import word_set
 
 FREQUENT = 5000
-"""The occurrences of a word in the subtitles (1.6 billion words) from which it may replace an unknown word."""
+"""The minimum count of a word in the subtitles (1.6 billion words) before it may replace an unknown word."""
 COMMON = 15_000
-"""The occurrences in lower case from which a word that may be a name is an ordinary word."""
+"""The count in lower case from which a word that may be a name counts as an ordinary word."""
 RARE = 50
-"""The occurrences up to which a word that no dictionary has is a name rather than a word."""
+"""The maximum count of a word, missing in the dictionary, that counts as a name."""
 DOUBLED = 20
-"""The factor by which swapped and doubled letters are more frequent slips than others."""
+"""The factor by which swapped and doubled letters are more frequent than other typing errors."""
 SHORTEST = 4
-"""The letters of an unknown word from which it may be a slip."""
+"""The minimum length, in letters, of a word that may be a typing error."""
 
 _BRITISH = [pair.split("/") for pair in ["our/or", "tre/ter", "ll/l", "is/iz", "ys/yz", "gue/g", "ce/se", "que/ck"]]
-"""Endings of British spelling, which is no slip, with the American ones."""
+"""British and American spellings. British spelling is not a typing error."""
 _BRITISH_WORDS = word_set("maths programme programmes dreamt")
-"""Words of British English that neither package has."""
+"""Words of British English that are missing in both packages."""
 _NO_NAMES = word_set(
     "grey armour tyre honorable mister independence reunion reconstruction que les del mon dem herr san"
 )
-"""Entries of the dictionary with a capital that are more often ordinary words."""
+"""Words that the dictionary lists as names, but that are more often ordinary words."""
 
 _RUN = re.compile(r"(.)\1*")
 _STRETCHED = re.compile(r"(.)\1\1")
@@ -46,7 +46,7 @@ _loaded: list[Lexicon | None] = []
 
 
 def load_lexicon() -> Lexicon | None:
-    """Return the shared lexicon; None if its packages are not installed. The first call takes about 0.3 s."""
+    """Load and return the shared lexicon; None if its packages are not installed. The first call takes about 0.3 s."""
     with _lock:
         if not _loaded:
             try:
@@ -79,7 +79,7 @@ class Lexicon:
         self.correction = lru_cache(maxsize=4096)(self._correction)
 
     def count(self, word: str) -> int:
-        """Return how often `word` occurs in lower case, per 1.6 billion words."""
+        """Return the count of `word` in lower case, per 1.6 billion words."""
         return self._counts.get(word, 0)
 
     def known(self, word: str) -> bool:
@@ -87,20 +87,20 @@ class Lexicon:
         return word in self._counts or word in self._ordinary or word in self._names or word in _BRITISH_WORDS
 
     def rare(self, word: str) -> bool:
-        """Return whether `word`, in lower case, is no word of the dictionary, and hardly occurs."""
+        """Return whether `word`, in lower case, is missing in the dictionary and hardly occurs in the subtitles."""
         return word not in self._ordinary and self.count(word) <= RARE
 
     def name(self, word: str) -> str:
-        """Return `word` with the capital of a name if it is one; otherwise as it is."""
+        """Return `word`, with a capital if it is a name."""
         return self._names.get(word, word)
 
     def possible_name(self, word: str) -> str:
-        """Return `word` with a capital if it is a name that is also an ordinary word, but not a common one: *Tom*."""
+        """Return `word`, with a capital if it is both a name and an uncommon ordinary word: *Tom*."""
         name = self._ambiguous.get(word)
         return name if name and self.count(word) < COMMON else word
 
     def unstretched(self, word: str) -> str:
-        """Return `word` without letters that were repeated for emphasis: *sooo*, *yesss*."""
+        """Return `word` without the letters that were repeated for emphasis: *so* for *sooo*."""
         if not _STRETCHED.search(word):
             return word
         runs = [run[0] for run in _RUN.finditer(word[:24])]
@@ -109,9 +109,9 @@ class Lexicon:
         return max(shapes, key=self.count) if any(map(self.count, shapes)) else word
 
     def _correction(self, word: str) -> str:
-        """Return the frequent word that was probably meant by an unknown one; otherwise `word`.
+        """Return the frequent word that the user probably meant by an unknown `word`; if there is none, `word`.
 
-        Short words have many neighbours. For them only swapped, doubled and missing letters count.
+        Short words resemble many others. In them, only swapped, doubled and missing letters are mended.
         """
         if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or self.known(word):
             return word
@@ -122,20 +122,20 @@ class Lexicon:
 
     @staticmethod
     def _slip(word: str, other: str) -> bool:
-        """Return whether such a slip is likely: the first letter is right, and a short word has no wrong letter."""
+        """Return whether `word` is a likely typing error for `other`. A short word must have no wrong letter."""
         if other[0] != word[0] and sorted(other) != sorted(word):
             return False
         if any(word.replace(british, american, 1) == other for british, american in _BRITISH):
             return False
         if len(word) == len(other):
             return len(word) > SHORTEST or sorted(word) == sorted(other)
-        if len(word) > len(other):  # a letter too many: a short word only has one that is doubled
+        if len(word) > len(other):  # a letter too many: in a short word, only a doubled one counts
             return len(word) > SHORTEST + 1 or any(a == b for a, b in pairwise(word))
         return True
 
 
 def _dictionary() -> tuple[frozenset[str], dict[str, str], dict[str, str]]:
-    """Return the ordinary words of Hunspell's dictionary, its names, and those that are both; names by their lower case."""
+    """Return the dictionary's ordinary words, its names, and the words that are both; lower case maps to names."""
     spec = find_spec("spylls")
     if spec is None or spec.origin is None:
         raise ImportError("No module named 'spylls'")
@@ -147,7 +147,7 @@ def _dictionary() -> tuple[frozenset[str], dict[str, str], dict[str, str]]:
         for entry in entries
         if len(entry) > 2 and entry.isalpha() and entry[0].isupper() and entry[1:].islower()
     }
-    # "Weeks" and "Jobs" are names too, but more often the plurals of ordinary words.
+    # "Weeks" and "Jobs" are names, but more often plurals of ordinary words.
     both = {low: name for low, name in names.items() if low in ordinary}
     others = _NO_NAMES | ordinary
     names = {low: name for low, name in names.items() if low not in others and low.removesuffix("s") not in ordinary}

@@ -1,9 +1,8 @@
 """A small classifier of sentences by meaning and spelling, with a class *none of these*.
 
-It is a kernel ridge regression over example sentences. The kernel adds a Gaussian of the distance in meaning (from an
-`Encoder`) and the cosine of the spelling (groups of three and four letters). Different shapes, such as *my* instead of
-*your*, lower both. Every list of sentences in the project
-that stands for a class is the examples of a matcher; there is no other way to recognise an utterance by its meaning.
+It is a kernel ridge regression over example sentences. The kernel is a sum of two similarities: a Gaussian of the
+distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). Different
+shapes, such as *my* instead of *your*, lower both. In this project, only matchers recognise a sentence by its meaning.
 """
 
 from __future__ import annotations
@@ -30,20 +29,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SHARPNESS = 4.0
-"""The slope of the similarity of meaning: the vectors of short sentences lie close together."""
+"""The slope of the similarity of meaning. It is steep because the vectors of short sentences lie close together."""
 SPELLING = 0.1
-"""The weight of similar spelling; similar meaning has the weight 1. It tolerates typing errors."""
+"""The weight of similar spelling, which helps with typing errors. Similar meaning has the weight 1."""
 SHAPE = 0.6
-"""The part of the similarity that two sentences lose whose shapes have nothing in common."""
+"""The share of their similarity that two sentences lose if their shapes have nothing in common."""
 COMMON = 0.1
-"""The similarity of any two sentences; it allows classes of different sizes."""
+"""The similarity that any two sentences have at least; it allows classes of different sizes."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
-"""The margin from which an example that the others would put into another class is worth a remark."""
+"""The least margin of an example in `confusions`: the other examples put it into another class."""
 NONE = ""
 REMEMBERED = 256
-"""The latest sentences whose classes a matcher keeps: all skills ask for those of one utterance."""
+"""The number of sentences whose classes a matcher keeps, because all skills ask for the same sentences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +50,13 @@ class Match:
     """A sentence that resembles the examples of a class."""
 
     score: float
-    """The confidence: the share of such sentences that belong to the class, 0 to 1."""
+    """The confidence, 0 to 1: the share of such sentences that belong to the class."""
     example: str
     """The nearest example."""
     margin: float
-    """The distance from the next best class, in scores of the regression: an example has about 1."""
+    """The score of the regression minus that of the next best class; about 1 for an example."""
     entities: tuple[Entity, ...] = ()
-    """The named entities of the utterance, where nlp matched it."""
+    """The named entities of the utterance, if the match comes from ``nlp``."""
     name: str = ""
     """The class."""
     text: str = ""
@@ -67,7 +66,7 @@ class Match:
 class Matcher:
     """A classifier for sentences: one of several classes, or none. Thread-safe.
 
-    Until the model is loaded, and where it is not installed, only the examples themselves are recognised, word for word.
+    Without a loaded model, only sentences that equal an example word for word are recognised.
 
     Example:
         ::
@@ -94,9 +93,9 @@ class Matcher:
             none: Sentences that belong to no class.
             least: The confidence below which a sentence belongs to no class.
             shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
-            centre: The margin with the confidence 0.5. By default, the examples tell: each is matched by the others. A class of
-                three examples loses too much without one of them, so give 0 for such classes.
-            encoder: By default the shared one.
+            centre: The margin that has the confidence 0.5; by default learnt, by matching each example with the others.
+                A class of three examples loses too much without one of them, so pass 0 for such classes.
+            encoder: The encoder; by default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
         pairs += [(plain(text), NONE) for text in none]
@@ -112,14 +111,14 @@ class Matcher:
 
     @property
     def loaded(self) -> bool:
-        """Whether it has learnt the examples."""
+        """Whether the matcher has learnt the examples."""
         return self._learnt is not None
 
     def load(self) -> None:
         """Load the encoder and learn the examples, once.
 
         Raises:
-            PlatformError: The sentence model is missing (`ModelMissing`) or broken. The message says what to do.
+            PlatformError: The sentence model is missing (`ModelMissing`) or broken. The message says how to mend that.
         """
         if self._learnt is not None:  # no lock is needed just to check
             return
@@ -133,7 +132,7 @@ class Matcher:
                 self._learnt = _Learnt(self._pairs, self._encoder, self._shapes, self._centre)
 
     def confusions(self) -> list[tuple[str, str, str]]:
-        """Return the examples that the others let expect in another class: example, class, expected class.
+        """Return the examples that the other examples put into another class: example, its class, the other class.
 
         Raises:
             PlatformError: See `load`.
@@ -143,7 +142,7 @@ class Matcher:
         return self._learnt.confusions
 
     def prepare(self, sentences: Sequence[str]) -> None:
-        """Encode sentences in one run, for this matcher and others that match them next."""
+        """Encode sentences in one run, so that this matcher and others then find their vectors ready."""
         if self._learnt is not None:
             self._encoder.encode([plain(sentence) for sentence in sentences])
 
@@ -152,9 +151,9 @@ class Matcher:
         return self.match_all([sentence])[0]
 
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
-        """Return the class of each sentence; None for one that belongs to none. The encoder runs once for all.
+        """Return the class of each sentence; None for a sentence of no class. The encoder runs once for all.
 
-        An example is recognised word for word, without the encoder.
+        A sentence that equals an example word for word needs no encoder.
         """
         if self._learnt is None:
             found = list(map(self.match_exactly, sentences))
@@ -168,17 +167,17 @@ class Matcher:
         return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
 
     def match_exactly(self, sentence: str) -> Match | None:
-        """Return the class of an example, word for word; its name is empty for an example of no class."""
+        """Return the class of the example that a sentence equals word for word; its name is empty for `NONE`."""
         text = plain(sentence)
         name = self.exact.get(text)
         return None if name is None else Match(1.0, text, 1.0, name=name, text=sentence)
 
     def ranked(self, sentence: str) -> list[Match]:
-        """Return all classes, best first; the class named by an empty string stands for none of them."""
+        """Return all classes, best first. The class with an empty name is *none of these*."""
         return self.ranked_all([sentence])[0]
 
     def ranked_all(self, sentences: Sequence[str], most: int | None = None) -> list[list[Match]]:
-        """Return the classes of each sentence, best first; `most` of them."""
+        """Return the `most` best classes of each sentence, best first; by default all."""
         if self._learnt is not None:
             return self._learnt.ranked(sentences, most)
         return [[match] if match else [] for match in map(self.match_exactly, sentences)]
@@ -186,13 +185,13 @@ class Matcher:
 
 @cache
 def shared_encoder() -> Encoder:
-    """Return the bundled encoder, one for all matchers."""
+    """Return the bundled encoder, which all matchers share."""
     return Encoder()
 
 
 @cache
 def bundled_matcher(name: str) -> Matcher:
-    """Return the matcher of a file of examples in this room, ``acts`` or ``feelings``; one for all contexts."""
+    """Return the matcher of a built-in file of examples, such as ``acts`` or ``feelings``. All contexts share it."""
     examples = bundled(name)
     return Matcher(examples.classes, (*examples.none, *bundled("none").none))
 
@@ -222,7 +221,7 @@ class _Learnt:
         ]
 
     def _learn(self) -> dict[str, NDArray[Any]]:
-        """Return the weights, the curve from margin to confidence, and the examples that others let expect elsewhere."""
+        """Return the weights, the curve from margin to confidence, and the confusions."""
         import numpy as np
 
         kernel = self._kernel(self._meanings, self._spelling.among(), self._shapes)
@@ -230,7 +229,7 @@ class _Learnt:
         inverse = np.linalg.inv(kernel)
         targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
         weights = inverse @ targets
-        # The scores of each example from a classifier that has learnt all the others, in closed form.
+        # Score each example with a classifier that has learnt all the others, in closed form.
         left_out = targets - weights / np.diag(inverse)[:, None]
         margins, others = margins_of(left_out), left_out.argmax(axis=1)
         wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))
@@ -241,7 +240,7 @@ class _Learnt:
         }
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
-        """Return `most` classes of each sentence, best first."""
+        """Return the `most` best classes of each sentence, best first; all if it is None."""
         import numpy as np
 
         if not sentences:
@@ -279,7 +278,7 @@ class _Learnt:
 
 
 def margins_of(scores: NDArray[Any]) -> NDArray[Any]:
-    """Return the distance of the best score in each row from the next best."""
+    """Return, for each row, the best score minus the next best."""
     import numpy as np
 
     two = np.sort(scores, axis=1)[:, -2:]
@@ -287,7 +286,7 @@ def margins_of(scores: NDArray[Any]) -> NDArray[Any]:
 
 
 def calibrated(margins: NDArray[Any], right: NDArray[Any]) -> tuple[float, float]:
-    """Return slope and centre of the logistic curve from a margin to the share of right answers (Platt scaling)."""
+    """Return the slope and centre of a logistic curve: from a margin to the share of right answers (Platt scaling)."""
     import numpy as np
 
     features: NDArray[Any] = np.stack([margins, np.ones_like(margins)], axis=1)

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 TOKENS = 512
-"""The tokens of a text or a pair that the models read."""
+"""The maximum number of tokens that a model reads of a text, or of a pair of texts."""
 CHARACTERS = 10_000
-"""The characters of a text that the tokenizer reads; 512 tokens of running text are shorter."""
+"""The maximum number of characters that the tokenizer reads; 512 tokens of running text have fewer."""
 BATCH_TOKENS = 256
-"""The tokens of a batch, with padding. Small batches need little memory."""
+"""The maximum number of tokens in a batch, padding included. Small batches need little memory."""
 
 _INSTALL = f"pip install 'ravestate[sentences]' and {requirement(SENTENCE_MODELS)}"
 
@@ -32,7 +32,7 @@ def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
     """Return the model in `folder`; the first call loads it.
 
     Args:
-        folder: The user's folder, ``~`` allowed; None for a bundled model.
+        folder: The user's folder, which may begin with ``~``; None for the bundled model.
         bundled: The name of the bundled model.
 
     Raises:
@@ -47,10 +47,10 @@ def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
 
 
 def folder_of(folder: Path | str | None, bundled: str) -> Path:
-    """Return the absolute path of the folder `folder`, or of the bundled model of that name.
+    """Return the absolute path of `folder`; without one, the folder of the model `bundled`.
 
     Raises:
-        PlatformError: There is no such folder, or the package with the bundled models is not installed.
+        PlatformError: The folder is missing, or the package with the bundled models is not installed.
     """
     if folder:
         path = Path(folder).expanduser().absolute()
@@ -75,7 +75,7 @@ class SentenceModel:
         Raises:
             PlatformError: A package or a file is missing or broken.
         """
-        # The library reports its use to its makers unless this is set before the import.
+        # Unless this is set before the import, onnxruntime sends usage data to its makers.
         os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
         try:
             with LOADING:
@@ -92,9 +92,9 @@ class SentenceModel:
         options = runtime.SessionOptions()
         options.intra_op_num_threads = min(2, _cores())
         options.inter_op_num_threads = 1
-        # Without this its threads spin between two runs, and take the cores from other work.
+        # Without this, onnxruntime's threads spin between two runs and take the cores from other work.
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-        options.log_severity_level = 4  # errors are raised
+        options.log_severity_level = 4  # no logged errors: they are raised as exceptions
         try:
             self._session: Any = runtime.InferenceSession(str(files[0]), options, providers=["CPUExecutionProvider"])
             self._tokenizer: Any = Tokenizer.from_file(str(files[1]))
@@ -113,13 +113,13 @@ class SentenceModel:
     def run(
         self, texts: Sequence[str] | Sequence[tuple[str, str]]
     ) -> Iterator[tuple[list[int], NDArray[Any], NDArray[Any]]]:
-        """Yield the model's first output in batches: indices of texts, output, mask (1 for tokens, 0 for padding).
+        """Run the model in batches. For each, yield the indices of its texts, the first output, and the mask.
 
-        A batch holds texts of similar length, so it needs little padding.
+        The mask is 1 for tokens and 0 for padding. A batch has texts of similar length, so it needs little padding.
         """
         import numpy as np
 
-        # One by one: for a batch the tokenizer starts threads, which a later fork warns about.
+        # Texts are encoded one by one: for a batch, the tokenizer starts threads, and a later fork would log a warning.
         codes = [self._tokenizer.encode(*map(_encodable, [text] if isinstance(text, str) else text)) for text in texts]
         order = sorted(range(len(codes)), key=lambda index: len(codes[index].ids))
         while order:
@@ -140,7 +140,7 @@ class SentenceModel:
 
 
 def _encodable(text: str) -> str:
-    """Return the text, shortened and without lone surrogates, which the tokenizer refuses."""
+    """Shorten a text, and replace lone surrogates, because the tokenizer refuses them."""
     return text[:CHARACTERS].encode("utf-8", "replace").decode("utf-8")
 
 

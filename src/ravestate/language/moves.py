@@ -1,7 +1,7 @@
 """The move that a good listener makes next: rejoice, console, advise... The classes are those of ``moves.yaml``.
 
-It is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel adds the meaning of the utterance, that
-of its last sentence, and its form: the persons, the kind of question, the length.
+The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a sum of three
+similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question, length).
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SPREAD, FORM = 0.05, 1.0
-"""The width and the weight of the similarity of form."""
+"""The similarity of form: how fast it falls with the distance, and its weight in the kernel."""
 COMMON = 0.1
 """The similarity of any two utterances."""
 RIDGE, RIDGE_BORROWED = 0.5, 2.0
-"""The ridge penalty, and that of examples from other files: they are single sentences, and count less."""
+"""The ridge penalties of own and of borrowed examples, which are single sentences from other files and count less."""
 BORROWED = 25
-"""The maximum number of examples from a class of another file."""
+"""The maximum number of examples borrowed from one class of another file."""
 UNLIKELY = 0.15
-"""The amount by which the form of an utterance lowers the scores of some moves."""
+"""The penalty for a move that does not suit the form: `TOLD` after a question, `ASKED` after a statement."""
 ASKED = ("fact", "self", "opinion", "recall")
 """Moves that answer a question."""
 TOLD = ("interest", "accept", "rejoice", "mourn", "greet", "introduce")
@@ -53,9 +53,9 @@ LISTENING = (
     "farewell",
     "thank",
 )
-"""Moves after a statement of the user."""
+"""Moves of a listener after a statement of the user."""
 SURE = 0.7
-"""The confidence from which a move decides alone."""
+"""The least confidence of a sure move."""
 
 _GROUPS = tuple(
     word_set(words)
@@ -74,26 +74,26 @@ class Move:
     """``interest``, ``accept``, ``rejoice``, ``console``, ``mourn``, ``apologise``, ``explain``, ``fact``, ``self``, ``opinion``,
     ``advice``, ``recall``, ``test``, ``entertain``, ``obey``, ``greet``, ``introduce``, ``farewell`` or ``thank``."""
     score: float
-    """The confidence: the share of such utterances for which it is right, 0 to 1."""
+    """The confidence, 0 to 1: the share of such utterances for which this move is right."""
     second: str = ""
     """The next best move."""
 
     @property
     def sure(self) -> bool:
-        """Whether it decides alone; otherwise the answer should suit the second move as well."""
+        """Whether the move is sure. If it is not, the answer should suit the second move as well."""
         return self.score >= SURE
 
     @property
     def listens(self) -> bool:
-        """Whether the user certainly wants to be heard, and asks nothing: no module should look for a fact then."""
+        """Whether the user surely wants to be heard and asks nothing. Modules should then not look for facts."""
         return self.sure and self.name in LISTENING
 
 
 class Moves:
-    """The classifier. Thread-safe; it knows nothing until it is loaded."""
+    """The classifier. Thread-safe; before `load`, it returns no moves."""
 
     def __init__(self, examples: Mapping[str, Sequence[str]], encoder: Encoder | None = None) -> None:
-        """Take the examples: those of ``moves.yaml``, or others in the same form."""
+        """Take the examples, in the form of ``moves.yaml``."""
         own = [(text, name, RIDGE) for name, texts in examples.items() if name != "like" for text in texts]
         others = {**bundled("acts").classes, **bundled("feelings").classes}
         for line in examples.get("like", ()):
@@ -108,7 +108,7 @@ class Moves:
         """Load the encoder and learn the examples, once.
 
         Raises:
-            PlatformError: The sentence model is missing or broken. The message says what to do.
+            PlatformError: The sentence model is missing or broken. The message says how to mend that.
         """
         with self._lock:
             if self._learnt is None:
@@ -120,8 +120,8 @@ class Moves:
         """Return the move that answers an utterance; None before `load`, and for an utterance without words.
 
         Args:
-            sentences: Its sentences, in the normal form.
-            asks: Whether it asks something.
+            sentences: The sentences of the utterance, in the normal form.
+            asks: Whether the utterance asks something.
         """
         if self._learnt is None or not any(map(plain, sentences)):
             return None
@@ -130,7 +130,7 @@ class Moves:
 
 @cache
 def bundled_moves() -> Moves:
-    """Return the classifier with the built-in examples, one for all contexts."""
+    """Return the classifier with the built-in examples, which all contexts share."""
     return Moves(bundled("moves").classes)
 
 
@@ -164,7 +164,6 @@ class _Learnt:
         return {"weights": weights, "curve": np.array(calibrated(margins_of(left_out).astype(np.float64), right))}
 
     def move(self, sentences: Sequence[str], unlikely: Sequence[str]) -> Move:
-        """Return the best move."""
         import numpy as np
 
         whole, last = self._encoder.encode([plain(text) for text in compared(sentences)])
@@ -190,13 +189,13 @@ class _Learnt:
 
 
 def learnt_texts(examples: Sequence[tuple[str, str, float]]) -> tuple[list[str], list[str]]:
-    """Return the texts of the examples that are encoded, in the plain form: the whole ones, and their last sentences."""
+    """Return the texts to encode, in the plain form: all examples, and the last sentence of each."""
     last = [(sentences_of(text) or (text,))[-1] for text, *_ in examples]
     return [plain(text) for text, *_ in examples], [plain(text) for text in last]
 
 
 def compared(sentences: Sequence[str]) -> tuple[str, str]:
-    """Return the texts that are compared with the examples: the whole utterance, and its last sentence."""
+    """Return the two texts to compare with the examples: the whole utterance, and its last sentence."""
     return " ".join(sentences), sentences[-1] if sentences else ""
 
 

@@ -1,11 +1,11 @@
-"""The normal form of a text: typed English as written English, with offsets into the original.
+"""The normal form of a text: typed English turned into correct written English, with offsets into the original.
 
-Each step changes only what written English would not have, so a well-written sentence stays as it is:
+A well-written sentence stays as it is. The steps mend:
 
-1. words: short forms and slips of `WRITTEN`; letters repeated for emphasis; slips of the pen, and the capitals of names,
-   by the `Lexicon`;
-2. punctuation: a space after a comma, a comma after an interjection, a full stop between a statement and a question;
-3. the start and end of each sentence: a capital, and a full stop or question mark.
+1. words: write out the short forms in `WRITTEN`, drop letters repeated for emphasis, and mend typing errors and the
+   capitals of names with the `Lexicon`;
+2. punctuation: add a space after a comma, a comma after an interjection, a full stop before a question;
+3. the start and end of each sentence: add a capital, and a full stop or question mark.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ class Normal:
     """For each character of `text`, and for its end, the position in `original`. It never decreases."""
 
     def span(self, start: int, end: int) -> tuple[int, int]:
-        """Return the span of `original` that ``text[start:end]`` stands for; an added mark has an empty one."""
+        """Return the span of `original` that ``text[start:end]`` stands for; it is empty for an added mark."""
         return self.origin[start], self.origin[end]
 
     def adds(self, start: int, end: int) -> bool:
-        """Return whether the original has nothing that ``text[start:end]`` stands for."""
+        """Return whether ``text[start:end]`` was added: nothing in the original corresponds to it."""
         return start < end and self.origin[start] == self.origin[end]
 
     @property
     def typed(self) -> str:
-        """The normal form with the capitals as typed, wherever a word differs from the typed one only in them."""
+        """The normal form, but words that differ from the typed ones only in capitals stay as typed."""
         if self.text == self.original:
             return self.text
         parts: list[str] = []
@@ -56,9 +56,9 @@ class Normal:
 
 @dataclass(slots=True)
 class _Piece:
-    """A word as written, the span of the original that it stands for, and the punctuation and space before it.
+    """A word of the normal form, its span in the original, and the punctuation and space before it (`gap`).
 
-    A word may begin a sentence (`first`), or be part of an address or a formula (`code`), which stays as it is.
+    `first` marks the first word of a sentence. `code` marks a part of an address or a formula, which stays as it is.
     """
 
     start: int
@@ -94,17 +94,17 @@ _STATING = word_set(
 """Words that begin statements."""
 _INTERJECTION = word_set("hi hello hey yes yeah yep no nope ok okay thanks sorry wow oh well bye")
 _OPENING = _INTERJECTION | word_set("and but so then now")
-"""Words that a clause may follow, as if it were the first."""
+"""Words after which a clause may begin as at the beginning of a sentence."""
 _GOVERNING = _AUX | word_set(
     "know tell me ask wonder see say guess remember forget forgot about of and or but so nor neither as than that if"
 )
-"""Words that a clause may follow without a full stop."""
+"""Words after which a clause needs no full stop before it: *I know who you are*."""
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
 _INTRODUCING = ("name is", "name's", "this is")
-"""Words that a name may follow: an unknown word after one of them is hardly a slip."""
+"""Words before a name: an unknown word after one of them is probably a name and no typing error."""
 _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
-"""Words that begin the names of places."""
+"""First words of place names: *New York*."""
 _AT = word_set("at by until till before after from since around about is and")
 """Words after which a figure is a time or a number."""
 _COUNTED = word_set("times days weeks months years hours minutes people")
@@ -119,27 +119,27 @@ _ASKS = re.compile(
     (?:do|don't|have|may|might)\ (?!it\b){_ANY_SUBJECT}\b | (?!(?:do|don't|have|may|might)\b){_ANY_AUX}\ (?!not\b)""",
     re.VERBOSE,
 )
-"""The beginning of a question. *Do it* and *have a nice day* are none."""
+"""The beginning of a question. *Do it* and *have a nice day* are not questions."""
 _ASKS_ANEW = re.compile(
     rf"""(?:what|who|where|when|why|how|which|whose|whom)\ {_ANY_AUX}\ (?:{_ANY_SUBJECT}|your|my)\b |
     how\ \S+\ {_ANY_AUX}\ {_ANY_SUBJECT}\b | (?:what|how)\ about\ you\b""",
     re.VERBOSE,
 )
 _ASKS_YOU = re.compile(r"(?:do|are|can|did|would|will|have|could) you \S")
-"""The beginning of a question after a statement; *are you* needs a statement with a subject before it."""
+"""The beginning of a question right after a statement; the statement must have a subject."""
 
 LONGEST = 2000
-"""The characters of a text that get their normal form; the rest stays as typed."""
+"""The maximum number of characters that get a normal form; the rest of a text stays as typed."""
 
 
 def normalise(text: str, names: Collection[str] = ()) -> Normal:
     """Return the normal form of `text`. Takes less than a millisecond for a sentence.
 
-    Slips of the pen and the capitals of names need `load_lexicon` before.
+    Typing errors and the capitals of names are mended only after a call of `load_lexicon`.
 
     Args:
         text: The text as typed.
-        names: Names that keep or get their capitals, such as the agent's and the user's.
+        names: Names to write with capitals, such as the agent's and the user's.
 
     Example:
         >>> normalise("u cant do that can u").text
@@ -152,8 +152,8 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
         return Normal(begun.text + text[start:], text, (*begun.origin[:-1], *rest))
     known = {part.lower(): part for name in names for part in name.split()}
     normal = Normal(text, text, tuple(range(len(text) + 1)))
-    for punctuated in (False, True):  # the marks depend on the words
-        for _ in range(_PASSES):  # what one pass has written out may show the next one more
+    for punctuated in (False, True):  # first the words, because the punctuation depends on them
+        for _ in range(_PASSES):  # words that one pass mends may let the next pass mend more
             again = _once(normal.text, known, punctuated)
             if again.text == normal.text:
                 break
@@ -175,7 +175,7 @@ def _once(text: str, known: dict[str, str], punctuated: bool) -> Normal:
 
 
 def plain(text: str) -> str:
-    """Return the words of a text in lower case, without punctuation, short forms written out: a form to compare.
+    """Return a text in its plain form, for comparisons: lower case, no punctuation, short forms written out.
 
     Example:
         >>> plain("What's up, Doc?")
@@ -187,7 +187,7 @@ def plain(text: str) -> str:
 
 
 def _pieces(text: str, lexicon: Lexicon | None) -> list[_Piece]:
-    """Return the words of a text with what stands before them; the last piece is empty."""
+    """Return the words of a text as pieces; the last piece has no word, only the end of the text."""
     pieces: list[_Piece] = []
     codes = [found.span() for found in _CHUNK.finditer(text) if _CODE.search(found[0])]
     last = 0
@@ -214,7 +214,7 @@ def _crowded(before: str, mark: str, after: str, lexicon: Lexicon | None) -> boo
 
 
 def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | None) -> list[_Piece]:
-    """Return the pieces with every word as written English has it; up to three words may become one piece."""
+    """Return the pieces with their words mended; up to three words may become one piece."""
     mended: list[_Piece] = []
     index = 0
     while index < len(pieces):
@@ -238,7 +238,7 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
 
 
 def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:
-    """Return how many words, beginning with `piece`, the table has as one entry; 1 if it has none of several."""
+    """Return the number of words of the longest entry of `WRITTEN` that begins at `piece`; 1 if there is none."""
     for size in (3, 2) if piece.low in _FIRST else ():
         rest = following[: size - 1]
         phrase = " ".join([piece.low, *(other.low for other in rest)])
@@ -251,7 +251,7 @@ def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:
 
 
 def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lexicon | None) -> str | None:
-    """Return the written form of a word in the table, if the word means that here."""
+    """Return the form of a word in `WRITTEN`; None if it has none, or means something else here."""
     word, low = piece.text, piece.low
     opens = piece.first or last in _OPENING
     asks = any("?" in other.gap for other in following)
@@ -269,7 +269,7 @@ def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lex
 
 
 def _by_lexicon(word: str, before: str, after: _Piece | None, lexicon: Lexicon) -> str:
-    """Return a word in lower case with its slips mended, and a name with its capital."""
+    """Mend the typing errors of a word in lower case; write a name with its capital."""
     stem, mark, end = word.partition("'")
     last = before.rpartition(" ")[2]
     placed = last in _PLACED or before.endswith(_INTRODUCING)
@@ -291,7 +291,7 @@ def _by_lexicon(word: str, before: str, after: _Piece | None, lexicon: Lexicon) 
 
 
 def _cased(written: str, piece: _Piece) -> str:
-    """Return a written form with a capital where the typed word begins with one."""
+    """Return `written`, with a capital if the typed word begins with one."""
     return written[0].upper() + written[1:] if piece.text[0].isupper() else written
 
 
@@ -346,7 +346,7 @@ def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
 
 
 def _aligned(written: str, typed: str, start: int) -> list[int]:
-    """Return the origin of each written character: equal beginnings and ends match, and the rest is spread between."""
+    """Return each written character's origin: equal beginnings and ends match; letters between are spread evenly."""
     size, wide = len(typed), len(written)
     if size == wide:
         return list(range(start, start + size))

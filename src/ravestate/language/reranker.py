@@ -18,7 +18,7 @@ BUNDLED = "reranker_en"
 class Reranker:
     """A cross-encoder: it scores how well a passage answers a question.
 
-    Making one is free: the process shares its model, which the first use loads. Any thread may use it. Errors are those of
+    Making a reranker takes no time. Its first use loads the shared model. Any thread may use it. It raises the errors of
     `Encoder`.
 
     Example:
@@ -44,10 +44,10 @@ class Reranker:
     def score(self, query: str, passages: Sequence[str]) -> NDArray[np.float32]:
         """Return a score for each passage: shape (n,), float32, higher is better.
 
-        Scores are logits: for the bundled model from about -11 (unrelated) to +11 (an answer). A pair of short sentences
-        takes about 3 ms. The model reads the first 512 tokens of a pair.
+        Scores are logits. Those of the bundled model go from about -11 (unrelated) to +11 (an answer). A pair of short
+        sentences takes about 3 ms. The model reads the first 512 tokens of a pair.
         """
-        model = model_in(self._folder, BUNDLED)  # first: it says what to install
+        model = model_in(self._folder, BUNDLED)  # before numpy: its error says what to install
         import numpy as np
 
         scores = np.zeros(len(passages), dtype=np.float32)

@@ -1,7 +1,7 @@
-"""The shape of a sentence: the persons that it mentions, and whether it asks. It knows closed classes of words only.
+"""The shape of a sentence: the persons that it mentions, and whether it asks. Only pronouns and question words count.
 
-For an encoder, *what are my hobbies* and *what are your hobbies* have almost the same meaning, and their spelling is
-almost the same. Their shapes tell them apart.
+The sentences *what are my hobbies* and *what are your hobbies* have almost the same vector and spelling. Their shapes
+differ.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ _AUXILIARIES = word_set("do does did am is are was were have has had can could w
 
 
 def shape(text: str) -> tuple[bool, bool, bool, int]:
-    """Return the features of a text in the plain form: mentions the agent, the user, others; the order of its words.
+    """Return features of a plain text: whether it mentions the agent, the user, others; and its word order.
+
+    The word order is 2 with a question word, 1 if a verb precedes its subject, and 0 otherwise.
 
     Example:
         >>> shape("what are my hobbies"), shape("you have a father")

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BUCKETS = 2048
-"""The groups of letters share this many numbers; a few of them collide, which does little harm."""
+"""The number of buckets into which groups of letters are hashed. A few groups collide; that does little harm."""
 _HASH, _SHIFT = 2654435761, 21
 """Knuth's multiplicative hash: the upper 11 of 32 bits."""
 
@@ -23,19 +23,19 @@ class Spelling:
 
         counts = _counts(examples)
         spread = (counts > 0).sum(axis=0)
-        # A group that no example has tells nothing about a text.
+        # Groups of letters that are missing in all examples count 0.
         self._rarity = np.where(spread > 0, 1 + np.log(len(examples) / (1 + spread)), 0).astype(np.float32)
         self._examples = np.ascontiguousarray(self._vectors(counts).T).astype(np.float16)
 
     def among(self) -> NDArray[np.float32]:
-        """Return the cosine of each example with each other one."""
+        """Return the cosine of each pair of examples."""
         import numpy as np
 
         examples = self._examples.astype(np.float32)
         return examples.T @ examples
 
     def likeness(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        """Return the cosine of each text (rows) with each example (columns); 0 if no group of a text is known."""
+        """Return the cosine of each text (rows) with each example (columns); 0 for a text without a known group."""
         import numpy as np
 
         likeness = np.zeros((len(texts), self._examples.shape[1]), dtype=np.float32)
@@ -52,7 +52,7 @@ class Spelling:
 
 
 def _counts(texts: Sequence[str]) -> NDArray[np.float32]:
-    """Return how often each text (rows) has the groups of three and four letters (columns)."""
+    """Count the groups of three and four letters (columns) in each text (rows)."""
     import numpy as np
 
     codes = [f" {text} ".replace("\n", " ").encode("utf-8", "replace") for text in texts]

@@ -1,4 +1,4 @@
-"""The vectors of the built-in examples, which ``tools/vectors.py`` makes: a first start need not compute them."""
+"""Ready-made vectors of the built-in examples, so that the first start is fast. ``tools/vectors.py`` makes the file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FILE = "vectors.npz"
 
 
 def key_of(text: str) -> int:
-    """Return the number under which the file has the vector of a text."""
+    """Return the key of a text in the file."""
     return int.from_bytes(hashlib.blake2b(text.encode("utf-8", "replace"), digest_size=8).digest(), "big")
 
 
@@ -25,7 +25,7 @@ def built_in(texts: Sequence[str], size: int) -> dict[str, NDArray[np.float32]]:
 
     Args:
         texts: Sentences in plain form.
-        size: The bytes of the model's file. The vectors of another model are of no use.
+        size: The size of the model's file in bytes. For another model, no vectors are returned.
     """
     import numpy as np
 

@@ -18,9 +18,9 @@ class Settings(rs.Settings):
     bored_after: Seconds = 15.0
     """Seconds without activity after which the agent is bored."""
     answer_time: Seconds = 25.0
-    """Seconds without activity, at least, after which the agent is bored if it has asked a question."""
+    """Seconds without activity after which the agent is bored if it has asked a question; at least ``bored_after``."""
     writing_time: Seconds = 20.0
-    """Seconds without a key after which the agent is bored while a line is unsent."""
+    """Seconds since the last key after which the agent is bored while the user has an unsent line."""
     remarks: Annotated[int, Field(ge=0)] = 2
     """The maximum number of remarks out of boredom until the user says or types something again."""
     impatient_after: Seconds = 1.0
@@ -32,8 +32,8 @@ module = rs.Module("idle", requires=[rawio], settings=Settings)
 bored = module.signal("bored")
 """Nothing happens for ``bored_after`` seconds. Raised once for each silence, including the one after startup.
 
-A rule that reacts to it ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, the
-agent stays quiet until the user speaks again; after words of sorrow, for twelve utterances.
+A rule that speaks ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, no signal
+comes until the user speaks again; after words of sorrow, none comes for twelve utterances.
 """
 
 hushed = module.signal("hushed")
@@ -49,10 +49,10 @@ remarked: rs.Slot[bool] = module.slot("remarked", True)
 """Whether the agent has spoken since it was last bored."""
 
 unanswered: rs.Slot[int] = module.slot("unanswered", 0)
-"""The remarks that the agent has made out of boredom since the user last said or wrote something."""
+"""The number of remarks that the agent has made out of boredom since the user last said or wrote something."""
 
 dismissed = module.flag("dismissed")
 """Whether the user's last words ask for quiet or say goodbye."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances for which the user's last words of sorrow count."""
+"""The number of further utterances of the user for which their last words of sorrow still count."""

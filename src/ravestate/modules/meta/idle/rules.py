@@ -13,7 +13,7 @@ from ravestate.modules import rawio
 from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
-"""The last characters of the agent's words in which a question counts."""
+"""The maximum number of characters, from the end of the agent's words, that are searched for a question."""
 
 
 @module.rule(
@@ -26,7 +26,7 @@ LONGEST = 1000
     background=True,
 )
 async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Emit `bored` after a long silence, unless the user wants it."""
+    """Emit `bored` after a long silence, unless the user wants silence."""
     settings: Settings = ctx.settings
     if ctx[rs.activity]:
         return rs.Resign("there is something to do")
@@ -49,7 +49,7 @@ async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def notice_user(ctx: rs.RuleContext) -> None:
-    """Reset the count of remarks: the user is there."""
+    """Reset the count of remarks, because the user is there."""
     ctx[remarked] = True
     ctx[unanswered] = 0
 
@@ -76,7 +76,7 @@ async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def notice_delay(ctx: rs.RuleContext) -> None:
-    """Emit `impatient`: a ready rule waits too long."""
+    """Emit `impatient` when a ready rule waits too long."""
     ctx.emit(impatient)
 
 
@@ -84,7 +84,7 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet, says goodbye or is sad; emit `hushed` in the first case.
 
-    The encoder may take a few milliseconds, so it runs in a thread. This counts as activity: the silence begins after it.
+    The encoder may take a few milliseconds, so it runs in a thread. This is activity: the silence begins after it.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})
@@ -110,7 +110,7 @@ def _has_words(text: str) -> bool:
     background=True,
 )
 async def notice_question(ctx: rs.RuleContext) -> None:
-    """Note the agent's question, whose answer gets more time; count the first words after boredom as a remark."""
+    """Note the agent's question, because its answer gets more time. Count the first words after boredom as a remark."""
     said = sentences(ctx.payload(rawio.output.changed)[-LONGEST:])
     ctx[asked] = said[-1] if said and "?" in said[-1] else ""
     if not ctx[remarked]:

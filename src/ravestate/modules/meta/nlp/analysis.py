@@ -29,7 +29,7 @@ from .tree import Tree
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
-"""The acts that have a signal of nlp's, with its name."""
+"""The acts for which nlp has a signal, with the signal's name."""
 
 MATCHERS = ("acts", "feelings")
 """The files of examples whose classes an analysis names."""
@@ -86,9 +86,9 @@ def analyse(
     Args:
         text: Any text; the analysis covers the beginning of a long one.
         pipeline: The pipeline; the first call loads it in about a second.
-        agent_names: A text with one of them is about the agent. Case is ignored.
-        users: The names of the users present; the normal form knows them, as it knows those of the agent.
-        designed: The matcher of the designer's intents. The first utterance waits until it has learnt them.
+        agent_names: The agent's names. A text with one of them is about the agent. Case is ignored.
+        users: The names of the users present. The normal form gives their names and the agent's names capitals.
+        designed: The matcher of the designer's intents. The first utterance waits until it has learnt the examples.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.

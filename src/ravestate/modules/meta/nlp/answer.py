@@ -1,7 +1,7 @@
 """Recognise answers: yes, no, or unsure.
 
-The answer is at the beginning of a text. *Yes*, *no* and short answers (*I do*) are closed classes of words, read here; all other
-answers resemble an example in ``answers.yaml``. Each part between commas is read on its own.
+The answer is at the beginning of a text. This file reads *yes*, *no* and short answers (*I do*) word for word. Other
+answers are compared with the examples in ``answers.yaml``. Each part between commas is read on its own.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ _SHORT = re.compile(
 )
 """A short answer: *I do*, *she certainly is not*."""
 _LEAD = 2
-"""The words before a comma that may lead to an answer: *I mean, sure*."""
+"""The maximum number of words before a comma that introduce an answer: *I mean, sure*."""
 _LONGEST = 400
-"""Answers are short: the rest of a long text is not read."""
+"""The maximum number of characters that are read, because answers are short."""
 
 
 def yesno_of(text: str) -> YesNo:

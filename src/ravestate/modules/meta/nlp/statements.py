@@ -1,4 +1,4 @@
-"""Read triples and statements from a dependency tree: what each clause says, and whether it is so, by the README's conventions."""
+"""Read triples and statements from a dependency tree, by the conventions of the README."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ MOST = 64
 """The maximum number of triples from one text, because enumerations multiply."""
 
 _HABITS = word_set("go play train run attend sing dance paint cook swim ride eat teach stay drink")
-"""Verbs that are habits without a time, and single events with one: *I painted a dragon yesterday*."""
+"""Verbs of habits. With a time, they tell a single event: *I painted a dragon yesterday*."""
 _LASTING = _HABITS | word_set(
     "be live work study have own like love hate enjoy prefer want need know believe speak belong smoke keep collect date share "
     "feel hope think"
 )
-"""Verbs of states and habits. In the past they say what is so no more; with others, something happened and still holds."""
+"""Verbs of states and habits. In the past tense, their statements no longer hold; those of other verbs still do."""
 _KNOWN_AS_TRUE = word_set(
     "know remember see notice forget realise realize find learn discover understand mean show prove"
 )
@@ -52,7 +52,7 @@ def triples_of(tree: Tree) -> tuple[Triple, ...]:
 def statements_of(
     tree: Tree, entities: Sequence[Entity] = (), clauses: Sequence[Clause] | None = None
 ) -> tuple[Statement, ...]:
-    """Return the triples of the text, at most `MOST`, each once, with what their clauses say about them.
+    """Return the triples of the text, at most `MOST`, each once, with the flags of their clauses.
 
     Example:
         The only statement of *my sister used to live in Rome* has the subject's head ``sister``, and it is past.
@@ -68,7 +68,7 @@ def statements_of(
 
 
 class _Assertion:
-    """The flags that all triples of one clause share: whether it is so, was so once, is imagined, wanted, or reported."""
+    """The flags that all triples of one clause share: whether it is true, past, imagined, wanted, or reported."""
 
     def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
         self._tree = clause.tree
@@ -169,7 +169,7 @@ class _Assertion:
 
     @cached_property
     def _past(self) -> bool:
-        """Whether it was so, and is so no more."""
+        """Whether it was true, and is not true any more."""
         lemma, first = lemma_of(self._clause.chain[-1]), self._clause.chain[0]
         if first.low == "used" and len(self._clause.chain) > 1:
             return True

@@ -40,16 +40,16 @@ surprised = module.signal("surprised")
 """The agent is surprised."""
 
 happy = module.signal("happy")
-"""The agent is happy, by itself or with its user."""
+"""The agent is happy: spontaneously, or because the user is."""
 
 affectionate = module.signal("affectionate")
 """The agent likes its user."""
 
 sad = module.signal("sad")
-"""The agent is sad: with its user, or because of an insult."""
+"""The agent is sad: because the user is, or because of an insult."""
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
 """The agent's last feeling; None before the first."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances for which the user's last words of sorrow count."""
+"""The number of further utterances of the user for which their last words of sorrow still count."""

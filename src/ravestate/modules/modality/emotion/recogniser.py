@@ -43,7 +43,7 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
         names: The agent's names: "Rosie is clever" means the same as "you are clever".
 
     Raises:
-        PlatformError: The sentence model is missing, and the examples alone do not decide.
+        PlatformError: The sentence model is missing, and the text does not equal an example.
 
     Example:
         >>> recognise("You are so clever!"), recognise("You are not very clever."), recognise("I passed my exam!")

@@ -39,9 +39,9 @@ def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, reads=(interloc.agent, sorrow), writes=sorrow, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
-    """Raise the feeling that fits the user's words, or a spontaneous one. The encoder takes a few milliseconds, so this
-    runs in a thread. Without the sentence model only the examples of feelings count. In a sad stretch of the talk nothing
-    is cheerful."""
+    """Raise the feeling that fits the user's words, or a spontaneous one. After a sorrow, raise no cheerful feeling.
+
+    The encoder takes a few milliseconds, so this runs in a thread. Without it, only words of an example count."""
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)
@@ -60,7 +60,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
 
 
 def note(feeling: Feeling) -> None:
-    """Declare the rule that notes a feeling from any rule."""
+    """Declare the rule that notes a feeling, whichever rule raised it."""
 
     @module.rule(
         when=SIGNALS[feeling].max_age(None).detached(),
@@ -78,9 +78,9 @@ for each in SIGNALS:
 
 
 @module.rule(
-    when=felt.changed.max_age(None).detached(),  # an answer to the same words is a write of its own (L10, L19)
+    when=felt.changed.max_age(None).detached(),  # does not compete with answers to the same words (L10, L19)
     writes=rawio.output,
-    until=rawio.input.changed | felt.changed,  # it is too late, or a later feeling shows
+    until=rawio.input.changed | felt.changed,  # the user speaks, or a later feeling shows
     detached=True,
     background=True,
 )

@@ -278,7 +278,7 @@ class Session:
         self.line.take(window)
 
     def _linger(self) -> None:
-        """Keep the line for a while without a window: the agent hears the end of the utterance, and may be quick again."""
+        """Keep the line for a while without a window, so that the agent hears the end of the visitor's utterance."""
         self._stay_on_line()
         self._hanging_up = asyncio.get_running_loop().call_later(LINGER, self._hang_up)
 

@@ -28,7 +28,7 @@ RELATIONS: Mapping[str, tuple[str, str]] = {
 
 
 async def settle(life: Life, memory: Memory) -> Node:
-    """Update the agent's node in memory to match the file. Facts that the file does not mention stay.
+    """Update the agent's node in memory to match the file. Facts that are missing in the file stay.
 
     Raises:
         PlatformError: Memory failed.
@@ -52,7 +52,7 @@ async def settle(life: Life, memory: Memory) -> Node:
                 changed = True
                 await memory.relate(node, relation, await memory.ensure(type, name=text))
     if changed:
-        await memory.tidy()  # the first time, it wrote a whole life
+        await memory.tidy()  # the first call writes a whole life
     return node
 
 
@@ -73,13 +73,13 @@ async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
     for fact, (relation, _) in RELATIONS.items():
         names = [str(one.target.get("name", "")) for one in known if one.name == relation and one.source == node]
         before = texts(facts.get(fact, ()))
-        order = {name: place for place, name in enumerate(before)}  # as in the file, the new ones last
+        order = {name: place for place, name in enumerate(before)}  # the file's order; new values come last
         facts[fact] = tuple(sorted(filter(None, names), key=lambda name: order.get(name, len(order))))
     return facts
 
 
 def texts(fact: Fact) -> tuple[str, ...]:
-    """Return a fact as texts; pairs as their first texts."""
+    """Return a fact as texts; from each pair, only the first text."""
     if isinstance(fact, str):
         return (fact,)
     return tuple(part if isinstance(part, str) else part[0] for part in fact)

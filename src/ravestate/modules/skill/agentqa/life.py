@@ -20,14 +20,14 @@ class Topic:
     phrases: tuple[str, ...]
     """Answers, with facts in braces. The agent chooses one whose facts are known."""
     otherwise: tuple[str, ...] = ()
-    """Answers for when every phrase lacks a fact; if there are none, other modules answer."""
+    """Answers if every phrase lacks a fact. Without such answers, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """For each fact, answers to a question that names one of its values, ``{it}``; ``{that}`` is the other text of a
-    pair."""
+    """For each fact, answers to a question that names one of its values. ``{it}`` is that value, and ``{that}`` the
+    other text of a pair."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
-    """Regular expressions of whole words, for remarks that no other module should answer."""
+    """Regular expressions, matched on whole words, for remarks that no other module should answer."""
     acts: tuple[str, ...] = ()
     """Acts and feelings of the user, by the classes of `nlp.analysis`: ``insult``, ``thanks``, ``grief``."""
 

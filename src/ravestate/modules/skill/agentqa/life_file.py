@@ -39,8 +39,8 @@ _TOLD = ("phrases", "otherwise", "unnamed")
 def read_life(own: Path | None = None) -> Life:
     """Read the agent's life: the module's file, changed by the user's `own`.
 
-    A fact of the own file replaces the module's, and ``~`` removes it. A topic adds its questions and remarks to the
-    module's, and replaces the phrases; ``~`` removes it. Other topics are new.
+    A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions
+    and remarks to the module's topic, and replaces its phrases; ``~`` removes the topic. All other topics are new.
 
     Raises:
         DeclarationError: The file has a mistake; the message names the line.
@@ -62,7 +62,7 @@ def _parsed(name: str, text: str, base: Life | None) -> Life:
 
 
 class _Reader:
-    """A reader of a file, whose name it mentions in messages about mistakes."""
+    """A reader of a file. Its messages about mistakes give the file's name."""
 
     def __init__(self, file: str) -> None:
         self._file = file

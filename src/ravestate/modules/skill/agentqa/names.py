@@ -24,9 +24,9 @@ class Settings(rs.Settings):
     """The agent's life, and how often it offers to talk about itself."""
 
     life: Path | None = None
-    """The user's own file with facts and topics. It changes what it mentions, and nothing else."""
+    """The user's own file. It changes the facts and topics that it mentions; all others stay."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
-    """Seconds of the user's silence after which the agent offers once to be asked."""
+    """Seconds of silence after which the agent invites the user, once, to ask about it."""
 
     @field_validator("life")
     @classmethod
@@ -64,7 +64,7 @@ clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, inp
 """The clock, by default the machine's; it decides the agent's age, the date and the time of day."""
 
 prompted: rs.Slot[float | None] = module.slot("prompted", None)
-"""The time when the agent offered to be asked, in seconds since the context began."""
+"""The time when the agent invited the user to ask about it, in seconds since the context began."""
 
 turns: rs.Slot[tuple[int, float]] = module.slot("turns", (0, 0.0))
 """The number of the user's utterances, and the time of the last one."""

@@ -1,4 +1,4 @@
-"""Remarks that the agent must answer: distress first, by fixed expressions; then acts and feelings of the user."""
+"""Remarks that the agent must answer: first distress, found by fixed expressions; then the user's acts and feelings."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class Remark:
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
-    """Return the remark that an expression of a topic finds. If several topics match, the first in the life counts.
+    """Return the remark that matches an expression of a topic. If several topics match, take the first in the life.
 
     Args:
         utterance: The user's words.
-        life: The life; its topics with remarks count.
+        life: The life, with the topics and their remarks.
         names: Further names of the agent.
 
     Example:
@@ -51,9 +51,9 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
 
 
 def act_in(analysis: Analysis, life: Life) -> Remark | None:
-    """Return the remark that is an act or a feeling of a topic; the first topic in the life counts.
+    """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first in the life.
 
-    A feeling without *you* counts alone, and not beside other sentences: *useless. how long do eggs boil*.
+    Without a *you*, a feeling counts only if nothing else is said. In *useless. how long do eggs boil*, it is ignored.
     """
     for name, topic in life.topics.items():
         for known in topic.acts:

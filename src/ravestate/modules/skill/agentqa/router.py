@@ -1,4 +1,4 @@
-"""The router: from a question about the agent to its topic, by similar example questions."""
+"""The router: find the topic of a question about the agent by similar example questions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ravestate.language.bundled import ModelMissing
 from .life import Life
 
 LEAST = 0.5
-"""The confidence from which a question belongs to a topic."""
+"""The least confidence with which a question belongs to a topic."""
 WORDS = 20
 """The maximum number of words in a question about the agent."""
 SENTENCES = 4
@@ -53,11 +53,11 @@ class Miss:
 class Router:
     """A classifier for questions: a topic of the agent, or none. Thread-safe.
 
-    It is a `Matcher` over the example questions of a life. Until it is loaded, it knows the examples word for word.
+    It is a `Matcher` over the example questions of a life. Before `load`, only questions that equal an example count.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
-        """Nothing is loaded yet."""
+        """Take the life. Nothing is loaded yet."""
         self.life = life
         examples = {topic.name: topic.questions for topic in life.topics.values() if topic.questions}
         self._matcher = Matcher(examples, life.others, least=LEAST, encoder=encoder)
@@ -67,14 +67,14 @@ class Router:
         self._matcher.load()
 
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
-        """Return the topic that an utterance asks about; the first sentence with one counts.
+        """Return the topic that an utterance asks about. If several sentences have a topic, take the first.
 
-        Without the package of sentence models, only the examples themselves are understood.
+        Without the package of sentence models, only questions that equal an example word for word are understood.
 
         Args:
             utterance: The user's words, as typed or in their normal form.
             names: Further names of the agent.
-            question: Whether the utterance is known to ask something: *I wonder who made you* asks who made it.
+            question: Whether the utterance surely asks something, perhaps indirectly: *I wonder who made you*.
 
         Raises:
             PlatformError: The sentence model is broken.

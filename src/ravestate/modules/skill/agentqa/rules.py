@@ -25,11 +25,11 @@ from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
 CERTAIN = 0.7
-"""The confidence in a topic from which it needs no second sign that the question is about the agent."""
+"""The least confidence with which a topic needs no second sign that the question is about the agent."""
 STATED = 0.85
-"""The same for a statement: *I don't know what to say* is no question about the agent."""
+"""The same confidence for a statement, because *I don't know what to say* is no question about the agent."""
 TURNS = 6
-"""The user's utterances before which the agent does not offer to be asked."""
+"""The number of the user's utterances before the agent invites them to ask about it."""
 
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
@@ -101,7 +101,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone: a user in distress hears an answer whatever else is installed."""
+    """Notice a remark by its words alone, so that a user in distress gets an answer whatever is installed."""
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
@@ -137,7 +137,7 @@ async def respond(ctx: rs.RuleContext) -> None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
-@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # outranks everything except such a remark
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # outranks everything except a remark
 async def keep_quiet(ctx: rs.RuleContext) -> None:
     """Promise to be quiet; `idle` keeps the promise."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)
@@ -166,12 +166,12 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=idle.bored.min_age(Settings.prompt_after).max_age(None),
     reads=(prompted, turns, idle.unanswered),
-    writes=(verbaliser.intent, rawio.output, prompted),  # also the output, so that no goal is pursued at the same time
+    writes=(verbaliser.intent, rawio.output, prompted),  # the output, so that no other rule speaks at the same time
     weight=0.9,
-    detached=True,  # otherwise the intent could not become words in the same causal group
+    detached=True,  # starts a causal group of its own: in the old one, nothing could turn the intent into words
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Invite the user to ask, once, in a long silence of a talk that has come to a stop."""
+    """Invite the user, once, to ask about the agent, when the conversation has stopped for a long time."""
     count, last = ctx[turns]
     if ctx[prompted] is not None or count < TURNS:
         return rs.Resign("the agent has offered it before, or the talk has just begun")
@@ -189,7 +189,7 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases; any braces left in them belong to a fact."""
+    """Return an intent with finished phrases. Braces left in a phrase belong to a fact, so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

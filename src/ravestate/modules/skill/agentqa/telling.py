@@ -1,4 +1,4 @@
-"""The answer about a topic: the phrases whose facts are known, filled in."""
+"""The answer about a topic: fill in the phrases whose facts are known."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def telling(
 
     Args:
         topic: The topic.
-        question: The question in the plain form; the answer is about the value that it names.
+        question: The question in the plain form. If it names a value of a fact, the answer is about this value.
         facts: The agent's facts.
-        mood: Its mood.
-        now: The moment; the agent's age, the date and the time of day follow from it.
+        mood: The agent's mood.
+        now: The current time, for the agent's age, the date and the time of day.
     """
     values = _in_words(facts, mood, now)
     for fact, phrases in topic.named:
@@ -45,7 +45,7 @@ def listed(items: Sequence[str]) -> str:
 
 
 def age(born: date, today: date) -> str:
-    """Return an age in years; in months below one year, and in days below two months.
+    """Return an age in years; below one year, in months; below two months, in days.
 
     Example:
         >>> age(date(2024, 3, 1), date(2026, 2, 28)), age(date(2024, 3, 1), date(2024, 5, 1))
@@ -62,7 +62,7 @@ def age(born: date, today: date) -> str:
 
 
 def without_question(phrase: str) -> str:
-    """Return a phrase without the question at its end, unless it is all there is.
+    """Return a phrase without the question at its end, unless the phrase is nothing but a question.
 
     Example:
         >>> without_question("I am fine, thank you. And you?"), without_question("Who knows?")
@@ -104,7 +104,7 @@ def _parameters(phrase: str) -> set[str]:
 _PARTICULAR = re.compile(
     r"(?:can|could|do|are) you (?!(?:[\w-]+ )*(?:have|any|anything|anybody|some|something|everything|what|which|or)\b)"
 )
-"""First words of a question about one thing; its answer is yes or no."""
+"""First words of a yes/no question about one thing."""
 _QUESTION_AT_THE_END = re.compile(r"(?<=[.!…])\s+[^.!?…]+\?$")
 _BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
 """The first letter of a sentence, which may belong to a fact."""

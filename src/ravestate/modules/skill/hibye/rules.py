@@ -16,9 +16,9 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .names import goodbye, greeted, hello, module, parted
 
 JUST_NOW = 60.0
-"""Seconds for which a greeting or a goodbye counts: the user hears no second one within this time."""
+"""Seconds for which a greeting or a goodbye counts. Within this time, the agent does not repeat it."""
 GENERAL = 0.15
-"""The weight of the answers: almost any rule for the same words is more specific."""
+"""The weight of the answers: so low that almost any other rule for the same words outranks them."""
 
 
 @module.rule(
@@ -52,7 +52,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=hello, reads=greeted, writes=(verbaliser.intent, greeted), weight=GENERAL)
 async def answer_hello(ctx: rs.RuleContext) -> None:
-    """Answer a greeting; after the agent's own, without a second hello."""
+    """Answer a greeting. If the agent has just greeted the user, do not say hello again."""
     said = ctx[greeted]
     returned = said is not None and ctx.now - said < JUST_NOW
     ctx[greeted] = ctx.now
@@ -61,7 +61,7 @@ async def answer_hello(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=goodbye, reads=(rawio.input, idle.sorrow), writes=(verbaliser.intent, parted), weight=0.9 * GENERAL)
 async def answer_goodbye(ctx: rs.RuleContext) -> None:
-    """Answer a goodbye; wish a good night to a user who goes to bed, and say nothing cheerful to a sad one."""
+    """Answer a goodbye. Wish a good night to a user who goes to bed, and say nothing cheerful to a sad user."""
     ctx[parted] = ctx.now
     night = await asyncio.to_thread(_goes_to_bed, ctx[rawio.input])
     intent = "goodnight" if night else "solace" if ctx[idle.sorrow] else "goodbye"
@@ -80,6 +80,6 @@ def _partings() -> Matcher:
 
 
 def _goes_to_bed(text: str) -> bool:
-    if bundled_matcher("acts").loaded:  # otherwise only the examples themselves are recognised, at once
+    if bundled_matcher("acts").loaded:  # until then, only words that equal an example are recognised
         _partings().load()
     return any(_partings().match_all(heard(text)))

@@ -39,7 +39,7 @@ class Acquaintance:
         return {NAME: (self.name,), **self.facts} if self.name else self.facts
 
     def recall(self, graph: ontology.Graph) -> Acquaintance:
-        """Return the user with the facts that memory has under their name. Memory is asked once per conversation."""
+        """Return the user with the facts that memory has under their name. Ask memory only once per conversation."""
         if self.talk.met or self.who is None or self.talk.doubt:
             return self
         found = graph.get(self.who.id) or records.named(graph, self.who[NAME])
@@ -52,18 +52,18 @@ class Acquaintance:
         return Acquaintance(found, merged(remembered, self.facts), talk, free)
 
     def doubted(self, graph: ontology.Graph) -> Acquaintance:
-        """Return the user with a doubt, if memory knows facts about a person of the name that they have just told."""
+        """Return the user with a doubt if memory knows facts about a person with the name that they have just told."""
         if self.talk.met or self.who is None:
             return self
         found = records.named(graph, self.who[NAME])
         facts = records.known(graph, found) if found is not None else {}
         if any(among(value, facts.get(topic, ())) for topic, values in self.facts.items() for value in values):
-            return self  # they have just told something that this person told before
+            return self  # the user has just told a fact that memory knows about this person
         topics = sorted((topic for topic in facts if facts[topic]), key=lambda topic: not TOPICS[topic].asked)
         return replace(self, talk=replace(self.talk, doubt=topics[0] if topics else ""))
 
     def settled(self, graph: ontology.Graph, answer: tuple[str, ...]) -> Acquaintance:
-        """Return the user as the person of their name who told this answer, or as a new person."""
+        """Return the user as the person whose name and facts fit this answer; if there is none, as a new person."""
         assert self.who is not None
         for person in records.namesakes(graph, self.who[NAME]):
             values = records.known(graph, person).get(self.talk.doubt, ())
@@ -72,11 +72,11 @@ class Acquaintance:
         return self.stranger()
 
     def stranger(self) -> Acquaintance:
-        """Return the user as a new person, even if memory knows another one of their name."""
+        """Return the user as a new person, even if memory knows somebody of the same name."""
         return replace(self, talk=replace(self.talk, doubt="", met=True, newcomer=True))
 
     def noted(self, graph: ontology.Graph) -> Acquaintance:
-        """Save what the user told in this conversation; nothing while their name is not known."""
+        """Save what the user told in this conversation. Without their name, save nothing."""
         now = self.recall(graph)
         if now.who is None or now.talk.doubt:
             return now
@@ -89,8 +89,8 @@ class Acquaintance:
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
         """Return the user under another name, because the first one was misunderstood.
 
-        A person that this conversation created is renamed. A person from memory gets their old facts back, and the
-        facts of this conversation go to the new name.
+        A person whom this conversation created gets the new name. A person from memory gets their old facts back; the
+        facts of this conversation go to a person with the new name.
         """
         assert self.who is not None  # the agent understood their name
         person = ontology.Node("Person", {NAME: name})
@@ -107,7 +107,7 @@ class Acquaintance:
         return Acquaintance(person, facts, talk)
 
     def restored(self, graph: ontology.Graph) -> None:
-        """Give the person for whom the agent has mistaken the user their old facts back."""
+        """Restore the old facts of a person in memory whom the agent has mistaken for the user."""
         assert self.who is not None
         before = {topic: self.talk.remembered.get(topic, ()) for topic in self.talk.told}
         records.note(graph, self.who, before, self.talk.ever)
@@ -131,6 +131,6 @@ class Noted(NamedTuple):
     base: Acquaintance
     """The user before memory was asked."""
     after: Acquaintance
-    """The user with the answer of memory."""
+    """The user after memory answered."""
     called: str | None
     """The user's name before this utterance."""

@@ -96,7 +96,7 @@ def correction(
         topic: The topic to correct.
         known: The values that were understood.
         seen: The analysis of the utterance.
-        explicit: Whether only *Bremen, not Hannover* counts, and a mere *no, Bremen* does not.
+        explicit: Whether only *Bremen, not Hannover* counts, and *no, Bremen* does not.
     """
     if both := _NOT_THIS.match(text) or _NOT_THAT.match(text):
         wrong = _PREPOSITIONS.sub("", both["wrong"]).strip(" .!?").casefold()
@@ -113,12 +113,12 @@ def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
 
     Args:
         seen: The analysis of the utterance.
-        clear: Whether its words are surely an answer, although they resemble a yes or no.
+        clear: Whether the words are surely an answer, although they resemble a yes or no.
     """
     text = spelled_out(seen.text)
     rest = _OPENERS.sub("", text)
     if seen.yesno and not clear and (rest == text or not rest.strip()):
-        return False  # hard to say
+        return False  # "hard to say"
     said = {word.low for word in seen.tree.words}
     return all(_may_answer(one) for one in seen.statements if one.subject.person != "I" or said & {"i", "we", "i'm"})
 

@@ -1,4 +1,4 @@
-"""The kinds of nouns: a place, a job, a name, or nothing that a topic could have as its value."""
+"""The kinds of nouns: places, jobs, names, and nouns that cannot be the value of a topic."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FITTING = {
     "trait": ("trait",),
     "possession": ("possession",),
 }
-"""The classes of `nouns.yaml` that are values of each kind of topic, or of one topic."""
+"""The classes of `nouns.yaml` whose nouns may be values, by the kind or the name of a topic."""
 _FOLDER = files(__name__.rpartition(".")[0])
 
 
@@ -33,20 +33,20 @@ def nouns() -> Matcher:
 
 @cache
 def acts() -> Matcher:
-    """Return the classifier of what the user does towards the agent's questions, loaded or not."""
+    """Return the classifier of the user's reactions to the agent's questions, loaded or not."""
     found = read_examples(_FOLDER / "acts.yaml")
     return Matcher(found.classes, found.none)
 
 
 def likeness(value: str, kind: str) -> float:
-    """Return how well a value fits a kind: its distance from the nearest class of another kind, about -1 to 1; 0 if unsure."""
+    """Return how much better a value fits a kind than all other kinds: about -1 to 1; 0 if unsure."""
     ranked = nouns().ranked(value)
     fitting = [match.margin for match in ranked if match.name in FITTING[kind]]
     return max(fitting, default=-1.0 if ranked and ranked[0].name else 0.0)
 
 
 def is_remark(value: str) -> bool:
-    """Return whether a value is rather a remark, a time or a state than an answer."""
+    """Return whether a value is no answer, but probably a remark, a time or a state."""
     ranked = nouns().ranked(value)
     return bool(ranked) and ranked[0].name in ("remark", "state", "time") and ranked[0].margin > 0.15
 

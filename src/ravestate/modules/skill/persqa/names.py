@@ -32,11 +32,11 @@ class Settings(rs.Settings):
     gap: Annotated[float, Field(ge=0)] = 180.0
     """Seconds from one question in a silence to the next."""
     turns: Annotated[int, Field(ge=0)] = 3
-    """The user's first utterances, after which the agent asks for no more than their name."""
+    """The number of the user's first utterances during which the agent asks for nothing but their name."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True
-    """Whether somebody who says a name that memory knows has to answer a question before the agent uses what it knows."""
+    """Whether a user who gives a known name must answer a question before the agent uses what memory knows."""
     ignored: Annotated[int, Field(ge=1)] = 2
     """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
 
@@ -53,7 +53,7 @@ told: rs.Collection[Told] = module.collection("told")
 """The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
-"""The state of the conversation about the user: what was asked, and what they would rather not say."""
+"""The state of the conversation about the user: the open question, and the topics that they refused."""
 
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""
@@ -62,4 +62,4 @@ noted = module.signal("noted", payload=Noted)
 """Memory has looked up the user, or has saved what they told."""
 
 forgotten = interloc.forgotten
-"""The user has been forgotten; other modules wipe what they keep of them. They need only `interloc` to listen to it."""
+"""The user has been forgotten, so other modules wipe the user's data. The signal itself is in `interloc`."""

@@ -28,7 +28,7 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
     Args:
         facts: The facts before.
         told: The new facts.
-        instead_of: The values that they correct.
+        instead_of: The old values that the new facts correct.
 
     Example:
         >>> learn({"hobby": ("chess",)}, [Fact("hobby", ("go",)), Fact("home", ("Bremen",))]).facts
@@ -58,7 +58,7 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:
-    """Return remembered facts and those of this talk together; this conversation takes precedence."""
+    """Merge remembered facts with those of this conversation, which take precedence."""
     found = dict(remembered)
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()

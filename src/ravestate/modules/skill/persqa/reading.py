@@ -17,7 +17,7 @@ from .values import gerund, is_gerund, number_in, value_of
 from .wording import Facts, alike, among, without
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
-"""Topics that the past tells as well: *I studied law*."""
+"""Topics whose facts may be in the past tense: *I studied law*."""
 _CALLED = frozenset(["be", "be called", "be named"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
@@ -43,14 +43,14 @@ _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A topic in a statement, and the phrase with its value; None if the statement names none."""
+    """A topic in a statement, and the phrase with its value; None if the statement gives no value."""
 
     topic: str
     phrase: Phrase | None = None
     sure: bool = True
-    """Whether the words before it introduce such a value and no other: *my name is*."""
+    """Whether the words before the value can only introduce this topic: *my name is*."""
     value: str = ""
-    """The value, where it is not the phrase itself."""
+    """The value, if it differs from the phrase."""
 
 
 class Reader:
@@ -71,10 +71,10 @@ class Reader:
         self.person = person or next(filter(None, owned), "")
 
     def facts(self, known: Facts | None = None) -> list[Fact]:
-        """Return the facts that the user states, one for each topic; `known` are those of before."""
+        """Return the facts that the user states, one for each topic; `known` are the earlier facts."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
-        denied = ""  # the topic of the last denial: my name isn't Ada, it's Ida
+        denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
         for said in filter(self._asserted, self.seen.statements):
             if topic := self.ended(said):
                 gone.setdefault(topic, ())
@@ -108,8 +108,8 @@ class Reader:
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
     def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
-        """Return whether a negation covers a phrase: *Bonn* in *I live in Ulm, not in Bonn* and *I don't live in Bonn, but
-        in Ulm*, but not *Ulm*."""
+        """Return whether a negation covers a phrase. In *I live in Ulm, not in Bonn* and *I don't live in Bonn, but in
+        Ulm*, it covers *Bonn*."""
         text, turn = self.tree.text, _TURN.search(self.tree.text)
         if not _NOT.search(_OPENING_NO.sub("", text)):
             return False
@@ -119,7 +119,7 @@ class Reader:
         return (phrase.text in text[turn.end() :]) == bool(turn[1])
 
     def asks(self) -> Fact | None:
-        """Return the fact that the user asks for; it has values if they want them confirmed."""
+        """Return the fact that the user asks for; it has values if the user wants them confirmed."""
         kinds = nlp.QuestionWord
         for said in self.seen.statements:
             if not said.question or said.conditional:
@@ -171,7 +171,7 @@ class Reader:
         return not said.request or said.subject.text.lower() == "i"
 
     def _is_habit(self, said: nlp.Statement) -> bool:
-        """Return whether a plan is none: *I like to read*, but not *I would like to read*."""
+        """Return whether a statement marked as a plan is a habit: *I like to read*, but not *I would like to read*."""
         first = _predicate(said).split()[0]
         likes = [word for word in self.tree.words if word.lemma == first]
         return first in WORDS["likes"] and not any(
@@ -228,7 +228,7 @@ class Reader:
         yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
 
     def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
-        """Yield the topics that the predicate tells, with a preposition, and perhaps with its object: *have a job at*."""
+        """Yield the table's topics for the predicate with a preposition, perhaps with its object: *have a job at*."""
         predicate, object = _predicate(said), said.object
         child = any(phrase.preposition == "as" and phrase.head in WORDS["young"] for phrase in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
@@ -326,10 +326,10 @@ class Reader:
         return ended if said.subject.person == "I" and not said.past else ""
 
     def named(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the relatives that the user names, and how they are called: *my sister Rosa*, *my mother's name is Anna*,
+        """Yield the relatives that the user names, with their names: *my sister Rosa*, *my mother's name is Anna*,
         *a son named Ben*, *call me Tom*.
 
-        The parser often misses the second of two, so the words decide here."""
+        The parser often misses the second of two relatives, so this reads the words one by one."""
         unsaid: set[str] = set()
         whole: list[tuple[str, tuple[str, ...]]] = []
         for said in self.seen.statements:
@@ -410,7 +410,7 @@ class Reader:
         return found[0] if found else phrase.name or phrase.text
 
     def _span(self, verb: str, object: Phrase) -> str:
-        """Return a verb with its object and all between them."""
+        """Return a verb, its object, and the words between them."""
         end = rf"(?:.{{0,40}}?{re.escape(object.text)})?"
         found = re.search(rf"\b{re.escape(verb)}\w*\b{end}", self.tree.text, re.IGNORECASE)
         return found[0] if found else ""
@@ -429,7 +429,7 @@ class Reader:
                 yield from self._joined(other)
 
     def _run(self, word: Word) -> str:
-        """Return a name of several words; empty if the word cannot begin one."""
+        """Return the name of one or more words that begins with `word`; empty if no name begins there."""
         if word.pos not in (*_NOMINAL, "VERB"):
             return ""
         first = (child for child in self.tree.children(word, "compound") if child.index < word.index)

@@ -1,4 +1,4 @@
-"""People in memory: topics as nodes and relations."""
+"""People in memory, with the values of topics as nodes and relations."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
 
 
 def has_talked(graph: ontology.Graph, person: ontology.Node) -> bool:
-    """Return whether a person of memory has talked to the agent; others may only have mentioned them."""
+    """Return whether a person in memory has talked to the agent, or was only mentioned by others."""
     relations = graph.relations(person)
     return not relations or any(relation.source.id == person.id for relation in relations)
 
@@ -45,13 +45,13 @@ def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, 
 def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts) -> None:
     """Save the facts about a person. Saving them twice is harmless.
 
-    If a topic may have several values, those that other rules have saved in the meantime stay.
+    If a topic may have several values, keep those that other rules have saved in the meantime.
 
     Args:
         graph: The memory.
         person: The person; their node is saved as well.
         facts: Values by topic.
-        once: Values that earlier calls may have saved; those not in `facts` are removed.
+        once: Values that earlier calls may have saved. Values that are missing in `facts` are removed.
     """
     graph.save(person)
     related = _related(graph, person)
@@ -68,7 +68,7 @@ def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts
         for value in values:
             if among(value, [node["name"] for node in present]):
                 continue
-            # People are not their own friends, and a sister and a brother of one name are two people.
+            # People are not their own friends. A sister and a brother with the same name are two people.
             alike = [one for one in related if one != name and TOPICS[one].relation == topic.relation and topic.role]
             others = [person, *(node for one in alike for node in related[one])]
             found = (node for node in graph.find(topic.type, {"name": value}) if node not in others)
@@ -78,7 +78,7 @@ def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts
 
 
 def remarks(graph: ontology.Graph, person: ontology.Node) -> dict[str, Told]:
-    """Return what a person told that no topic covers, by key, oldest first."""
+    """Return the free statements of a person by key, oldest first."""
     return {one.key: one for one, _ in _remarks(graph, person)}
 
 
@@ -90,7 +90,7 @@ def _remarks(graph: ontology.Graph, person: ontology.Node) -> list[tuple[Told, o
 
 
 def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str, Told]) -> None:
-    """Save what a person told, at most the last `MOST` remarks; those not in `told` are removed."""
+    """Save the last `MOST` free statements in `told`, and remove the person's others."""
     present = {one.key: node for one, node in _remarks(graph, person)}
     kept = dict(list(told.items())[-MOST:])
     for key, node in present.items():

@@ -30,8 +30,8 @@ class Response:
     """The reply; None if there is none."""
     user: Acquaintance
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
-    """A task with memory (None where there is none) that comes before the reply. It returns the final response.
-    It raises nothing: ``talk.trouble`` has a failure of memory."""
+    """A task with memory, before the reply. It takes the memory (None if there is none) and returns the final response.
+    If memory fails, it raises nothing and sets ``talk.trouble``."""
     forgotten: bool = False
 
 
@@ -45,7 +45,7 @@ def respond_to(
         user: The user before it.
         now: Seconds from the beginning of the context.
         chance: The source of random choices.
-        confirm: Whether a known name has to be confirmed before memory's facts are used.
+        confirm: Whether the user must confirm a known name before the agent uses memory's facts.
     """
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
@@ -119,7 +119,7 @@ async def _at_once(memory: ontology.Memory | None, operations: Callable[[ontolog
 async def _settled(
     meaning: Meaning, user: Acquaintance, memory: ontology.Memory | None, now: float, chance: random.Random
 ) -> Response:
-    """Return the response to the answer that should confirm the name."""
+    """Return the response to the answer that should confirm who the user is."""
     answer = meaning.facts[0].values if meaning.facts else ()
     user = _closing(user)
     try:
@@ -135,7 +135,7 @@ async def _settled(
 
 
 async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
-    """Take back that the user is the person of their name, and ask who they are."""
+    """Stop treating the user as the person in memory, and ask who they are."""
     facts = told_apart(user.facts, user.talk.remembered, user.talk.told) if user.talk.met else user.facts
     if user.talk.met and not user.talk.newcomer:
         with contextlib.suppress(RavestateError):
@@ -189,7 +189,7 @@ async def _written(
         return (now.doubted(graph) if confirm and name else now).noted(graph)
 
     try:
-        if user.who is not None:  # otherwise only this conversation has the facts
+        if user.who is not None:  # without a name, only this conversation keeps the facts
             user = await _at_once(memory, write)
         return _with(user, trouble="")
     except RavestateError as error:
@@ -222,13 +222,13 @@ def _of_name(name: str, before: Acquaintance, user: Acquaintance, chance: random
         topic = memorable(user.talk.remembered, chance)
         welcome = stating("welcome_back", topic, user.talk.remembered[topic], known)
         return Response(welcome, _with(user, reminded=True))
-    if user.talk.returns and not user.talk.newcomer:  # memory knows the name, and no facts
+    if user.talk.returns and not user.talk.newcomer:  # memory knows the name, but no facts
         return Response(say("back", known), user)
     return Response(say("learned_name" if before.name is None else "renamed", known), user)
 
 
 def _main(meaning: Meaning, news: News) -> str:
-    """Return the topic to reply to: the one that the agent asked about, otherwise the first new one."""
+    """Return the topic to reply to: the topic that the agent asked about, or else the first new topic."""
     first = next((topic for topic in news.topics if topic in news.new), news.topics[0])
     return meaning.topic if meaning.topic in news.topics else first
 
@@ -303,7 +303,7 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 
 
 def _wants_out(user: Acquaintance, now: float) -> Response:
-    """Ask back before forgetting everything, or ask who the user is."""
+    """Ask for a confirmation before forgetting everything, or ask who the user is."""
     if user.who is None and not user.known and not user.told:
         return _ask(NAME, "forget_who", _with(user, wants_out=True), now)
     unknown = user.talk.wants_out and user.talk.newcomer and not user.facts and not user.told

@@ -23,7 +23,7 @@ from .understanding import understand
 from .wording import asking, memorable, stating
 
 HELLO = 3.0
-"""Seconds after the first hello until the agent asks for the name; the user may go on talking meanwhile."""
+"""Seconds after the first hello until the agent asks for the name, unless the user goes on talking."""
 
 T = TypeVar("T")
 
@@ -34,10 +34,10 @@ T = TypeVar("T")
     writes=(verbaliser.intent, rawio.output, talk),  # the output, so that no other rule speaks at the same time
     weight=1.2,
     cooldown=20.0,
-    detached=True,  # otherwise the intent could not become words in the same causal group
+    detached=True,  # starts a causal group of its own: in the old one, nothing could turn the intent into words
 )
 async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Ask the user about themselves, or show that they are remembered."""
+    """Ask the user about themselves, or show that the agent remembers them."""
     settings: Settings = ctx.settings
     now = ctx[talk]
     if now.quiet:
@@ -47,7 +47,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     if now.question is not None and not now.question.turns:
         now = now.waiting()
     if now.ignored >= settings.ignored:
-        return rs.Resign(f"the user left {now.ignored} questions without a word")
+        return rs.Resign(f"the user left {now.ignored} questions unanswered")
     known = acquaintance_of(ctx).known
     remembered = {name: had for name, had in now.remembered.items() if had and had == known.get(name)}
     if remembered and not now.reminded:  # only facts that still hold
@@ -69,7 +69,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Learn the examples; until then, only they themselves are recognised."""
+    """Learn the examples. Until that is done, only input that matches an example word for word is recognised."""
     try:
         load_examples()
     except ModelMissing as error:
@@ -123,7 +123,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         response = await response.errand(memory)
         trouble = response.user.talk.trouble
         is_new = trouble not in ("", base.talk.trouble)
-        if is_new and memory is not None and await _is_open(memory):  # otherwise the log has it
+        if is_new and memory is not None and await _is_open(memory):  # otherwise, this fault has already been logged
             ctx.log.error("%s", trouble)
         ctx.emit(noted, Noted(base, response.user, before.name))
         if response.forgotten:
@@ -155,7 +155,7 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=reply, writes=verbaliser.intent, weight=1.6
-)  # what have you learnt about me: not the agent's own life
+)  # outranks `agentqa` for "what have you learnt about me?"
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)
@@ -163,16 +163,16 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice that the agent said something else after its question: the user's next words may answer that."""
+    """Note that the agent said something else after its question, because the user's next words may answer that."""
     if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
-        return rs.Resign("that was no word")  # for example an emoji after an answer
+        return rs.Resign("that was no word")  # for example, an emoji after an answer
     ctx[talk] = ctx[talk].speaking()
     return None
 
 
 @module.rule(when=rawio.heard.changed.max_age(None).detached(), reads=rawio.output, writes=talk, background=True)
 async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Withdraw a spoken question that the user interrupted before its end: their words answer nothing."""
+    """Withdraw a spoken question that the user interrupted before its end: their words do not answer it."""
     said, heard, now = ctx[rawio.output].strip(), ctx.payload(rawio.heard.changed).strip(), ctx[talk]
     if now.question is None or not now.question.fresh:
         return rs.Resign("no question waits for its first answer")
@@ -190,7 +190,7 @@ async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up a user who comes with a name. `hibye` greets them; this module reminds them later, in a silence."""
+    """Look up a new user whose name is known. `hibye` greets them; later, in a silence, `ask` reminds them."""
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
@@ -224,7 +224,7 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def person_of(item: object) -> ontology.Node | None:
-    """Return the person of an item of `interloc.users`; None for one without a name."""
+    """Return the person of an item in `interloc.users`; None for an item without a name."""
     item = getattr(item, "node", item)  # a platform that recognises the person gives their node
     if isinstance(item, ontology.Node):
         return item if item.get(NAME) else None

@@ -9,13 +9,13 @@ from typing import Any
 from .told import Told
 
 FORGET = "forget"
-"""The topic of the question whether the user really wants to be forgotten."""
+"""The topic of the question: do you really want to be forgotten?"""
 
 CONFIRM = "confirm"
-"""The topic of the question by which somebody who says a known name shows that they are that person."""
+"""The topic of the question that confirms that a user with a known name is that person."""
 
 ENOUGH = 1_000
-"""The number of tries after which the agent never asks about a topic again."""
+"""A number of tries that means: never ask about this topic again."""
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
@@ -35,14 +35,14 @@ class Question:
     since: float
     """Seconds from the beginning of the context to the question."""
     turns: int = 0
-    """The number of utterances since, without an answer."""
+    """The number of the user's utterances since then that did not answer it."""
     heard: bool = False
     spoken_over: bool = False
-    """Whether the agent has said something else since, unasked: a mere no may answer that."""
+    """Whether the agent has said something else since then. If so, a mere "no" may answer that instead."""
 
     @property
     def fresh(self) -> bool:
-        """Whether neither side has spoken since."""
+        """Whether neither the user nor the agent has spoken since the question."""
         return not self.turns and not self.spoken_over
 
 
@@ -62,14 +62,14 @@ class Talk:
     """The topic that was learnt or mentioned last."""
     latest: tuple[str, ...] = ()
     age: int = 0
-    """The number of utterances since then."""
+    """The number of utterances since `last` was learnt or mentioned."""
     met: bool = False
     """Whether memory was asked about the user."""
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """All values of this conversation, also those that no longer hold."""
+    """All values told in this conversation, including those that no longer hold."""
     returns: bool = False
-    """Whether memory knows that they have talked to the agent before."""
+    """Whether the user has talked to the agent before, as far as memory knows."""
     newcomer: bool = False
     """Whether memory did not know the user."""
     reminded: bool = False
@@ -77,13 +77,13 @@ class Talk:
     trouble: str = ""
     """The last failure of memory; empty while it works."""
     warned: bool = False
-    """Whether the user knows about the trouble."""
+    """Whether the agent has told the user about the trouble."""
     quiet: bool = False
     """Whether the user has said goodbye."""
     doubt: str = ""
-    """The topic that the user must confirm before the agent takes them for the person of their name."""
+    """The topic of the fact that the user must know before the agent takes them for the person of that name."""
     wants_out: bool = False
-    """Whether they asked to be forgotten before the agent knew who they are."""
+    """Whether the user asked to be forgotten before the agent knew who they are."""
     asked: float | None = None
     """Seconds from the beginning of the context to the agent's last question out of boredom."""
     touched: frozenset[str] = frozenset()
@@ -97,7 +97,7 @@ class Talk:
     """The user's last statements of any kind, oldest first."""
     turns: int = 0
     moved: bool = False
-    """Whether the last one shows a feeling, or jokes."""
+    """Whether the user's last utterance shows a feeling, or jokes."""
 
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
@@ -123,7 +123,7 @@ class Talk:
         return replace(self, question=replace(question, heard=True, spoken_over=question.heard))
 
     def waiting(self) -> Talk:
-        """Give up the question; the user has not answered it."""
+        """Give up the open question, because the user has not answered it."""
         return replace(self, question=None, ignored=self.ignored + 1)
 
     def closing(self, *topics: str) -> Talk:
@@ -131,13 +131,13 @@ class Talk:
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """Note that the user told about `topics`; a correction would concern the `latest` values of `last`."""
+        """Note the `topics` that the user told about. A correction would change the `latest` values of `last`."""
         answered = self.question is not None and self.question.topic in topics
         told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
         return told.mentioning(last, latest)
 
     def striking(self, gone: Mapping[str, tuple[str, ...]]) -> Talk:
-        """Remove values by topic, and ask for no others."""
+        """Remove values by topic, and do not ask about these topics again."""
         remembered = {
             topic: tuple(value for value in values if value not in gone.get(topic, ()))
             for topic, values in self.remembered.items()

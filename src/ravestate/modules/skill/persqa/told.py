@@ -1,4 +1,4 @@
-"""Free statements: what the user tells about themselves and others, and no topic covers."""
+"""Free statements: statements about the user and others that no topic covers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SAID_BACK = {
     "we": "you", "our": "your", "us": "you", "ours": "yours",
 }  # fmt: skip
 LEAST = 0.73
-"""The least similarity of a question to what it asks for."""
+"""The least similarity of a question and the statement that answers it."""
 _FIT = {
     nlp.QuestionWord.PERSON: re.compile(r"(?<!^)\b[A-Z]\w|\byour \w"),
     nlp.QuestionWord.TIME: re.compile(
@@ -32,7 +32,7 @@ _FIT = {
     ),
     nlp.QuestionWord.PLACE: re.compile(r"\b(?:in|at|to|from|near|on) \w"),
 }
-"""The form of what answers a question for a person, a time or a place."""
+"""The form of a statement that answers a question for a person, a time or a place."""
 _FIT[nlp.QuestionWord.AMOUNT] = re.compile(
     r"\d|\b(?:half|(?:one|two|three|four|five|six|seven|eight|nine)(?:teen|ty)?|ten|eleven|twelve|(?:thir|fif|eigh)teen|"
     r"(?:twen|thir|for|fif|eigh)ty|hundred|thousand|many|few|no)\b",
@@ -64,7 +64,7 @@ class Told:
     text: str
     """A clause that says it to the user: *you painted a dragon*."""
     by: str = ""
-    """The name of the person who told it; empty while it is not known."""
+    """The name of the person who told it; empty while their name is not known."""
     at: datetime | None = None
     who: str = field(default="", compare=False)
     """The person whom a later *he* or *she* means."""
@@ -76,7 +76,7 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all its statements. *He* is the person named last, perhaps `before`."""
+    """Return the free statements of an utterance, and all its statements. *He* is the last person named."""
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
@@ -96,7 +96,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             continue
         top = reader.verb(said)
         if top is not None and top.dep == "relcl" and not subject and said.subject.text.islower():
-            continue  # the main clause has it: there is a girl who waves at me
+            continue  # the main clause already says it: there is a girl who waves at me
         if top is not None and top.dep == "relcl" and said.subject.names:
             subject = said.subject.name  # a sister called Eva who lives in Ghent
         text = _retold(reader, said)
@@ -113,7 +113,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
 
 
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
-    """Return what the user told that their question asks for: *what does Jonas play*, *who is getting married?*."""
+    """Return the statements that answer the user's question: *what does Jonas play*, *who is getting married?*."""
     told, kind = list({one.text: one for one in told}.values()), reader.seen.question
     for said in reader.seen.statements:
         about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
@@ -153,7 +153,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
         return []
     try:
         rows = Encoder().encode([plain(_returned(text)) for text in (*parts, *(one.text for one in fit))])
-    except PlatformError:  # without the model, only the words themselves are found
+    except PlatformError:  # without the model, only statements with the same words are found
         return []
     likeness = (rows[len(parts) :] @ rows[: len(parts)].T).max(axis=1)
     best = max(range(len(likeness)), key=likeness.__getitem__)
@@ -161,7 +161,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 
 
 def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
-    """Return whether a statement has all these words, or for a relative the name: *Rosa* for *sister*."""
+    """Return whether a statement has all these words. The name of a relative counts as well: *Rosa* for *sister*."""
     had = _stems(f"{one.text} {one.verb} {one.subject}")
     return all(_stems(" ".join((word, *known.get(NOUNS.get(word, ""), ())))) & had for word in words)
 
@@ -184,7 +184,7 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _gained(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether somebody has, or got, a thing of their own: *a red bicycle*, but not *a headache*."""
+    """Return whether the subject has, or got, a possession: *a red bicycle*, but not *a headache*."""
     verb = reader.verb(said)
     gets = said.verb == "get" and verb is not None and verb.low == "got"
     thing = reader.written(said.object)

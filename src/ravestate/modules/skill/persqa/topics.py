@@ -125,7 +125,7 @@ def due(
         wanted: Names of topics.
         known: The values by topic; an empty tuple means that there are none.
         closed: Topics not to ask about.
-        tries: The number of questions about each.
+        tries: The number of questions about each topic.
         last: The topic of the conversation.
         touched: Topics that the user's words have touched.
         limit: The maximum number of questions about one topic.

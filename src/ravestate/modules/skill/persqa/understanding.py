@@ -31,11 +31,11 @@ Kind = Literal[
     "declined",  # the user would rather not say
     "none",  # no hobby, for example
     "unsure",
-    "which",  # the user said no more than yes
+    "which",  # the user only said yes
     "mentioned",  # a relative without a name
     "asked",  # about themselves
-    "asked_told",  # about a free statement of before
-    "vouched",  # the answer by which somebody shows that they are who they say
+    "asked_told",  # about an earlier free statement
+    "vouched",  # the user's answer to the question that confirms who they are
     "identified",  # it's me, perhaps with a name
     "mistaken",  # they are not the person that the agent takes them for
     "strike",  # forget some facts
@@ -52,20 +52,20 @@ class Meaning:
     kind: Kind
     facts: tuple[Fact, ...] = ()
     topic: str = ""
-    """The topic of the question that they answer."""
+    """The topic of the agent's question that the user answers."""
     leave: bool = False
     aloud: bool = True
-    """Whether the agent replies. Questions, goodbyes and games of the user go first: the agent silently learns anything
-    else that they say."""
+    """Whether persqa replies. If the user also asks something, says goodbye or plays a game, another rule replies to
+    that. The agent then learns the rest without a reply."""
     free: tuple[Told, ...] = ()
-    """Free statements that they make, ask for, or want forgotten."""
+    """Free statements that the user makes, asks for, or wants forgotten."""
     touched: frozenset[str] = frozenset()
-    """The topics that their words touch."""
+    """The topics that the user's words touch."""
     person: str = ""
-    """The topic of the relative whom they mention."""
+    """The topic of the relative whom the user mentions."""
     said: tuple[Told, ...] = ()
     moved: bool = False
-    """Whether they show a feeling, or joke."""
+    """Whether the user shows a feeling, or jokes."""
 
 
 def understand(
@@ -93,7 +93,7 @@ class _Hearing:
         self.reader = Reader(seen, asked, talk.person)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
-        self.sum = any(map(str.isdigit, self.text))  # no time, 12 x 3
+        self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" asks for a result
         self.leave = "farewell" in seen.acts
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -104,7 +104,7 @@ class _Hearing:
         if wish is not None and (wish.kind == "forget" or topic != FORGET):
             return wish
         if topic == FORGET:
-            yesno = seen.yesno if self.fresh else None  # a yes to something else must not delete anything
+            yesno = seen.yesno if self.fresh else None  # a "yes" to something else must not delete anything
             no = yesno and (yesno.no or yesno.unsure)
             return Meaning("forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing", leave=self.leave)
         if (
@@ -132,7 +132,7 @@ class _Hearing:
         free = tuple(told_in(self.reader, self.talk.said)[0])
         aside = self.leave or asks
         if facts or free:
-            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # others console
+            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # others console it
             return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
         if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
             return corrected
@@ -191,12 +191,12 @@ class _Hearing:
             return Meaning(
                 "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
             )
-        known = plain(seen.text) in bundled_matcher("answers").exact  # what only resembles a yes may be a statement
+        known = plain(seen.text) in bundled_matcher("answers").exact  # a mere resemblance may be a statement
         mere = known and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
-        """Return the answer by which the user shows who they are; one without facts if they cannot or will not."""
+        """Return the user's answer to the question who they are. If they cannot or will not answer, it has no facts."""
         seen, topic = self.seen, self.talk.doubt
         told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
         if not told and seen.question is None:
@@ -206,7 +206,7 @@ class _Hearing:
         return Meaning("vouched", tuple(told[:1])) if told or refused else None
 
     def identity(self) -> Meaning | None:
-        """Return that the user says who they are, or who they are not."""
+        """Return the meaning if the user says who they are, or who they are not."""
         denied = self.seen.act("deny_identity")
         if denied and self.known.get(NAME) and (denied.score > 0.6 or not self.corrected()):
             return Meaning("mistaken")
@@ -222,7 +222,7 @@ class _Hearing:
         return Meaning("identified" if known else "told", (Fact(NAME, (name,)),) if name else ())
 
     def inquiry(self) -> Meaning | None:
-        """Return a question about the user, or about what they told."""
+        """Return the meaning of a question about the user, or about something that they told."""
         named = any(phrase.names for said in self.seen.statements for phrase in (said.object, *said.phrases))
         if "ask_everything" in self.acts and not named:
             return Meaning("asked", (Fact(EVERYTHING),))
@@ -265,14 +265,14 @@ class _Hearing:
         return Meaning("forget") if match and match.score > 0.7 and not wishes else None
 
     def is_wish(self, said: nlp.Statement) -> bool:
-        """Return whether the user asks the agent to do this: *forget me*, *can you forget me*, *I want you to forget me*."""
+        """Return whether the user asks the agent to do something: *forget me*, *can you forget me*."""
         if said.negated or said.hearsay or said.conditional or said.subject.person != "you":
             return False
         words = [word.low for word in self.seen.tree.words]
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether a denial matters: it denies a known fact, or says that there are none."""
+        """Return whether a denial matters: the denied fact is known, or the user has no hobby, for example."""
         if fact.values or fact.topic == NAME:
             return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))

@@ -1,4 +1,4 @@
-"""Values of topics: whether words can be one, and how it is written."""
+"""Values of topics: which words can be a value, and how it is written."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LEADS = {
     "work": r"(?:an?|the) (?=\S)",
     "place": r"(?:the )?(?:city|town|village) of (?=\S)|.*\b(?:called|named) (?=\S)",
 }
-"""Words before a value that are no part of it."""
+"""Words before a value that do not belong to it."""
 _ANYTHING = re.compile(r"(?:any|some|every|no)(?:thing|one|body|where)\b", re.IGNORECASE)
 _DEICTIC = re.compile(
     r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|more|most|a|many|much|"
@@ -31,13 +31,13 @@ _DEICTIC = re.compile(
 
 
 def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) -> str | None:
-    """Return a value as it is kept; None if these words cannot be one.
+    """Return a value in the form in which it is kept; None if these words cannot be a value.
 
     Args:
         text: The words.
         topic: The topic.
         seen: The analysis of the utterance.
-        sure: Whether the words before it introduce this kind: *my name is*, or the agent asked for it.
+        sure: Whether the value is expected: the agent asked for it, or words such as *my name is* precede it.
     """
     kind = topic.kind
     text = re.sub(
@@ -67,7 +67,7 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
 
 
 def _typed(name: str, seen: nlp.Analysis) -> str:
-    """Return a name as typed, where the normal form took it for a slip."""
+    """Return a name as typed, if the normal form mended it like a typing error."""
     at = seen.normal.text.lower().find(name.lower())
     start, end = seen.normal.span(at, at + len(name)) if at >= 0 else (0, 0)
     typed = seen.normal.original[start:end]
@@ -87,7 +87,7 @@ def number_in(text: str) -> str:
 
 
 def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: bool) -> bool:
-    """Return whether words are of the kind of a topic; `determined` means that a determiner begins them."""
+    """Return whether words suit the kind of a topic; `determined`: whether a determiner precedes them."""
     kind = topic.kind
     if kind in ("activity", "thing"):
         return True

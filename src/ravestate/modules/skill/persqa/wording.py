@@ -27,7 +27,7 @@ def tidy(text: str, topic: Topic) -> str:
     if topic.kind == "work":
         return " ".join(word.lower() if word[1:].islower() else word for word in text.split())
     group = topic.kind == "organisation"
-    shouted = text.isupper() and not group and len(text) > (3 if topic.kind == "place" else 2)  # but USA, and JP
+    shouted = text.isupper() and not group and len(text) > (3 if topic.kind == "place" else 2)  # "USA" and "JP" stay
     begins = re.match(r"(?:an?|the|my|our)\b" if group else r"an? \w", text, re.IGNORECASE)
     named = group or topic.kind in ("name", "people", "place")
     if begins or not named or (text != text.lower() and not shouted):
@@ -72,7 +72,7 @@ def without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
 
 
 def alike(value: str, others: Iterable[str]) -> bool:
-    """Return whether one of `others` means the same, or names a part of it: *Bremen* of *the city of Bremen*."""
+    """Return whether one of `others` means the same as `value`, or contains it: *the city of Bremen*, *Bremen*."""
     words = set(_key(value).split())
     return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
 

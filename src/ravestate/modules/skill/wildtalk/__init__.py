@@ -1,4 +1,4 @@
-"""Small talk where no other module has an answer: by a language model, or by listening."""
+"""Small talk when no other module has an answer: by a language model, or by the listening skill."""
 
 from __future__ import annotations
 

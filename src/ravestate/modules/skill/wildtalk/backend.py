@@ -28,10 +28,10 @@ class Backend(Protocol):
     """A language model. An instance belongs to one event loop."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Get ready to answer, once. `stream` does this too if needed.
+        """Get ready to answer, once. If nobody has called this, `stream` does.
 
         Raises:
-            PlatformError: A package, a file or a server is missing or broken. The message says what to do.
+            PlatformError: A package, a file or a server is missing or broken. The message says how to mend that.
         """
         ...
 
@@ -46,14 +46,14 @@ class Backend(Protocol):
     ) -> AsyncGenerator[str, None]:
         """Yield the answer to `messages` in pieces, as the model writes it.
 
-        Closing the iterator, or cancelling the task that waits for it, stops the model. Wrap it in
-        ``contextlib.aclosing`` where you may leave before its end.
+        Closing the iterator, or cancelling the task that waits for it, stops the model. Wrap the iterator in
+        ``contextlib.aclosing`` if your loop may end before it does.
 
         Args:
-            messages: The conversation, oldest first; the last message is to be answered.
+            messages: The conversation, oldest first. The model answers the last message.
             max_tokens: The maximum number of tokens (each about three quarters of an English word).
             temperature: The randomness: 0 always takes the likeliest word, 1 is the model's own distribution.
-            seed: The same seed and messages give the same answer, where the model allows it.
+            seed: The same seed and messages give the same answer, if the model allows it.
             stop: Texts before which the model stops.
 
         Raises:
@@ -67,14 +67,14 @@ class Backend(Protocol):
 
 
 class PendingBackend:
-    """A stand-in during the choice: its calls wait for the chosen backend, and are passed on to it."""
+    """A stand-in while the backend is being chosen. Its calls wait, and then go to the chosen backend."""
 
     def __init__(self) -> None:
-        """Make it on the event loop."""
+        """Prepare the stand-in. Call this on the event loop."""
         self._chosen: asyncio.Future[Backend] = asyncio.get_running_loop().create_future()
 
     def resolve(self, backend: Backend | None, fault: PlatformError | None = None) -> None:
-        """Pass the chosen backend to the calls that wait. Without a backend they raise `fault`."""
+        """Pass the chosen backend to the waiting calls. Without a backend, these calls raise `fault`."""
         if backend is not None:
             self._chosen.set_result(backend)
         else:
@@ -82,7 +82,7 @@ class PendingBackend:
             self._chosen.exception()  # otherwise asyncio complains if no call waits
 
     async def settled(self) -> Backend | None:
-        """Return the chosen backend as soon as there is one; None if there is none."""
+        """Wait for the choice, and return the chosen backend; None if the choice found none."""
         try:
             return await asyncio.shield(self._chosen)
         except PlatformError:

@@ -21,7 +21,7 @@ FETCH = "ravestate model get"
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A backend, as settings that name it completely, and the choice in words."""
+    """A backend, as complete settings, and a sentence about the choice."""
 
     settings: Settings
     text: str
@@ -30,11 +30,11 @@ class Choice:
 def choose(settings: Settings) -> Choice:
     """Return the backend to use. The call blocks for up to a second, and loads no model.
 
-    For ``auto`` the first of these is taken: a server, or a model, that the settings name; the default of
-    ``ravestate model get``; a server on this machine; a model file in the user's folders; the listening skill.
+    ``auto`` takes the first of these: a server or model in the settings; the default of ``ravestate model get``; a
+    server on this machine; a model file in the user's folders; the listening skill.
 
     Raises:
-        PlatformError: The settings name a model that is not there.
+        PlatformError: The settings name a model that does not exist.
     """
     backend, name = settings.backend, settings.model
     if backend in ("listen", "transformers"):
@@ -79,7 +79,7 @@ def _listed(settings: Settings) -> str:
 
 
 def _path_of(model: str) -> Path | None:
-    """Return the file of a model's name or path; None if it is neither."""
+    """Return the file of the model with this name or path; None if there is none."""
     if model.lower() == BUNDLED:
         return bundled_model()
     if (known := model_store.catalogue().get(model.lower())) is not None:
@@ -92,7 +92,7 @@ def _servers() -> list[LocalServer]:
 
 
 def _pick(servers: list[LocalServer], model: str | None) -> tuple[str, str, str] | None:
-    """Return address, model and name of the first server, or of the first that has `model`."""
+    """Return the address, model and name of the first server; with `model`, of the first server that has it."""
     for server in servers:
         for name in server.models:
             if model is None or name in (model, f"{model}:latest"):

@@ -1,4 +1,4 @@
-"""The download of a chat model from the hub: resumed after an interruption, and verified before it counts."""
+"""Download a chat model from the hub: resume after an interruption, and verify the file before it is used."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def size_of(number: float) -> str:
 def download(model: CatalogueModel) -> None:
     """Fetch a model's file, with a progress bar on a terminal. A finished file is verified, and then gets its name.
 
-    `model.part` keeps the bytes of an interrupted download, which is continued. ``HF_ENDPOINT`` names another hub, and
-    ``HF_TOKEN`` a token for it, as for other programs of the hub.
+    `model.part` keeps the bytes of an interrupted download for the next call. As for other programs of the hub,
+    ``HF_ENDPOINT`` may give the address of another hub, and ``HF_TOKEN`` a token.
 
     Raises:
-        PlatformError: The hub, the network or the disk refuses, or the file is not the catalogue's. The message says
-            what to do.
+        PlatformError: The hub, the network or the disk refuses, or the file differs from the catalogue's. The message
+            says how to mend that.
     """
     if os.environ.get("HF_HUB_OFFLINE", "").upper() in ("1", "ON", "YES", "TRUE"):
         raise PlatformError("HF_HUB_OFFLINE forbids downloads: unset it, and repeat the command")
@@ -70,7 +70,7 @@ def _alone(model: CatalogueModel) -> Generator[BinaryIO]:
 
 
 def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
-    """Append the rest of the file to `part`. The library continues after a broken connection."""
+    """Append the rest of the file to `part`. After a broken connection, the library resumes."""
     try:
         import httpx2
         from huggingface_hub import file_download, get_token, hf_hub_url
@@ -115,7 +115,7 @@ def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
         if getattr(error, "errno", None) is not None:
             raise
         if part.tell() >= model.size:
-            return  # it is too long, as the checksum will show
+            return  # the file is too long; the checksum will show that
         raise PlatformError(
             f"{public} does not deliver {model.file} ({error}){_kept(model)}. Check the network, or name a mirror in "
             f"HF_ENDPOINT, and repeat the command. Or copy any chat model in GGUF format into {model.part.parent}"
@@ -136,7 +136,7 @@ def _verify(model: CatalogueModel, part: BinaryIO) -> None:
 
 
 def _kept(model: CatalogueModel) -> str:
-    """Return how much of a model has arrived, as the end of a message; empty for nothing."""
+    """Return the end of a message, with the size of the part that has arrived; empty if nothing has."""
     have = model.part.stat().st_size if model.part.exists() else 0
     return f"; {size_of(have)} of {size_of(model.size)} are kept in {model.part}" if have else ""
 

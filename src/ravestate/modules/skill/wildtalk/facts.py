@@ -17,9 +17,9 @@ def facts_matcher() -> Matcher:
 
 
 def asks_for_fact(text: str, *, question: bool = True) -> bool:
-    """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?". Without the sentence model: no.
+    """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?". False without the model.
 
-    `question`: whether the parse finds a question in it; a statement asks for nothing.
+    `question`: whether the parse finds a question in the text. A statement asks for no fact.
     """
     if not (question or text.rstrip().endswith("?")):
         return False

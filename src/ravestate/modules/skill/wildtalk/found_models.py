@@ -15,16 +15,16 @@ LEAST = 450_000_000
 """The smallest number of parameters: half a billion, as rounded in models' names."""
 
 FLUENT = 4_500_000_000
-"""The largest number of parameters with which a processor without a graphics card talks fluently."""
+"""The maximum number of parameters of a model that answers fluently without a graphics card."""
 
 SHARE = 0.6
-"""The share of this machine's memory that a model's file may take."""
+"""The maximum size of a model's file, as a share of this machine's memory."""
 
 MANY = 50_000
 """The maximum number of files and folders that a search looks at."""
 
 NOT_CHAT = ("embed", "rerank", "mmproj", "draft", "-vocab", "-of-0")
-"""Parts of file names of other models, and of models in several files."""
+"""Parts of file names that mark other kinds of models, and models in several files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ def folders() -> list[Path]:
 def find_models(places: Iterable[Path] | None = None) -> list[FoundModel]:
     """Return the chat models of at least half a billion parameters in some folders, by default the user's.
 
-    Files that cannot be read are left out. A file that several links name is listed once.
+    Unreadable files are left out. A file with several links is listed once.
     """
     found: dict[Path, FoundModel] = {}
     for file in _files(folders() if places is None else places):
@@ -76,7 +76,7 @@ def find_models(places: Iterable[Path] | None = None) -> list[FoundModel]:
 
 
 def best_model(models: Iterable[FoundModel], memory: int | None = None) -> FoundModel | None:
-    """Return the largest model that talks fluently, otherwise the smallest; None if none fits into `memory` (bytes)."""
+    """Return the largest fluent model, or else the smallest model; None if none fits into `memory` (bytes)."""
     most = (memory or _memory()) * SHARE
     fitting = [model for model in models if model.size <= most]
     fluent = [model for model in fitting if model.parameters <= FLUENT]

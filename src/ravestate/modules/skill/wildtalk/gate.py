@@ -18,14 +18,14 @@ from .listening.material import material
 from .listening.tongue import is_nonsense, tongue_of
 
 FAR, NEAR, UNRELATED = 0.45, 0.56, -10.9
-"""An answer does not fit below the similarity FAR; below NEAR only if the cross-encoder scores it under UNRELATED.
+"""Refuse an answer whose similarity is below FAR; below NEAR, refuse it if the cross-encoder scores it under UNRELATED.
 
-Calibrated on 25 fitting and 10 misplaced answers to small talk: all of the first pass, 9 of the others fail.
+Calibrated on small talk: all of 25 fitting answers pass, and 9 of 10 misplaced answers are refused.
 """
 SURE = 0.85
-"""The confidence from which a sentence counts as one out of character."""
+"""The least confidence with which a sentence counts as out of character."""
 TELLING = 3
-"""The words of an utterance from which an answer can be compared with it."""
+"""The minimum number of words in an utterance before an answer is compared with it."""
 
 _FORMS = {
     "a link": re.compile(r"https?:|\bwww\.|\w\.(?:com|org|net|io|edu|gov)\b|\S@\S"),
@@ -61,8 +61,8 @@ class Gate:
         Args:
             name: The agent's name.
             heard: The utterance to be answered.
-            said: The agent's last answers; none is to be repeated.
-            before: The last utterances of both, which an answer may also refer to.
+            said: The agent's last answers, which it must not repeat.
+            before: The last utterances of the user and the agent. An answer may refer to them as well.
             known: Facts about the user by topic.
             pipeline: The parser of claims about the user.
         """
@@ -75,14 +75,14 @@ class Gate:
         self._passed: list[str] = []
         self._admitted = ""
         self.reason = ""
-        """The reason of the refusal; empty as long as nothing was refused."""
+        """The reason of the refusal; empty until a sentence is refused."""
 
     def admit(self, text: str, *, last: bool) -> tuple[str, bool]:
-        """Return the beginning of a growing answer that may be said, in whole sentences, and whether the rest is refused.
+        """Return the sentences of a growing answer that the agent may say, and whether the rest is refused.
 
         Args:
-            text: The answer so far; it begins with the text of the call before.
-            last: Whether it is complete. Otherwise its last sentence may still grow.
+            text: The answer so far; it begins with the text of the previous call.
+            last: Whether the answer is complete. If not, its last sentence may still grow.
         """
         whole = sentences(text[len(self._admitted) :])
         for sentence in whole if last else whole[:-1]:
@@ -96,7 +96,7 @@ class Gate:
         return self._admitted, bool(self.reason)
 
     def refuse(self, sentence: str) -> str:
-        """Return the reason why a sentence must not be said; empty if it may. A sentence that may counts as said."""
+        """Return the reason to refuse a sentence. If there is none, note the sentence as said, and return ""."""
         reason = self._form(sentence) or self._repetition(sentence) or self._claims(sentence) or self._meaning(sentence)
         if not reason:
             self._passed.append(plain(sentence))
@@ -134,7 +134,7 @@ class Gate:
         return ""
 
     def _misnames(self, statement: Statement) -> bool:
-        """Return whether the agent takes a name that is not its own."""
+        """Return whether the agent gives itself a wrong name."""
         subject, names = statement.subject, statement.object.names
         own = subject.person == "I" or (subject.head == "name" and subject.of("I"))
         if not own or statement.verb not in ("be", "call") or not names or statement.object.head:
@@ -142,7 +142,7 @@ class Gate:
         return not any(name.lower() in self._name.lower() for name in names)
 
     def _contradicts(self, statement: Statement) -> bool:
-        """Return whether the sentence says of the user what is known to be otherwise."""
+        """Return whether a statement about the user contradicts a known fact."""
         subject, told = statement.subject, statement.object
         value = plain(told.text)
         if statement.verb == "live" and subject.person == "you":
@@ -169,11 +169,11 @@ class Gate:
             if not self._passed and not self._fits(sentence):
                 return "no answer to what was said"
         except PlatformError:
-            return ""  # without the models only the form is checked
+            return ""  # without the models, only the form is checked
         return ""
 
     def _fits(self, sentence: str) -> bool:
-        """Return whether the first sentence of an answer has to do with what was said."""
+        """Return whether the first sentence of an answer relates to the conversation."""
         if len(plain(self._heard).split()) < TELLING or len(plain(sentence).split()) < TELLING:
             return True
         vectors = Encoder().encode([plain(sentence), plain(self._heard), *map(plain, self._before)])

@@ -1,6 +1,6 @@
 """The header of a GGUF file: its architecture, the number of its parameters, and whether it can chat.
 
-The package ``gguf`` keeps every token of the vocabulary, which takes seconds per file. This reader skips them.
+The package ``gguf`` reads every token of the vocabulary, which takes seconds per file. This reader skips the tokens.
 The format: https://github.com/ggml-org/ggml/blob/master/docs/gguf.md
 """
 
@@ -23,7 +23,7 @@ _NUMBERS: dict[int, str] = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhI
 
 @dataclass(frozen=True, slots=True)
 class GgufHeader:
-    """The facts about a model that its header states."""
+    """The facts about a model in its header."""
 
     architecture: str
     parameters: int

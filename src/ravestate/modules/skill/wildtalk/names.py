@@ -19,11 +19,11 @@ from .listening.state import Overheard, State
 Seconds = Annotated[float, Field(gt=0)]
 
 OLLAMA = "http://localhost:11434/v1"
-"""The server for backend ``openai`` if none is named, and none answers."""
+"""The server for the backend ``openai`` if the settings name none, and no server on this machine answers."""
 
 
 class Settings(rs.Settings):
-    """The language model, and the persona that it talks as."""
+    """The language model, and its persona."""
 
     model_config = ConfigDict(protected_namespaces=())  # `model_path` is ours
 
@@ -33,8 +33,8 @@ class Settings(rs.Settings):
     search: bool = True
     """Whether to look for servers on this machine's usual ports, and for models in the user's folders."""
     model: str | None = None
-    """The model's name on a server; or for gguf, the name or path of a file (``ravestate model list``); or for transformers,
-    a folder or a name on the hub, by default gpt2."""
+    """openai: the model's name on the server; gguf: the name (``ravestate model list``) or path of a file;
+    transformers: a folder or a name on the hub, by default gpt2."""
     model_path: Path | None = None
     """gguf: a chat model in GGUF format."""
     context_tokens: Annotated[int, Field(ge=256)] = 4096
@@ -44,7 +44,7 @@ class Settings(rs.Settings):
     base_url: str | None = None
     """openai: the address of the API; by default a server on this machine."""
     api_key: SecretStr | None = None
-    """openai: the key, if the server needs one; best from the environment, ``RAVESTATE_WILDTALK_API_KEY``."""
+    """openai: the key, if the server needs one. Set it as ``RAVESTATE_WILDTALK_API_KEY`` in the environment."""
     connect_timeout: Seconds = 5.0
     """openai: seconds to wait for a connection."""
     read_timeout: Seconds = 60.0
@@ -57,11 +57,11 @@ class Settings(rs.Settings):
     examples: tuple[tuple[str, str], ...] = EXAMPLES
     """Utterances and answers that show the model how to talk; small models need some."""
     facts: bool = False
-    """Whether the model may answer questions about facts, which small models make up."""
+    """Whether the model may answer questions about facts. Small models make facts up."""
     no_facts: str = "I don't know that, I'm afraid."
-    """Otherwise, the answer to a question about facts."""
+    """The answer to a question about facts, unless the model may answer it."""
     gate: bool = True
-    """Whether each generated sentence is checked before it is spoken; the listening skill replaces an unfit answer."""
+    """Whether to check each generated sentence before it is spoken. The listening skill replaces an unfit answer."""
     no_model: str = "I cannot think just now."
     """The answer when the model cannot be loaded, or fails before its first word."""
 
@@ -74,7 +74,7 @@ class Settings(rs.Settings):
     history_turns: Annotated[int, Field(ge=1)] = 6
     """The number of turns in the prompt."""
     history_characters: Annotated[int, Field(ge=100)] = 4000
-    """The number of characters of these turns; four make about a token."""
+    """The maximum number of characters of these turns; about four make a token."""
 
 
 module = rs.Module("wildtalk", requires=[rawio, interloc, nlp], settings=Settings)
@@ -83,19 +83,19 @@ history: rs.Collection[Message] = module.collection("history")
 """The last messages of all speakers, oldest first; the keys begin with the time."""
 
 model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
-"""The backend. You may write one of your own."""
+"""The backend. You may write a backend of your own into this slot."""
 
 chosen: rs.Signal[object] = module.signal("chosen", payload=object)
-"""The backend that the settings, or what this machine has, led to; None if there is none."""
+"""A backend was chosen, by the settings or by what this machine has; None if there is none."""
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
-"""The reason why the model does not answer; empty while it does. The log has it once."""
+"""The reason why the model does not answer; empty while it does. It is logged once."""
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
 """The memory of the listening skill: the last phrases, the tone, opinions, a game."""
 
 overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
-"""The tone and the persons of the last utterances, whichever module answered them."""
+"""The tone and the persons of the last utterances, including those that other modules answered."""
 
 notes: rs.Collection[str] = module.collection("notes", input=True)
 """Notes of other modules about the user and the situation: short sentences for the prompt, such as ``The user lives in Rome.``"""

@@ -38,14 +38,14 @@ class OpenAIBackend:
         read_timeout: float = 60.0,
         extra: Mapping[str, object] | None = None,
     ) -> None:
-        """Nothing is contacted yet.
+        """Take the settings. The server is not contacted yet.
 
         Args:
             base_url: The address of the API; with most servers it ends in ``/v1``.
             model: The model's name on the server.
             api_key: A bearer token; no message shows it.
             connect_timeout: Seconds to wait for a connection.
-            read_timeout: Seconds of silence after which a server counts as stalled. Some load the model first.
+            read_timeout: Seconds of silence after which a server counts as stalled. Some servers load the model first.
             extra: More fields of the request, for a particular server.
 
         Raises:
@@ -139,7 +139,7 @@ class OpenAIBackend:
             raise PlatformError(
                 "wildtalk: api_key has characters that no key has: check the environment variable it is read from"
             )
-        anyio.run(anyio.sleep, 0)  # loads what the client would load at its first request, on the loop
+        anyio.run(anyio.sleep, 0)  # imports modules that the client would else import on the loop, at its first request
         return make_client(self._base_url, self._key, httpx2.Timeout(self._read_timeout, connect=self._connect_timeout))
 
     async def _pieces(self, answer: httpx2.Response) -> AsyncGenerator[str, None]:
@@ -189,7 +189,7 @@ class OpenAIBackend:
         return self._safe(str(error.get("message") or error.get("detail") or body.decode("utf-8", "replace")))
 
     def _broken(self, error: Exception) -> str:
-        """Return what is wrong with a connection, and what to do."""
+        """Return a message about a broken connection, with the mend."""
         import httpx2
 
         reason = self._safe(str(error)) or type(error).__name__
@@ -273,7 +273,7 @@ async def read(answer: httpx2.Response) -> bytes:
 
 
 def _error(body: bytes) -> dict[str, Any]:
-    """Return the part of an error's body with the reason; servers differ in where they put it."""
+    """Return the part with the reason from an error's body; its place differs between servers."""
     try:
         document: Any = json.loads(body)
     except (RecursionError, ValueError):

@@ -11,12 +11,12 @@ from typing import Any, TextIO
 class ProgressBar(AbstractContextManager["ProgressBar"]):
     """A progress bar that appears after `delay` seconds, and only on a terminal.
 
-    On a terminal it is a tqdm bar, removed at the end. Where a prompt owns the terminal, it is a single line, because
-    the prompt prints standard error line by line. Elsewhere nothing appears.
+    It is a tqdm bar, which disappears at the end. If a prompt owns the terminal, it is a single line instead, because
+    the prompt prints standard error line by line.
     """
 
     def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None) -> None:
-        """`stream`: where to show it, by default standard error at the first call."""
+        """`stream`: the stream to write to; by default, standard error at the time of the first call."""
         self._label = label
         self._shown_from = time.monotonic() + delay
         self._stream = stream

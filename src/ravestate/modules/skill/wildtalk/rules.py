@@ -40,15 +40,15 @@ INTERRUPTED = "…"
 """The end of an interrupted utterance."""
 
 KEPT = 64
-"""The number of messages in the history; the settings say how many of them go into a prompt."""
+"""The maximum number of messages in the history. The settings limit how many of them go into a prompt."""
 
 LONGEST = 20_000
-"""Characters of a message in the history; longer ones are cut."""
+"""The maximum number of characters of a message in the history; longer messages are cut."""
 
 
 @module.rule(when=rs.startup, writes=(model, trouble), emits=chosen)
 async def choose_model(ctx: rs.RuleContext) -> None:
-    """Choose the backend. Early answers wait for the choice; a model is loaded at the first question."""
+    """Choose the backend. Early answers wait for the choice. The model is loaded for the first answer."""
     pending, backend, fault = PendingBackend(), None, None
     ctx[model] = pending
     try:
@@ -67,7 +67,7 @@ async def choose_model(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=chosen.max_age(None).detached(), writes=model)
 async def use(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Replace the stand-in by the chosen backend, unless the designer has written one of their own."""
+    """Replace the stand-in by the chosen backend, unless the designer has written their own backend."""
     if not isinstance(ctx[model], PendingBackend):
         return rs.Resign("there is another backend already")
     ctx[model] = cast("Backend | None", ctx.payload(chosen))
@@ -76,7 +76,7 @@ async def use(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Learn the examples of small talk in the background; until then only the examples themselves are recognised."""
+    """Learn the examples of small talk in the background. Until then, only words that equal an example count."""
     try:
         learn_all()
         give_back()
@@ -105,13 +105,13 @@ async def note(ctx: rs.RuleContext) -> None:
     """Add the agent's words to the history, from any rule."""
     said = ctx.payload(rawio.output.changed)
     lately = list(ctx[history].values())[-2:]
-    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` was first
+    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` has already added it
         remember(ctx, "assistant", said)
 
 
 @module.rule(when=rawio.heard.changed.max_age(None).detached(), writes=history, background=True)
 async def keep_heard(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Keep of a spoken utterance that was interrupted only the words that the user heard."""
+    """Cut an interrupted utterance in the history down to the words that the user heard."""
     heard = ctx.payload(rawio.heard.changed).strip()[:LONGEST]
     said = [(key, message.text) for key, message in ctx[history].items() if message.role == "assistant"]
     if any(text.strip() == heard for _, text in said[-4:]):
@@ -128,7 +128,7 @@ async def keep_heard(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=nlp.analysis.changed.max_age(None).detached(), reads=listening, writes=overheard, background=True)
 def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Notice the tone and the persons of an utterance, whichever module answers it."""
+    """Note the tone and the persons of every utterance, including those that other modules answer."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return rs.Resign("nothing was analysed")
@@ -137,11 +137,11 @@ def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=nlp.analysis.changed | rawio.input.changed,  # the input alone, where nlp cannot analyse it
+    when=nlp.analysis.changed | rawio.input.changed,  # without an analysis, the input alone starts it
     reads=(model, nlp.analysis, nlp.text, interloc.agent, interloc.users, interloc.facts, notes, clock, overheard),
     writes=(rawio.output, rawio.speaking, history, trouble, listening),
     emits=rawio.piece,
-    until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the end
+    until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the shutdown
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer with small talk, piece by piece; a new utterance interrupts it."""
@@ -184,7 +184,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     shown = ""
 
     async def show() -> bool:
-        """Say what may be said by now; return False once a sentence was refused."""
+        """Say the admitted sentences so far; return False once a sentence is refused."""
         nonlocal shown
         sayable, refused = utterance.text, False
         if gate is not None:
@@ -226,7 +226,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[rawio.output] = shown + INTERRUPTED if shown else settings.no_model
         return None
     except asyncio.CancelledError:
-        if shown:  # keep the words that were said, before those that interrupted them
+        if shown:  # put the said words into the history, before the words that interrupted them
             remember(ctx, "assistant", shown + INTERRUPTED)
             ctx[rawio.output] = shown + INTERRUPTED
         raise
@@ -239,10 +239,10 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed & listening.holds(is_open),
     reads=(interloc.users, overheard, history),
     writes=(rawio.output, listening),
-    weight=8.0,  # outranks modules that would take a move in a game for a question
+    weight=8.0,  # outranks modules that would mistake a move in a game for a question
 )
 async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Go on with a game, or with what the listening skill has asked."""
+    """Continue a game, or react to the answer to the listening skill's question."""
     seen = ctx.payload(nlp.analysis.changed)
     said = "" if seen is None else await follow_up(ctx, heard_in(ctx, seen.text, seen))
     if not said:
@@ -258,7 +258,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     weight=4.0,  # outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer sorrow first, whatever else was said."""
+    """Answer a sorrow before anything else that the user said."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None or not isinstance(ctx[model], ListeningBackend):
         return rs.Resign("a language model answers")
@@ -275,7 +275,7 @@ async def forget(ctx: rs.RuleContext) -> None:
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
-    """Log what is wrong with the model, once."""
+    """Log the model's fault, once."""
     if ctx[trouble] != str(error):
         ctx.log.error("%s", error)
         ctx[trouble] = str(error)
@@ -284,7 +284,7 @@ def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
 def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
     """Add a message to the history, and drop the oldest.
 
-    Each message has a key of its own, so that none is lost when several are said at once (L13).
+    Each message has a key of its own, so that no message is lost when several come at once (L13).
     """
     items = ctx[history]
     items.add(f"{ctx.now:.6f}/{ctx.random.getrandbits(32):08x}", Message(role, text[:LONGEST]))
@@ -293,7 +293,7 @@ def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
 
 
 def make_backend(settings: Settings) -> Backend:
-    """Return the backend that `settings` name; `choose` completes settings that leave it open.
+    """Return the backend in `settings`, which must name it completely, as those of `choose` do.
 
     Raises:
         PlatformError: The server's address is malformed.

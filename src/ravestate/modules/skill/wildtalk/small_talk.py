@@ -1,4 +1,4 @@
-"""Functions by which the module's rules use the listening skill, the gate for generated sentences, and the prompt."""
+"""Functions for the rules: they use the listening skill, the gate for generated sentences, and the prompt."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .listening.state import Pending
 from .names import clock, history, listening, notes, overheard
 
 LATELY = 12
-"""The number of the agent's last answers that it does not repeat."""
+"""The number of the agent's latest answers that it must not repeat."""
 MENTIONED = 4
-"""The number of the last utterances that an answer may refer to."""
+"""The number of latest utterances that an answer may refer to."""
 
 SORROWFUL = frozenset(("console", "mourn"))
 """Moves in reply to a sorrow."""
 OVERHEARD = 6
-"""The last utterances whose traces are kept until the skill answers."""
+"""The number of latest utterances whose traces are kept until the skill answers."""
 
 _TONES = {
     "sad": "The user is sad. Be gentle and brief.",
@@ -36,7 +36,7 @@ _TONES = {
 
 @cache
 def listener() -> Listener:
-    """Return the listening skill, one for all contexts."""
+    """Return the listening skill, which all contexts share."""
     return Listener()
 
 
@@ -52,13 +52,13 @@ def learn_all() -> None:
 
 
 def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard:
-    """Return the utterance as the skill takes it."""
+    """Return the utterance in the form that the listening skill takes."""
     users = [item for item in ctx[interloc.users].values() if isinstance(item, str)]
     return Heard(text, seen, users[0] if len(users) == 1 else "")
 
 
 def needs_comfort(seen: nlp.Analysis | None) -> bool:
-    """Return whether the user is in sorrow: the feeling and the likely move agree."""
+    """Return whether the user is in sorrow: both the feeling and the likely move say so."""
     if seen is None or seen.question is not None or seen.move is None:
         return False
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
@@ -84,11 +84,11 @@ async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
 
 
 def up_to_date(ctx: rs.RuleContext, text: str) -> State:
-    """Return the state of the skill, with what it missed while other modules answered.
+    """Return the state of the skill, updated with the utterances that other modules answered.
 
     Args:
         ctx: The context of the rule.
-        text: The utterance to be answered; its own entry in `overheard` is skipped.
+        text: The utterance to be answered, whose own entry in `overheard` is skipped.
     """
     state = ctx[listening]
     since = list(ctx[overheard])
@@ -105,7 +105,7 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
 
 
 def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
-    """Return the records of the last utterances, newest last: their tone and person, also where another module answers."""
+    """Return the tone and person of each of the last utterances, newest last, whichever module answers."""
     return (*ctx[overheard][1 - OVERHEARD :], listener().overhear(seen, ctx[listening].being))
 
 
@@ -124,7 +124,7 @@ def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:
 
 
 def notes_for(ctx: rs.RuleContext, heard: Heard) -> list[str]:
-    """Return what the model should know besides the conversation: the time, the user, the notes of other modules."""
+    """Return sentences about the time and the user, and the notes of other modules, for the prompt."""
     now = ctx[clock]()
     found = [f"It is {now:%A}, {now:%H:%M}."]
     if heard.user and "name" not in ctx[interloc.facts]:

@@ -1,7 +1,7 @@
 """Small talk by a causal model in the format of Hugging Face's transformers: GPT-2 and its many successors.
 
-It is slower and ten times heavier than llama.cpp with a GGUF file. Use it for models without such a file, and for your
-own.
+This backend is slower and ten times heavier than llama.cpp with a GGUF file. Use it for models without such a file, and
+for models that you have trained.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ravestate.language.loading import LOADING
 from .backend import Message, Progress
 
 ANSWERS = "Agent:"
-"""The beginning of the line that a model without a chat template continues."""
+"""The beginning of a line; a model without a chat template writes the rest."""
 
 LOADER = "ravestate-model-loader"
 """The name of a thread that loads a model."""
@@ -34,7 +34,7 @@ class TransformersBackend:
     """A causal model in a thread of this process; contexts with the same model share it."""
 
     def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
-        """This does not look for or load anything yet.
+        """Take the settings. Nothing is looked for or loaded yet.
 
         Args:
             model: A folder with a model, or a model's name on the hub; it is downloaded once.
@@ -45,7 +45,7 @@ class TransformersBackend:
         self._model: _Model | None = None
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. The library reports no progress, only the end."""
+        """See `Backend.load`. The library only reports the end, so `progress` is called once."""
         if self._model is None:
             self._model = await _loaded(self._name)
         if progress is not None:
@@ -80,7 +80,7 @@ class TransformersBackend:
 
         def end(_: object) -> None:
             pieces.text_queue.put_nowait(None)
-            _ = writing.cancelled() or writing.exception()  # otherwise asyncio complains if the caller has left
+            _ = writing.cancelled() or writing.exception()  # otherwise, asyncio logs an error if the caller has left
 
         writing.add_done_callback(end)
         written, shown, over = "", 0, False
@@ -109,14 +109,14 @@ class TransformersBackend:
 
 
 async def _loaded(name: str) -> _Model:
-    """Load a model in a thread that the end of the loop does not wait for: a download may take an hour."""
+    """Load a model in a daemon thread, because a download may take an hour and must not delay the end of the loop."""
     outcome: concurrent.futures.Future[_Model] = concurrent.futures.Future()
     outcome.set_running_or_notify_cancel()  # the thread cannot be cancelled, but its caller can
 
     def job() -> None:
         try:
             outcome.set_result(_Model.shared(name))
-        except BaseException as error:  # any exception belongs to the caller
+        except BaseException as error:  # the caller gets any exception
             outcome.set_exception(error)
 
     threading.Thread(target=job, name=LOADER, daemon=True).start()
@@ -164,14 +164,14 @@ class _Model:
             return found
 
     def prompt(self, messages: Sequence[Message]) -> tuple[str, tuple[str, ...]]:
-        """Return the text to continue, and the texts that end the answer. It blocks: a template must be compiled."""
+        """Return the text to continue, and the texts that end the answer. This blocks while it compiles a template."""
         if self.tokenizer.chat_template is None:
             return transcript(messages), ("\n",)
         turns = [{"role": message.role, "content": message.text} for message in messages]
         return self.tokenizer.apply_chat_template(turns, add_generation_prompt=True, tokenize=False), ()
 
     def streamer(self, timeout: float) -> Any:
-        """Return an iterator over the pieces that `write` writes, for the running loop."""
+        """Return an iterator, for the running loop, over the pieces that `write` writes."""
         return self.library.AsyncTextIteratorStreamer(
             self.tokenizer, skip_prompt=True, timeout=timeout, skip_special_tokens=True
         )
@@ -179,7 +179,7 @@ class _Model:
     def write(
         self, prompt: str, max_tokens: int, temperature: float, seed: int | None, pieces: Any, left: threading.Event
     ) -> None:
-        """Write an answer into the streamer `pieces`; stop when it is `left`."""
+        """Write an answer into the streamer `pieces`; stop once `left` says that the caller has gone."""
         import torch as real_torch
 
         torch = cast("Any", real_torch)
@@ -192,7 +192,7 @@ class _Model:
         if room:  # for the prompt and the answer together
             max_tokens = min(max_tokens, room - 1)
             tokens = {key: value[:, max_tokens - room :] for key, value in tokens.items()}
-        # One answer at a time: two would be no faster, and the library's random numbers belong to the whole process.
+        # Write one answer at a time: two would be no faster, and the process has only one random state for both.
         with self._writing:
             if left.is_set():
                 return
@@ -222,7 +222,7 @@ def transcript(messages: Sequence[Message]) -> str:
 def cut(text: str, stops: Sequence[str], *, last: bool) -> tuple[str, bool]:
     """Return the part of a growing text to show, and whether one of `stops` has ended it.
 
-    Unless it is the `last`, an end that might become a stop is held back.
+    Unless the text is complete (`last`), hold back an end that might become one of `stops`.
 
     Example:
         >>> cut("Hello.\\nUser", ["\\nUser:"], last=False)

@@ -1,4 +1,4 @@
-"""From the raw output of a model to the agent's words, while the model writes."""
+"""Turn the raw output of a model into the agent's words while the model writes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ravestate.modules._text import without_controls
 # Signs that a model continues the conversation by itself, or shows the marks of its template.
 _ROLES = ("User", "Human", "Assistant", "System", "Bot", "AI")
 _MARKS = r"<\|[^|<>\n]{1,16}\|>|</?s>|\[/?INST\]|<(?:start|end)_of_turn>|^\#{2,4}\s"
-# Unfinished ends of a text: they may become a mark, or the beginning of a sentence.
+# Ends of a text that may become a mark, or the beginning of a sentence.
 _BEGUN = re.compile(r"(?:<[|/]?[^|<>\n]{0,16}\|?|\[/?[INST]{0,4}|^\#{1,4}|[\"“‘(\[]+)\Z", re.MULTILINE)
 # Signs other than words, such as an emoji, belong to the sentence before them.
 _SENTENCE_END = re.compile(r"[.!?…。！？]+[\"”’)\]]*(?:\s+[^\w\s\"“‘(\[]+)*\s+(?=[\"“‘(\[]?\w)")
@@ -25,12 +25,12 @@ _QUOTES = '"“”«»'
 class Utterance:
     """A filter for a model's output: it takes pieces, and returns the part to say.
 
-    It removes thinking aloud, the agent's own name in front, quotation marks around everything, and control characters. It
-    also removes emoji, which small models overuse, unless nothing else is left; `emotion` shows feelings. White space
-    becomes single spaces. It is `complete`, and takes no more, after `sentences` sentences, or when the model begins to
-    speak for somebody else.
+    The filter removes thoughts, the agent's name at the beginning, quotation marks around everything, and control
+    characters. It removes emoji, which small models overuse, unless nothing else is left. White space becomes single
+    spaces. The utterance is `complete`, and ignores further pieces, after `sentences` sentences, or when the model
+    begins to speak for somebody else.
 
-    The result does not depend on how the output is cut into pieces, because an end that may become a mark is held back.
+    An end that may become a mark is held back, so the result does not depend on the size of the pieces.
 
     Example:
         >>> utterance = Utterance("Rosie")
@@ -41,7 +41,7 @@ class Utterance:
     """
 
     def __init__(self, name: str = "Ravestate", *, sentences: int = 2) -> None:
-        """`name`: the agent's; `sentences`: the greatest number, at least 1."""
+        """`name`: the agent's name; `sentences`: the maximum number of sentences, at least 1."""
         if sentences < 1:
             raise ValueError(f"sentences must be at least 1, not {sentences}")
         self._names = tuple(f"{n}:" for n in (name, *_ROLES) if n)

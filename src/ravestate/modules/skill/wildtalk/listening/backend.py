@@ -1,4 +1,4 @@
-"""The listening skill in the place of a language model."""
+"""The listening skill as a backend, in place of a language model."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .state import State
 
 
 class ListeningBackend:
-    """A backend that generates nothing. The module answers with the listening skill where it finds this backend."""
+    """A backend that generates nothing. If it is chosen, the module answers with the listening skill."""
 
     async def load(self, progress: Progress | None = None) -> None:
         """Do nothing: there is no model to load."""
@@ -27,7 +27,7 @@ class ListeningBackend:
         seed: int | None = None,
         stop: Sequence[str] = (),
     ) -> AsyncGenerator[str, None]:
-        """Yield a listener's phrase, for callers that have no analysis. Only `messages` and `seed` matter."""
+        """Yield a phrase of the listening skill, for callers without an analysis. Only `messages` and `seed` matter."""
         said = tuple(message.text for message in messages if message.role == "assistant")
         state = State(recent=said[-24:], said=said[-24:])
         yield Listener().answer(Heard(messages[-1].text), state, random.Random(seed)).text

@@ -13,20 +13,20 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from .state import Game, State
 
 LONGEST = 6
-"""The words of an utterance that may belong to a game."""
+"""The maximum number of words in an utterance that may belong to a game."""
 CHAINED = 2
-"""The words of a move in word chain: *a tiger*."""
+"""The maximum number of words in a move of word chain: *a tiger*."""
 
 HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
 """The request that the agent thinks of an animal."""
 GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
-"""The announcement that the user does."""
+"""The announcement that the user thinks of an animal."""
 
 Played = tuple[str, State]
 
 
 def named(shows: Mapping[str, Any], text: str, *, most: int = 3) -> str:
-    """Return the performance that a text of at most so many words names: *word chain*, *a riddle please*."""
+    """Return the performance that a text of at most `most` words names: *word chain*, *a riddle please*."""
     low = text.lower()
     if GUESSER.search(low) or HOLDER.search(low):
         return "animal" if GUESSER.search(low) else "holder"
@@ -187,7 +187,7 @@ class Turn:
         return self._chance.choice(self._shows[kind][group]).format(**roles), replace(self._state, game=game, show=show)
 
     def _tell(self, kind: str, listed: Sequence[str]) -> Played:
-        """Tell one about what the user wants: *a story with a snail*."""
+        """Tell a joke or story about the subject that the user wants: *a story with a snail*."""
         tree = None if self._seen is None else self._seen.tree
         about = [word for word in tree.words if word.low in ("about", "with", "of")] if tree else []
         wanted = tree.children_of(about, "pobj")[:1] if tree else []
@@ -199,7 +199,7 @@ class Turn:
         return text, state
 
     def _new(self, kind: str, listed: Sequence[str]) -> Played:
-        """Return one that was not shown yet, as long as there is one."""
+        """Return a performance that was not shown yet, as long as there is one."""
         left = [one for one in listed if one not in self._state.shown]
         text = self._chance.choice(left or listed)
         shown = self._state.shown if left else tuple(one for one in self._state.shown if one not in listed)

@@ -21,27 +21,27 @@ from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
 SURE, MEANT = 0.85, 0.7
-"""The confidence in a moment and in an act from which they decide."""
+"""The least confidence with which a moment and an act decide."""
 EXACT = 0.97
-"""The confidence in a moment from which it needs no likely move."""
+"""The least confidence with which a moment decides even if no likely move suits it."""
 FINER = 0.1
-"""The advantage of a moment over a feeling or an act, which are broader."""
+"""The advantage of moments over feelings and acts, which are broader."""
 FELT, GLAD, AMAZED = 0.65, 0.8, 0.9
-"""The confidence in a sad feeling from which it decides, in another one, and in astonishment."""
+"""The least confidence with which a sad feeling, another feeling, and astonishment decide."""
 TURNED = 0.95
-"""The confidence from which a glad feeling or a light moment ends a sad tone."""
+"""The least confidence with which a glad feeling or a light moment ends a sad tone."""
 CLOUDED = 0.85
-"""The confidence from which a sad moment ends a glad tone."""
+"""The least confidence with which a sad moment ends a glad tone."""
 ASKED = 0.8
-"""The confidence in a request from which it is met."""
+"""The least confidence with which a request is met."""
 FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
-"""The words of a sentence that resembles many others, and the confidence that it needs."""
+"""Short sentences resemble many others: the maximum number of their words, and the confidences that they need."""
 PLAINLY = 12
-"""The words of a statement about one thing."""
+"""The maximum number of words in a statement about one thing."""
 SHORT = 4
-"""The words of a short answer."""
+"""The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
-"""Acts that are only taken for sure ones."""
+"""Acts that count only if they are sure."""
 _ASKING = word_set(
     "who what when where why which how whose do does did is are was can could will would should may have"
 )
@@ -55,7 +55,7 @@ _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know
 _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
 """The end of a statement that astonishes: *he ate it all, can you believe it?*"""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
-"""Closed-class words that end no utterance."""
+"""Closed-class words that cannot end an utterance."""
 _SAD = SORROWS | {"tiredness"}
 _JUDGING = frozenset(("think", "feel", "know"))
 """Verbs of questions such as *what do you think about jazz*."""
@@ -82,16 +82,16 @@ class Hearing:
     meanings: list[Moment] = field(default_factory=list[Moment])
     """The feelings, acts and moments, best first."""
     moment: str = ""
-    """The name of the moment that it resembles most, even a little."""
+    """The name of the moment that the utterance resembles most, even if only a little."""
     moves: tuple[str, ...] = ()
-    """The moves that may come next, the likeliest first: one, or two if both are likely; none if that is unknown."""
+    """The moves that may come next, the likeliest first: one, or two if both are likely; none if no move is known."""
     topic: Moment | None = None
     thing: str = ""
-    """The thing that the agent's opinion is asked for."""
+    """The thing about which the user asks the agent's opinion."""
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
-    """Return what an utterance is."""
+    """Return the tags, roles and meanings of an utterance."""
     seen, text = heard.seen, heard.text
     tongue = tongue_of(text, phrases.tongues)
     signs = {"number": is_number(text), "foreign": tongue != "", "nonsense": is_nonsense(text)}
@@ -166,7 +166,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
-    """Return the moves that may come next: the likeliest, and the second one unless the first is likely enough."""
+    """Return the moves that may come next: the likeliest, and also the second one if the first is not likely enough."""
     move = seen.move
     if move is None:
         return ()
@@ -261,7 +261,7 @@ def _fits(moment: Moment, moves: Sequence[str]) -> bool:
 
 
 def asking_sentence(seen: Analysis) -> str:
-    """Return the question among the sentences of an utterance; empty if it asks nothing."""
+    """Return the sentence that asks something; empty if the utterance has none."""
     if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
         return ""
     marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
@@ -283,8 +283,8 @@ def asking_sentence(seen: Analysis) -> str:
 def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
     """Return the moment that a sentence resembles most, with the sentence and the confidence.
 
-    Only a moment that may answer one of the moves counts, or one whose example the user says nearly word for word. If the
-    user asks something, only the question counts.
+    A moment counts if it may answer one of the moves, or if the user says one of its examples nearly word for word. If
+    the user asks something, only the question counts.
     """
     best, sentence, score = None, "", 0.0
     imagined = any(one.conditional for one in seen.statements)
@@ -293,7 +293,7 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
         if match is None or match.score <= score:
             continue
         found = phrases.moments[match.name]
-        few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry": more was said
+        few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry", beside more words
         told = asking != "" and shape(plain(match.example))[3] == 0
         fits = match.score >= EXACT or (not told and _fits(found, heard.moves) and not imagined)
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
@@ -302,13 +302,13 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
 
 
 def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
-    """Return whether an utterance has one of the words that a moment needs: nobody is mourned without a word for it."""
+    """Return whether an utterance has one of the words that a moment needs, as grief needs a word of death."""
     needed = phrases.heads.get(moment.heads, frozenset())
     return not needed or any(needed & {word.low, word.lemma.lower()} for word in seen.tree.words)
 
 
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
-    """Return the strongest feeling, sad ones first, with its sentence."""
+    """Return the strongest feeling with its sentence; sad feelings precede all others."""
     known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
     known = [one for one in known if has_head(phrases, phrases.feelings[one.name], seen)]
     but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
@@ -320,7 +320,7 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
 
 
 def _least(match: Match, tone: str) -> float:
-    """Return the confidence from which a feeling decides."""
+    """Return the least confidence with which a feeling decides."""
     least = (
         FELT
         if match.name in _SAD

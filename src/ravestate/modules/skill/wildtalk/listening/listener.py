@@ -1,6 +1,6 @@
 """Choose an answer that fits what was said, by the table in order.yaml.
 
-The listener takes the first phrase that was not said lately and whose roles are known. Games and performances come first.
+The listener takes the first phrase that has all its roles and was not said lately. Games and performances come first.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from .state import LASTING, Being, Overheard, Pending, State
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
 LONG, SHORT = 9, 3
-"""The words of a request with a verb, and of one without, that names a performance."""
+"""The maximum number of words in a request for a performance: with a verb, and without a verb."""
 BRIEF, BRIEFLY = 12, 12
-"""The characters of a sign of listening, and the answers after which it may come again."""
+"""The maximum length of a sign of listening, in characters, and the number of answers after which it may come again."""
 MORE = re.compile(r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)?\W*(?:please|pls)?\W*$", re.IGNORECASE)
 """The request for another performance: *meh, one more*."""
 OFFER = re.compile(r"\bI(?:'ve)? (?:have|know|got|ask)\b.*\briddle|\bask you a riddle", re.IGNORECASE)
-"""The offer of a riddle for the agent."""
+"""The user's offer to ask the agent a riddle."""
 STANCES = ("like", "curious", "cool")
 
 Groups = Sequence[Sequence[Line]]
@@ -43,12 +43,12 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class _Source:
-    """Groups of phrases in the order in which they are tried, and what saying one of them means."""
+    """Groups of phrases, in the order in which they are tried, and the effects of saying one of them."""
 
     groups: Groups
     moment: Moment | None = None
     weak: bool = False
-    """Whether it fits nearly everything: then something else is said rather than a third question in a row."""
+    """Whether the phrases fit nearly every utterance. After two questions, such a source asks no third one."""
     stance: str = ""
     """The opinion that it expresses."""
 
@@ -61,7 +61,7 @@ class Listener:
         self._phrases = phrases or material()
 
     def load(self) -> None:
-        """Learn the examples now; before that only the examples themselves are recognised.
+        """Learn the examples now. Until that is done, only words that equal an example are recognised.
 
         Raises:
             PlatformError: The sentence model is missing or broken.
@@ -70,13 +70,13 @@ class Listener:
             matcher.load()
 
     def performs(self, heard: Heard, state: State) -> bool:
-        """Return whether the utterance asks for a performance, or belongs to one: no language model should answer it."""
+        """Return whether the utterance asks for a performance or belongs to one. No language model should answer it."""
         return state.game is not None or self._request(heard) != ""
 
     def continues(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance belongs to a game, or is a short answer to the skill's own question.
 
-        Such words mean something else to other modules: *tomato* is a move in word chain, and no question about vegetables.
+        Other modules would misunderstand such words: *tomato* is a move in word chain, not a question about vegetables.
         """
         seen, pending = heard.seen, state.pending
         if seen is None or not heard.text.strip():
@@ -102,7 +102,7 @@ class Listener:
         return replace(said, state=replace(said.state, before=heard.text))
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
-        """Return what an utterance leaves behind: the tone, and the being that it mentions after `focus`."""
+        """Return the traces of an utterance: its tone, and the being that it mentions, or else `focus`."""
         feeling, sentence = feeling_of(self._phrases, seen, "", "")
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
@@ -161,7 +161,7 @@ class Listener:
         return Answer("Mhm.", state.toned(""))  # all phrases were said lately
 
     def _choose(self, source: _Source, roles: Roles, state: State, chance: random.Random) -> Line | None:
-        """Return a line of the first group that has one: with known roles, and not said lately."""
+        """Return a line from the first group with a usable line: its roles are known, and it was not said lately."""
         for lines in source.groups:
             known = [line for line in lines if line.roles <= roles.values.keys()]
             fit = [line for line in known if not _said_lately(line.text, roles.fill(line.text), state)]
@@ -202,7 +202,7 @@ class Listener:
             yield _Source(moment.lines(*groups, "say", "again"), moment)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the replies of the likely move; of two likely ones, replies that suit both."""
+        """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
         tags, replies = hearing.tags, self._phrases.replies
         sure, unsure = len(hearing.moves) == 1, "ask" if "question" in tags else "tell"
         groups = ["asked"] if {"question", "request"} & tags else []
@@ -216,7 +216,7 @@ class Listener:
         yield _Source(replies[unsure].lines(*groups))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the agent's opinion; it is chosen once. It has none of people."""
+        """Yield the agent's opinion, which is chosen once. The agent has no opinions of people."""
         roles, stances = hearing.roles, self._phrases.plain["stances"]
         hearing.roles = roles.having(thing=hearing.thing)
         before = state.stances.get(hearing.thing.lower())
@@ -226,7 +226,7 @@ class Listener:
         yield _Source(stances.lines(before or stance), stance=before or stance)
 
     def _topic(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the questions about a topic; about others, only those that speak of them."""
+        """Yield the questions about a topic. If the utterance is about others, yield only questions about them."""
         if hearing.topic is not None:
             lines: Groups = hearing.topic.lines("say")
             if "living" in hearing.tags:
@@ -241,7 +241,7 @@ def _said_lately(template: str, text: str, state: State) -> bool:
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources; after two questions the weak ones come without theirs first, and all if the user wants none."""
+    """Yield the sources with fewer questions: after two in a row, or if the user wants no questions."""
     asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
     later: list[_Source] = []
     for source in sources:

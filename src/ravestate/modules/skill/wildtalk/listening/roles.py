@@ -15,7 +15,7 @@ from .material import AGREEING, ROLE, Material
 from .state import Being
 
 LONGEST = 32
-"""The characters of a role."""
+"""The maximum number of characters in a role."""
 
 _THEY = {"f": ("she", "her", "her"), "m": ("he", "him", "his")}
 _IT, _PLURAL = ("it", "it", "its"), ("they", "them", "their")
@@ -53,7 +53,7 @@ class Roles:
         return replace(self, values={**self.values, **{name: value for name, value in values.items() if value}})
 
     def fill(self, text: str) -> str:
-        """Return a phrase with its roles filled; one written with a capital begins with a capital."""
+        """Return a phrase with its roles filled. The value of a role that is written with a capital gets a capital."""
         parts = ROLE.split(text)  # text, role, text, role, ...
         for place in range(1, len(parts), 2):
             role = parts[place]
@@ -76,8 +76,8 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
 
     Args:
         seen: Its analysis.
-        sentence: The sentence that matters most; the statement is taken from it if it has one.
-        focus: The being that was mentioned before; a pronoun stands for it.
+        sentence: The sentence that matters most. If it has a statement, the roles come from that statement.
+        focus: The being that was mentioned before. A pronoun means this being.
         material: The nouns for living beings.
     """
     statement = _statement(seen, sentence)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 RECENT = 40
-"""The last phrases, of which none is said again."""
+"""The number of latest phrases that are not said again."""
 LASTING = 2
 """The number of turns for which a tone lasts."""
 
@@ -28,7 +28,7 @@ class Being:
 
 @dataclass(frozen=True, slots=True)
 class Pending:
-    """A question of the agent's, with its answers to the user's answer."""
+    """An open question of the agent, with the reactions to the user's answer."""
 
     text: str
     then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
@@ -38,14 +38,14 @@ class Pending:
 
     @property
     def closed(self) -> bool:
-        """Whether it can be answered with yes or no."""
+        """Whether the question can be answered with yes or no."""
         words = self.text.replace(",", " ").split(". ")[-1].split("! ")[-1].split("? ")[-1].lower().split()
         return not any(word in _OPEN for word in words[:3])
 
 
 @dataclass(frozen=True, slots=True)
 class Overheard:
-    """The traces of an utterance, also if another module answers it."""
+    """The traces of an utterance, kept even if another module answers it."""
 
     text: str
     being: Being | None = None
@@ -74,7 +74,7 @@ class State:
     said: tuple[str, ...] = ()
     """The last answers, oldest first."""
     before: str = ""
-    """The user's utterance before this one."""
+    """The user's previous utterance."""
     moment: str = ""
     """The feeling or moment of the last answer."""
     pending: Pending | None = None
@@ -88,9 +88,9 @@ class State:
     shown: tuple[str, ...] = ()
     """The jokes, songs, stories and riddles of this talk."""
     show: str = ""
-    """The kind of the last of them."""
+    """The kind of the latest performance."""
     asks: bool = True
-    """Whether it may ask; not once the user wants no questions."""
+    """Whether the listener may ask questions. It may not once the user wants none."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
         """Return the state after an utterance with this tone. Anger and tiredness do not end sadness."""

@@ -1,4 +1,4 @@
-"""Utterances that are no English: other languages, nonsense, numbers."""
+"""Utterances that are not English: other languages, nonsense, numbers."""
 
 from __future__ import annotations
 
