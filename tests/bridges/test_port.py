@@ -300,8 +300,8 @@ def test_wrong_agents_are_refused(tmp_path: Path) -> None:
         contexts_of(rs.Module("deaf"))
     with pytest.raises(UsageError, match="cannot read"):
         contexts_of(tmp_path / "none.yaml")
-    with pytest.raises(UsageError, match="no module 'nobody'"):
-        contexts_of("nobody")
+    with pytest.raises(UsageError, match="no module 'no_such_module'"):
+        contexts_of("no_such_module")
     with pytest.raises(DeclarationErrors) as caught:
         contexts_of(42)  # type: ignore[arg-type]
     assert "42" in str(caught.value.exceptions)

@@ -113,9 +113,9 @@ def test_modules_can_be_left_out_of_the_complete_agent(capsys: Capture) -> None:
 def test_some_modules_can_be_unfolded_or_all(capsys: Capture) -> None:
     code, out, errors = call(capsys, "graph", "--unfold", "hibye", "--format", "mermaid")
     assert (code, errors) == (0, "")
-    assert '["hibye<br/>answer#95;hello' in out.replace("_", "#95;") and "wildtalk<br/>11 rules" in out
+    assert '["hibye<br/>answer#95;hello' in out.replace("_", "#95;") and re.search(r"wildtalk<br/>\d+ rules", out)
     whole = call(capsys, "graph", "--no-fold", "--format", "mermaid")
-    assert whole[2] == "" and "wildtalk<br/>chat" in whole[1] and "11 rules" not in whole[1]
+    assert whole[2] == "" and "wildtalk<br/>chat" in whole[1] and not re.search(r"<br/>\d+ rules", whole[1])
 
 
 def test_a_small_agent_is_folded_on_demand(hello: str, capsys: Capture) -> None:

@@ -292,8 +292,8 @@ class Graph:
     def _node(self, raw: Raw) -> Node | None:
         """Return the node that a raw node stands for, with its declared properties; None if its type is undeclared."""
         id = raw.values.get("id")
-        if raw.label not in self._types or not isinstance(id, str):
-            return None
+        if raw.label not in self._types or not isinstance(id, str) or not id.startswith(f"{raw.label}:"):
+            return None  # on a damaged page
         return Node(raw.label, self._types.loaded(raw.label, raw.values), id)
 
     def _must_know(self, node: Node) -> Node:
