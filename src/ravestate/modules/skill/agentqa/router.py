@@ -53,7 +53,7 @@ class Miss:
 class Router:
     """A classifier that finds the topic of a question about the agent. Thread-safe.
 
-    A `Matcher` over the example questions of a life. Before `load`, only questions that equal an example are recognised.
+    It is a `Matcher` over a life's example questions. Before `load`, only questions that equal an example count.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
