@@ -120,7 +120,7 @@ class RavestateProcessor(FrameProcessor):
             self._utterances.task_done()
 
     async def _watch(self) -> None:
-        """End the pipeline when the agent wants to leave; if it has failed, leave the decision to the pipeline."""
+        """End the pipeline when the agent wants to leave. If the agent has failed, the pipeline decides."""
         try:
             await self._conversation.until_agent_leaves()
             await self.push_frame(EndWorkerFrame(), FrameDirection.UPSTREAM)

@@ -233,7 +233,7 @@ class Conversation:
 
     async def _follow(self, utterance: Utterance) -> None:
         """End a growing utterance once no rule may add to it, even if a rule has failed in the middle of it."""
-        with contextlib.suppress(RavestateError):  # of the engine; `until_agent_leaves` raises it
+        with contextlib.suppress(RavestateError):  # an error of the engine: `until_agent_leaves` raises it
             await self.context.quiet(rawio.output)
         if self._growing is utterance:
             self._fall_silent()

@@ -173,7 +173,10 @@ def _extent(graph: LayeredGraph) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """Return an edge's cost per layer of its length. High costs keep junctions near rules, and signals near slots."""
+    """Return what an edge costs for each layer that it spans.
+
+    High costs keep junctions near rules, and signals near slots.
+    """
     if kinds[edge.source] in JUNCTIONS:
         return 8
     if edge.kind == "emits" and kinds[edge.source] == "slot":

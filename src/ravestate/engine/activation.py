@@ -1,8 +1,8 @@
 """The life of an activation (L12, L14, L17, L18).
 
 An activation is a clause plus the spikes that it has acquired. Once it has consent, it is a run of the rule. Every
-clause also has an activation in stand-by, which holds nothing. Stand-by needs no object: the engine creates one for the
-first spike.
+clause also has an activation in stand-by: one that holds nothing yet. It needs no object: the engine creates the object
+for the first spike.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
@@ -82,7 +82,7 @@ COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 class Activation:
     """A clause plus the spikes that it has acquired.
 
-    Most activations end before they run or wait. So the class holds the defaults of the attributes for these states.
+    Most activations end before they run or wait. So the class holds the attributes' defaults for these two states.
 
     Attributes:
         id: A number that grows with each new activation; also the number of its run.
@@ -93,7 +93,7 @@ class Activation:
     ripens: float = NEVER
     """While one of its spikes is too young: the time at which all will be old enough (seconds)."""
     pressed: dict[Group, float] = MappingProxyType[Any, Any]({})  # type: ignore[assignment]  # replaced on first use
-    """Group in which others waited for it while it might never be ready → when its patience ends (seconds; L16)."""
+    """Group in which others wait for it, though it may never be ready → when its patience ends (seconds; L16)."""
     waits_for: tuple[str, ...] = ()
     """While it waits: the names of the rules that it waits for."""
     blockers: tuple[Activation, ...] = ()

@@ -50,7 +50,7 @@ class Agenda(Slots):
         """Make all alternatives visible to an observer: each becomes an activation that waits for the best clause."""
         for best in list(self.alternatives):
             spike = best.spikes[0]
-            assert spike is not None  # it is ready, or runs
+            assert spike is not None  # the activation is ready, or runs
             self.unfold(best)
             for other in list(spike.holders) if best.state >= WAITING else ():
                 if other.state is READY and other.clause.rule.slotset == best.clause.rule.slotset:

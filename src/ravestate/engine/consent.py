@@ -132,7 +132,7 @@ def _horizon(engine: Engine, activation: Activation, without: Collection[Activat
 
 
 def _kept(engine: Engine, activation: Activation) -> Iterator[Activation]:
-    """Yield the activations that wait, or would wait, because of this one (L16)."""
+    """Yield the activations that wait, or would wait, because of `activation` (L16)."""
     clause = activation.clause
     slots = clause.rule.slotset
     for group in activation.firm_groups():

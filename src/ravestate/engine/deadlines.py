@@ -1,4 +1,4 @@
-"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline or needs none any more."""
+"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or needs no deadline."""
 
 from __future__ import annotations
 

@@ -54,8 +54,8 @@ class Spiked:
 
 @dataclass(slots=True)
 class Ended:
-    """A report of the outcome of a run, made if the engine has `report_ends`. ``fired`` is false if the run resigned,
-    or if it failed or was wiped before it wrote a slot."""
+    """A report of the outcome of a run, if the engine has `report_ends`. ``fired`` is false if the run resigned, or if
+    it failed or was wiped before it wrote a slot."""
 
     run: int
     rule: str

@@ -44,7 +44,7 @@ class Group:
         return group
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for the runs `holders`, or (None) for good. Runs share a slot if their groups have merged."""
+        """Take a slot for the runs `holders`, or (None) for good. Runs share it if their groups have merged."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:

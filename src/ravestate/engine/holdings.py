@@ -28,7 +28,7 @@ class Holdings(State):
     """The layer of the engine that gives spikes to activations and takes them away."""
 
     def _look(self, activation: Activation, needs: Iterable[Need]) -> None:
-        """Give each detached need without a spike the newest live spike that fits, if possible an old enough one."""
+        """For each detached need without a spike, take the newest live spike that fits, old enough if possible."""
         for need in needs:
             if not need.bit & activation.missing:
                 continue
@@ -53,7 +53,7 @@ class Holdings(State):
             self._update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
-        """Give a need whose spike was lost the oldest live spike that fits, if there is one (L12)."""
+        """For a need that has lost its spike, take the oldest live spike that fits, if there is such a spike (L12)."""
         if need.detached:
             self._look(activation, (need,))
         else:
@@ -106,7 +106,7 @@ class Holdings(State):
             self.tracer(trace.Passed(self.now, rule.name, clause.number, spike.id, spike.signal.name, reason, by, run))
 
     def _update(self, activation: Activation) -> None:
-        """Complete an activation whose spikes have changed or grown older, or set the deadlines that it waits for (L14)."""
+        """After an activation's spikes have changed or aged, complete it, or else set its deadlines (L14)."""
         clause = activation.clause
         if not activation.missing:
             ripens = -NEVER
@@ -278,7 +278,7 @@ class Holdings(State):
             self._busy -= 1
 
     def _lose_interest(self, activation: Activation) -> None:
-        """Make an activation stop waiting: changes in its groups no longer make it ask again."""
+        """Make an activation stop waiting, so that changes in its groups do not make it ask again."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
         for hope in activation.hopes:

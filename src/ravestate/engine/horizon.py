@@ -13,7 +13,7 @@ A derivation has one of three strengths:
 ``NO``           nothing leads to the signal
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
-An activation that waits for the asking one cannot help either, until that one has had its turn: it counts as still.
+An activation that waits for the asking activation cannot help before the latter has had its turn: it counts as still.
 
 A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`: it yields
 the steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
@@ -92,7 +92,7 @@ class Horizon:
                     there.pop(activation.clause.rule.index, None)
 
     def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
-        """Return a clause's activations that hold no spike of the group, but lack one that the group may cause."""
+        """Return a clause's activations that hold no spike of the group, but lack a spike that the group may cause."""
         if clause.apart:
             return []  # any spike that it lacks must come from the group that it stands on
         active = self.engine.active.get(clause.rule.index)

@@ -25,7 +25,7 @@ class Standing:
         self.now = 0.0
 
     def recovery(self, clause: Clause) -> tuple[float, float]:
-        """Return how far the clause's rule has recovered (0 to 1), and how fast it does (per second)."""
+        """Return how far the clause's rule has recovered (0 to 1), and how fast it recovers (per second)."""
         rule = clause.rule
         if rule.cooldown:
             ran = self.ran.get(rule.index)
@@ -57,7 +57,7 @@ class Standing:
         return (lead or first) > 0 and (soon or first) > 0
 
     def crossing(self, one: Clause, other: Clause) -> float:
-        """Return when the order of two clauses changes next by recovery (seconds); `inf` if it does not."""
+        """Return when recovery next changes the order of two clauses (seconds); `inf` if it never does."""
         (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
         closing = one.base * fast - other.base * their_fast
         behind = other.base * their_far - one.base * far

@@ -106,7 +106,7 @@ class State:
         return activation
 
     def stir_rule(self, rule: RulePlan) -> None:
-        """Note that an activation of a rule has come, changed or gone, for those whose turn depends on it elsewhere."""
+        """Note that an activation of a rule has come, changed or gone: activations in other groups may depend on it."""
         for kind, number in self.hoping:
             if (
                 number == rule.index
@@ -171,7 +171,7 @@ class State:
         return all(self._test(predicate, spike.payload, rule) for predicate in need.predicates)
 
     def holds(self, slot: SlotPlan, guard: Holds, rule: RulePlan) -> bool:
-        """Return whether a predicate on a slot's value is true. One that raises counts as false and is reported."""
+        """Return whether a predicate on a slot's value is true. A predicate that raises is false, and is reported."""
         return self._test(guard.predicate, self.read(slot.index), rule)
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:

@@ -16,7 +16,7 @@ LONGEST = 2000
 """The maximum number of characters that are read; the rest of an utterance is ignored."""
 
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
-"""Acts that accompany others: "thanks, bye", "okay, hello"."""
+"""Acts that often accompany other acts: "thanks, bye", "okay, hello"."""
 FORMULAS = frozenset({"greeting", "farewell", *COURTESY})
 """Acts with formulas: short examples that may precede other words, as in "hello, what is your name"."""
 FORMULA_WORDS = 4
@@ -67,7 +67,7 @@ def acts(sentences: Sequence[str]) -> dict[str, Match]:
 
 
 def only(act: str, sentences: Sequence[str]) -> bool:
-    """Return whether an utterance is no more than the act `act`, with courtesies and a few other words.
+    """Return whether an utterance is only the act `act`, perhaps with courtesies and a few other words.
 
     Example:
         >>> only("greeting", ["Hello, my dear robot!"]), only("greeting", ["Hello, who are you?"])
@@ -92,7 +92,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation cancels a wish. It does not in "don't talk": the wish is the negated sentence."""
+    """Return whether a negation cancels a wish. In "don't talk" it does not, because there the negation is the wish."""
     if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
         return False
     asserted = _NEGATION.sub("", found.text, count=1)
@@ -101,7 +101,7 @@ def _taken_back(matcher: Matcher, found: Match | None) -> bool:
 
 
 class _Sentence:
-    """The acts of a sentence, and the words that belong to none."""
+    """The acts of a sentence, and the words that belong to no act."""
 
     def __init__(self, matcher: Matcher, sentence: str, whole: Match | None) -> None:
         formulas: dict[str, Match] = {}

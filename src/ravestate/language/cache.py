@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FILES = 100
-"""The maximum number of files in the cache; the latest stay."""
+"""The maximum number of files in the cache. Beyond it, the oldest files are removed."""
 
 
 def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:
     """Return the arrays of `compute`; read them from a file if an earlier call with the same key wrote it.
 
-    A missing or broken file, or a folder that cannot be written, only costs time.
+    If a file is missing or broken, or the folder cannot be written, the arrays are only computed again.
 
     Args:
         key: Everything that the arrays depend on; a value that JSON can write.

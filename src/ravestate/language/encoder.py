@@ -60,7 +60,7 @@ class Encoder:
 
         A new sentence takes about 3 ms on one core; a recent one takes no time. The model reads the first 512 tokens.
         """
-        model = self._loaded()  # before numpy: its error says what to install
+        model = self._loaded()  # load the model before numpy is imported: the model's error says what to install
         import numpy as np
 
         mine = threading.Event()
@@ -133,7 +133,7 @@ class Encoder:
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
         for number, text in enumerate(
             texts
-        ):  # one by one: a quantised model scales over a batch, so each text would change the others' vectors
+        ):  # one text per run: a quantised model scales over a batch, so each text would change the others' vectors
             _, hidden, mask = next(model.run([text]))
             rows[number] = _pooled(hidden, mask, self._mean)[0]
         norms = np.linalg.norm(rows, axis=1, keepdims=True)

@@ -10,7 +10,7 @@ class Entity:
     """A name, a date, a number."""
 
     text: str
-    """As written."""
+    """The text of the entity, as written."""
     label: str
     """Its label in the pipeline's scheme: ``PERSON``, ``GPE`` (a country, a town), ``DATE``, ``CARDINAL``..."""
     start: int

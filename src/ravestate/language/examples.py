@@ -19,7 +19,7 @@ NONE = "none"
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """Example sentences of several classes, and sentences that belong to none of them."""
+    """Example sentences of several classes, and sentences that belong to no class."""
 
     classes: Mapping[str, tuple[str, ...]]
     none: tuple[str, ...] = ()
@@ -58,5 +58,5 @@ def parse_examples(found: Any, source: str) -> Examples:
 
 @cache
 def bundled(name: str) -> Examples:
-    """Return the examples of this room by name: ``acts``, ``answers``, ``feelings``, ``none``..."""
+    """Return the built-in examples with this name: ``acts``, ``answers``, ``feelings``, ``none``..."""
     return read_examples(files("ravestate.language") / "examples" / f"{name}.yaml")

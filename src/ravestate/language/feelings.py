@@ -11,7 +11,7 @@ from .normal import plain
 from .shape import shape
 
 SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
-"""Feelings of the user that forbid cheerful words, and remarks out of boredom."""
+"""Feelings of the user during which the agent says nothing cheerful, and does not speak out of boredom."""
 SORROW_LASTS = 12
 """The number of the user's utterances for which a sorrow counts, including the utterance that shows it."""
 SURE = 0.8

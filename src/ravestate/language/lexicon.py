@@ -21,9 +21,9 @@ from .contractions import word_set
 FREQUENT = 5000
 """The minimum count of a word in the subtitles (1.6 billion words) before it may replace an unknown word."""
 COMMON = 15_000
-"""The count in lower case from which a word that may be a name counts as an ordinary word."""
+"""The minimum count, in lower case, at which a word that may be a name counts as an ordinary word."""
 RARE = 50
-"""The maximum count of a word, missing in the dictionary, that counts as a name."""
+"""The maximum count at which a word that the dictionary lacks counts as a name."""
 DOUBLED = 20
 """The factor by which swapped and doubled letters are more frequent than other typing errors."""
 SHORTEST = 4
@@ -129,7 +129,7 @@ class Lexicon:
             return False
         if len(word) == len(other):
             return len(word) > SHORTEST or sorted(word) == sorted(other)
-        if len(word) > len(other):  # a letter too many: in a short word, only a doubled one counts
+        if len(word) > len(other):  # a letter too many: in a short word, this must be a doubled letter
             return len(word) > SHORTEST + 1 or any(a == b for a, b in pairwise(word))
         return True
 

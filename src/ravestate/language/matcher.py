@@ -35,11 +35,11 @@ SPELLING = 0.1
 SHAPE = 0.6
 """The share of their similarity that two sentences lose if their shapes have nothing in common."""
 COMMON = 0.1
-"""The similarity that any two sentences have at least; it allows classes of different sizes."""
+"""The least similarity of any two sentences. It allows classes of different sizes."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
-"""The least margin of an example in `confusions`: the other examples put it into another class."""
+"""The least margin by which the other examples put an example into a wrong class, for `confusions` to list it."""
 NONE = ""
 REMEMBERED = 256
 """The number of sentences whose classes a matcher keeps, because all skills ask for the same sentences."""
@@ -52,7 +52,7 @@ class Match:
     score: float
     """The confidence, 0 to 1: the share of such sentences that belong to the class."""
     example: str
-    """The nearest example."""
+    """The example that resembles the sentence most."""
     margin: float
     """The score of the regression minus that of the next best class; about 1 for an example."""
     entities: tuple[Entity, ...] = ()
@@ -64,7 +64,7 @@ class Match:
 
 
 class Matcher:
-    """A classifier for sentences: one of several classes, or none. Thread-safe.
+    """A classifier that puts a sentence into one of several classes, or into none. Thread-safe.
 
     Without a loaded model, only sentences that equal an example word for word are recognised.
 
@@ -120,7 +120,7 @@ class Matcher:
         Raises:
             PlatformError: The sentence model is missing (`ModelMissing`) or broken. The message says how to mend that.
         """
-        if self._learnt is not None:  # no lock is needed just to check
+        if self._learnt is not None:  # to check this, no lock is needed
             return
         with self._lock:
             if self._learnt is None:
@@ -132,7 +132,7 @@ class Matcher:
                 self._learnt = _Learnt(self._pairs, self._encoder, self._shapes, self._centre)
 
     def confusions(self) -> list[tuple[str, str, str]]:
-        """Return the examples that the other examples put into another class: example, its class, the other class.
+        """Return the examples that the other examples put into a wrong class: example, its class, the wrong class.
 
         Raises:
             PlatformError: See `load`.
@@ -147,7 +147,7 @@ class Matcher:
             self._encoder.encode([plain(sentence) for sentence in sentences])
 
     def match(self, sentence: str) -> Match | None:
-        """Return the class that a sentence belongs to; None if it belongs to none."""
+        """Return the class that a sentence belongs to; None if it belongs to no class."""
         return self.match_all([sentence])[0]
 
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:

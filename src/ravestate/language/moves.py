@@ -32,9 +32,9 @@ SPREAD, FORM = 0.05, 1.0
 COMMON = 0.1
 """The similarity of any two utterances."""
 RIDGE, RIDGE_BORROWED = 0.5, 2.0
-"""The ridge penalties of own and of borrowed examples, which are single sentences from other files and count less."""
+"""The ridge penalties of own and of borrowed examples. Borrowed ones are sentences of other files, and count less."""
 BORROWED = 25
-"""The maximum number of examples borrowed from one class of another file."""
+"""The maximum number of examples that are borrowed from one class of another file."""
 UNLIKELY = 0.15
 """The penalty for a move that does not suit the form: `TOLD` after a question, `ASKED` after a statement."""
 ASKED = ("fact", "self", "opinion", "recall")
@@ -55,7 +55,7 @@ LISTENING = (
 )
 """Moves of a listener after a statement of the user."""
 SURE = 0.7
-"""The least confidence of a sure move."""
+"""The least confidence at which a move is sure."""
 
 _GROUPS = tuple(
     word_set(words)
@@ -93,7 +93,7 @@ class Moves:
     """The classifier. Thread-safe; before `load`, it returns no moves."""
 
     def __init__(self, examples: Mapping[str, Sequence[str]], encoder: Encoder | None = None) -> None:
-        """Take the examples, in the form of ``moves.yaml``."""
+        """Take examples, in the format of ``moves.yaml``."""
         own = [(text, name, RIDGE) for name, texts in examples.items() if name != "like" for text in texts]
         others = {**bundled("acts").classes, **bundled("feelings").classes}
         for line in examples.get("like", ()):

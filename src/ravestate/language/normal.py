@@ -31,7 +31,7 @@ class Normal:
     """For each character of `text`, and for its end, the position in `original`. It never decreases."""
 
     def span(self, start: int, end: int) -> tuple[int, int]:
-        """Return the span of `original` that ``text[start:end]`` stands for; it is empty for an added mark."""
+        """Return the span of `original` that became ``text[start:end]``; it is empty for an added mark."""
         return self.origin[start], self.origin[end]
 
     def adds(self, start: int, end: int) -> bool:
@@ -261,7 +261,7 @@ def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lex
     if low in ("lets", "k", "ya") and (not opens or word == "K"):
         return None
     if low == "ur" and opens and not asks and len(following) > 1 and not following[1].text:
-        return "you're"  # ur funny
+        return "you're"  # "ur funny"
     typed = word in (low, "I") or (len(word) > 2 if word.isupper() else piece.first)
     if not typed or (len(word) < 3 and word != low and lexicon is not None and lexicon.name(low) != low):
         return None

@@ -48,5 +48,5 @@ def _table() -> dict[str, NDArray[Any]]:
     try:
         with (files("ravestate.language") / FILE).open("rb") as file, np.load(file, allow_pickle=False) as found:
             return {name: found[name] for name in found.files}
-    except FileNotFoundError:  # before the tool has run
+    except FileNotFoundError:  # ``tools/vectors.py`` has not made the file yet
         return {"keys": np.zeros(0, np.uint64), "rows": np.zeros((0, 1), np.int8), "size": np.array(0)}

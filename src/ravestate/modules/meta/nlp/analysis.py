@@ -52,14 +52,14 @@ class Analysis:
     sentences: tuple[str, ...] = ()
     """The sentences of the normal form."""
     statements: tuple[Statement, ...] = ()
-    """The triples with their circumstances: denied, past, hearsay..."""
+    """The triples with flags for their circumstances: denied, past, hearsay..."""
     acts: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The user's acts, by the classes of ``acts.yaml``: greeting, thanks... each with its best sentence."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
 
     move: Move | None = None
-    """The move that a good listener makes next: rejoice, console, advise..."""
+    """The move: what a good listener does next, such as rejoice, console, advise..."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
@@ -104,7 +104,7 @@ def analyse(
     statements = statements_of(tree, entities, parsed)
     bundled_matcher("acts").prepare(
         [*sentences, *clauses(sentences, names), *compared(sentences)]
-    )  # one run of the encoder for all matchers
+    )  # one run of the encoder serves all matchers
     question = question_of(tree, parsed)
     return Analysis(
         text=text,

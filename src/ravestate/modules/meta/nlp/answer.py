@@ -51,7 +51,7 @@ _NO = re.compile(
     r"(?:nope|nah|nay|naw|no(?! (?!(?:i|you|he|she|it|we|they|that|this|there|my|your|the|a|well|oh|please|sorry|thanks?|"
     r"no|nope|because|not|never|but|if|let|sir|ma'am|maam|way)\b)))\b"
 )
-"""No, unless a noun follows: *no brothers*."""
+"""The word *no*, unless a noun follows, as in *no brothers*."""
 _SHORT = re.compile(
     rf"(?:i|you|he|she|it|we|they|that|this|there) (?:\w+ly |sure |just |still |always )?(?:{_VERB})(?: really)?( not)?$"
 )
@@ -74,7 +74,7 @@ def yesno_of(text: str) -> YesNo:
     spoken = _PART.findall(_STRETCHED.sub(r"\1", text[:_LONGEST].lower()))
     first, *others = _TURN.split("".join(plain(words) + marks for words, marks in spoken), maxsplit=1)
     score, other = _score(first), _score(others[0]) if others else None
-    if not any(_parts(first)):  # thanks, but no
+    if not any(_parts(first)):  # "thanks, but no"
         score = other
     elif score is not None and other and score * other <= 0:
         score = 1 if other > 0 else -1
@@ -115,7 +115,7 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _score_of_part(part: str, asks: bool) -> int | None:
-    """Return the score of a part. A question is an answer if it is a weak one, or if it resembles an example that asks."""
+    """Return the score of a part. A question counts if it is a weak answer, or resembles an example that asks."""
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:

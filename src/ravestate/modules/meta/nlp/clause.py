@@ -40,7 +40,7 @@ _STATES = word_set("better worse well fine good bad great ok okay awful hard alo
 
 _GIVING = word_set("give tell show send lend buy bring teach")
 _OWN_STATES = word_set("live like love hate want need miss hope prefer know understand work study own")
-"""Verbs of states, which no request has: *live in Rome* stands for *I live in Rome*."""
+"""Verbs of states. They make no requests: *live in Rome* stands for *I live in Rome*."""
 
 _NOMINAL = ("NOUN", "PROPN", "ADJ", "NUM")
 
@@ -98,7 +98,7 @@ class Clause:
 
     @cached_property
     def predicate(self) -> str:
-        """The lemma; in a chain the first verb's lemma, then the others as written."""
+        """The lemma of the verb. In a chain: the lemma of the first verb, then the other verbs as written."""
         first, *others = self._inherited + self.chain
         if self._is_state:
             return self.lemma
@@ -133,7 +133,7 @@ class Clause:
         for word in self.own:
             before, after = self.tree.before(word), self.tree.after(word)
             if word.low in NEGATIONS and not self._denies_conjunct(word) and self.tree.head(word) not in self.chain[1:]:
-                return True  # but "decide not to go" denies the going alone
+                return True  # but in "decide not to go", only the going is denied
             if before is not None and (before.low, word.low) == ("no", "longer"):
                 return True
             if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
@@ -162,7 +162,7 @@ class Clause:
 
     @property
     def requests(self) -> bool:
-        """Whether it demands something: *give me the book*, *let's play*."""
+        """Whether the clause demands something: *give me the book*, *let's play*."""
         if self.own_subjects and not any(clause._is_lets for clause in self._clauses.values()):
             return False
         return self.verb.dep in ("ROOT", "conj", "ccomp") and self.subjects in ([YOU], [_WE])
@@ -197,7 +197,7 @@ class Clause:
 
     @cached_property
     def head_clause(self) -> Clause | None:
-        """The clause that this one depends on."""
+        """The clause on which this clause depends."""
         above = (self._clauses.get(word.index) for word in self.tree.ancestors(self.verb))
         return next((clause for clause in above if clause is not None and clause is not self), None)
 
@@ -211,7 +211,7 @@ class Clause:
 
     @cached_property
     def _is_relative(self) -> bool:
-        """Whether it is a relative clause, and no question: *Tom, where do you live*."""
+        """Whether this is a relative clause. *Tom, where do you live* has none: it is a question."""
         deps = [word.dep for word in self.tree.children(self.verb, "aux", *SUBJECTS)]
         return self.verb.dep == "relcl" and not (deps[:1] == ["aux"] and set(deps) & set(SUBJECTS))
 
@@ -315,7 +315,7 @@ class Clause:
         return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        """Return the first of the kinds of objects that the clause has."""
+        """Return the objects of the first kind that the clause has."""
         tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)

@@ -20,7 +20,7 @@ _OPENERS = word_set(
 """Words without meaning before a question."""
 _TELLING = word_set("tell say explain show remind describe ask")
 _KNOWING = word_set("know remember guess wonder see find hear understand recall")
-"""Verbs before an indirect question; only those of telling have a person between: *tell me where he lives*."""
+"""Verbs before an indirect question. Verbs of telling are not listed: a person follows them, as in *tell me where*."""
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight that again to not")
 """Words for things to perform, such as jokes: a request for one is not a question."""
 _ANY = word_set("any ever anyone anybody anything")
@@ -31,7 +31,7 @@ _TAGS = word_set("right correct huh eh yes no ok okay")
 
 
 def question_of(tree: Tree, clauses: Sequence[Clause] | None = None) -> QuestionWord | None:
-    """Return the kind of the first question in the text; None without one."""
+    """Return the kind of the first question in the text; None if the text has no question."""
     clauses = Clause.all_in(tree) if clauses is None else clauses
     kinds = (_kind(tree, words, _inside(words, clauses)) for words in _sentences(tree))
     return next((kind for kind in kinds if kind is not None), None)

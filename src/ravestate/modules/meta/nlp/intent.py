@@ -25,7 +25,7 @@ Intents = Mapping[str, tuple[str, ...]]
 """The examples of intents, by the qualified names of their signals."""
 
 OF_ACT = 12
-"""The examples of each act that compete with the designer's intents."""
+"""The number of examples of each act that compete with the designer's intents."""
 
 _RULE = "learn_intents"
 
@@ -34,7 +34,7 @@ def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path
     """Declare a signal for utterances that resemble `examples`; its payload is the `Match`.
 
     All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with sentences of no
-    class. Only the best is raised. Two or three examples are enough for a start.
+    class. Only the signal of the best match is raised. Two or three examples are enough for a start.
 
     Args:
         module: The module of the signal. It requires ``nlp``.
@@ -114,7 +114,7 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 
 @lru_cache(maxsize=32)
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
-    """Return a matcher of intents and acts. An act that shares an example with an intent gives way to it.
+    """Return a matcher of intents and acts. If an act and an intent share an example, the intent keeps it.
 
     A designer writes few examples, and an act has hundreds. Only `OF_ACT` of these compete, or acts would always win.
     """

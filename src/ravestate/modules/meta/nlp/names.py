@@ -50,13 +50,13 @@ tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
 """The words and punctuation of the last utterance, as written."""
 
 lemmas: rs.Slot[tuple[str, ...]] = module.slot("lemmas", (), always=True)
-"""Their dictionary forms."""
+"""The dictionary forms of the tokens."""
 
 pos: rs.Slot[tuple[str, ...]] = module.slot("pos", (), always=True)
-"""Their universal parts of speech: ``NOUN``, ``VERB``..."""
+"""The universal parts of speech of the tokens: ``NOUN``, ``VERB``..."""
 
 tags: rs.Slot[tuple[str, ...]] = module.slot("tags", (), always=True)
-"""Their fine tags: ``NNS``, ``VBD``..."""
+"""The fine tags of the tokens: ``NNS``, ``VBD``..."""
 
 entities: rs.Slot[tuple[Entity, ...]] = module.slot("entities", (), always=True)
 """The named entities: persons, places, dates, numbers."""
@@ -71,7 +71,7 @@ analysis: rs.Slot[Analysis | None] = module.slot("analysis", None, always=True)
 """The whole analysis as one record, with acts, feelings and statements. Rules read it instead of analysing the text."""
 
 yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
-"""The meaning as an answer: yes or no. This slot is written last."""
+"""The meaning of the utterance as an answer: yes or no. This slot is written last."""
 
 intents: rs.Collection[Mapping[str, tuple[str, ...]]] = module.collection("intents")
 """The examples of the intents that `nlp.intent` declares: for each module, the sentences by the name of the signal."""

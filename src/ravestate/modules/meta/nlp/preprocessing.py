@@ -29,7 +29,7 @@ _LIVES = re.compile(
 
 
 def preprocess(text: str) -> str:
-    """Return `text` with replaced words, as long as before.
+    """Return `text` with replaced words of the same length.
 
     Example:
         >>> preprocess("do you like\\x00it?")

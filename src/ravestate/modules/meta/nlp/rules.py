@@ -27,7 +27,7 @@ SIGNALS = {"intent_play": names.intent_play, "intent_hi": names.intent_hi, "inte
 def load(ctx: rs.RuleContext) -> None:
     """Load the pipeline in the background, before the first words."""
     settings: Settings = ctx.settings
-    with contextlib.suppress(PlatformError):  # `understand` reports it
+    with contextlib.suppress(PlatformError):  # `understand` reports the error
         pipeline(settings.pipeline).load()
         give_back()
 
@@ -49,7 +49,7 @@ def learn_intents(ctx: rs.RuleContext) -> None:
     """Learn the examples of the designer's intents in the background."""
     matcher = intent_matcher(ctx[names.intents].values())
     if matcher is not None:
-        with contextlib.suppress(ModelMissing):  # `learn` warns
+        with contextlib.suppress(ModelMissing):  # `learn` has logged the warning
             matcher.load()
 
 

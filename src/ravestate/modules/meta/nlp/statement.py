@@ -19,11 +19,11 @@ class Triple(NamedTuple):
     """
 
     subject: str | QuestionWord
-    """As written; a `QuestionWord` if the question asks for the subject."""
+    """The subject as written; a `QuestionWord` if the question asks for the subject."""
     predicate: str
-    """The lemma, after ``not`` if negated."""
+    """The lemma of the verb; if negated, with ``not`` before it."""
     object: str | QuestionWord
-    """As written, or empty; a `QuestionWord` if the question asks for it."""
+    """The object as written, or empty; a `QuestionWord` if the question asks for the object."""
 
     def __str__(self) -> str:
         def shown(part: str | QuestionWord) -> str:
@@ -49,7 +49,7 @@ class Statement:
     """The triple. A `QuestionWord` in it is the unknown of a question."""
     subject: Phrase
     object: Phrase
-    """An empty phrase if there is none."""
+    """The object; an empty phrase if there is no object."""
     verb: str
     """The lemma of the last verb of the predicate: ``live``, also for *used to live* and *want to live*."""
     phrases: tuple[Phrase, ...] = ()
@@ -58,20 +58,20 @@ class Statement:
     when: str = ""
     """The time that the clause names: ``two years ago``, ``since 2010``, ``next month``."""
     negated: bool = False
-    """*I don't live here*; *I have no sister*; *I no longer smoke*."""
+    """The statement is denied: *I don't live here*, *I have no sister*, *I no longer smoke*."""
     past: bool = False
     """It was true, and is not true any more: *I lived in Berlin*, *I used to smoke*. A past event still holds:
     *I moved to Toronto two years ago*, *I was born in Rome*, *I painted a dragon*; so does *I have lived here since 2010*."""
     hearsay: bool = False
-    """Somebody else says or thinks it: *my mother says I am lazy*, *people say...*."""
+    """Somebody else says or thinks so: *my mother says I am lazy*, *people say...*."""
     conditional: bool = False
-    """It is imagined: *if I lived in Rome*, *I would be happy*, *I wish I were rich*, *maybe he is ill*."""
+    """The statement is imagined: *if I lived in Rome*, *I would be happy*, *I wish I were rich*, *maybe he is ill*."""
     plan: bool = False
-    """It is wanted or lies ahead: *I want to move to Rome*, *I am going to visit him*, *I will call you*."""
+    """The action is wanted, or lies ahead: *I want to move to Rome*, *I am going to visit him*, *I will call you*."""
     question: bool = False
-    """It is asked: *do you live here*, *where do you live*."""
+    """The statement is a question: *do you live here*, *where do you live*."""
     request: bool = False
-    """It is demanded: *give me the book*, *let's play*."""
+    """The action is demanded: *give me the book*, *let's play*."""
 
     @property
     def subject_person(self) -> Person:
@@ -80,7 +80,7 @@ class Statement:
 
     @property
     def holds(self) -> bool:
-        """Whether the speaker says that it is true now, or that it has happened."""
+        """Whether, according to the speaker, the statement is true now or the event has happened."""
         return not (
             self.negated or self.past or self.hearsay or self.conditional or self.plan or self.question or self.request
         )

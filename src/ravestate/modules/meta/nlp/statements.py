@@ -79,7 +79,7 @@ class _Assertion:
         dep = clause.verb.dep
         shares = dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not clause.own_subjects)
         self._sharing = self._above if shares else None
-        """The clause above, if this one shares its flags."""
+        """The clause above, if this clause shares its flags."""
 
     def statement(self, triple: Triple, subject: Phrase, object: Phrase) -> Statement:
         """Return the statement of a triple of this clause."""
@@ -116,7 +116,7 @@ class _Assertion:
 
     @cached_property
     def _hearsay(self) -> bool:
-        """Whether somebody else says it."""
+        """Whether somebody else says so."""
         if self._above is None or self._low & _REPORTS:
             return bool(self._low & _REPORTS)
         said = self._above._clause
@@ -130,7 +130,7 @@ class _Assertion:
 
     @cached_property
     def _conditional(self) -> bool:
-        """Whether it is imagined."""
+        """Whether the statement is imagined."""
         own = self._clause.own
         if self._low & _DOUBTS or any(word.low in _CONDITIONS and word.dep in ("mark", "advmod") for word in own):
             return True
@@ -149,7 +149,7 @@ class _Assertion:
 
     @cached_property
     def _plan(self) -> bool:
-        """Whether it is wanted, or lies ahead."""
+        """Whether the action is wanted, or lies ahead."""
         chain = self._clause.chain
         if any(word.low in ("will", "'ll", "shall", "wo") and word.dep == "aux" for word in self._clause.own):
             return True
@@ -169,7 +169,7 @@ class _Assertion:
 
     @cached_property
     def _past(self) -> bool:
-        """Whether it was true, and is not true any more."""
+        """Whether the statement was true, and is not true any more."""
         lemma, first = lemma_of(self._clause.chain[-1]), self._clause.chain[0]
         if first.low == "used" and len(self._clause.chain) > 1:
             return True
@@ -197,14 +197,14 @@ class _Assertion:
 
     @cached_property
     def _wished(self) -> bool:
-        """Whether it is a *would like*."""
+        """Whether the clause says *would like*."""
         first = self._clause.chain[0]
         would = any(word.low in ("would", "'d") for word in self._tree.children(first, "aux"))
         return would and lemma_of(first) in ("like", "love", "prefer")
 
     @cached_property
     def _denied_above(self) -> bool:
-        """Whether the clause above denies it: *I don't think that I am shy*, *it is not true that I am shy*."""
+        """Whether the clause above denies this one: *I don't think that I am shy*, *it is not true that I am shy*."""
         if self._above is None or self._clause.verb.dep not in ("ccomp", "csubj"):
             return False
         said = self._above._clause
@@ -212,7 +212,7 @@ class _Assertion:
 
     @cached_property
     def _given(self) -> bool:
-        """Whether the clause above takes it as true: *you know that I live here*."""
+        """Whether the clause above takes the statement as true: *you know that I live here*."""
         assert self._above is not None
         return not self._low & {"if", "whether"} and self._above._clause.lemma in _KNOWN_AS_TRUE
 

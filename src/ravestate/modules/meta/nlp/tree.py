@@ -14,15 +14,15 @@ class Word:
     """A token in the tree, with the labels of spaCy's English pipelines."""
 
     index: int
-    """Its number within the tree."""
+    """The word's number within the tree."""
     text: str
-    """As written."""
+    """The word as written."""
     lemma: str
     """Its dictionary form."""
     pos: str
-    """Universal part of speech: ``NOUN``."""
+    """The universal part of speech: ``NOUN``."""
     tag: str
-    """Fine tag: ``NNS``."""
+    """The fine tag: ``NNS``."""
     dep: str
     """Its relation to its head: ``nsubj``; ``ROOT`` for the head of a sentence."""
     head: int

@@ -12,7 +12,7 @@ NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 _MOTION = word_set("come go travel fly drive run move stay")
-"""Verbs whose infinitive states a purpose, and so an action of its own: *come to help*."""
+"""Verbs after which an infinitive states a purpose, which is a second action: *come to help*."""
 _GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
 _PARTICLES = word_set("back out off forward")
 _BE = frozenset(["be", "am", "is", "are", "was", "were", "m", "s", "re", "'s", "'m", "'re"])

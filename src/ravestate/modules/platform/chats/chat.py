@@ -33,13 +33,13 @@ GRACE = 0.05
 """The seconds for which an answer waits for the end of the agent's work, so that one transaction covers both."""
 
 TURN = 1.0
-"""The seconds for which a message waits for the answer to the one before. A slow answer may be interrupted."""
+"""The seconds for which a message waits for the answer to the message before it. Slow answers may be interrupted."""
 
 SLOW = 0.5
 """The seconds of work after which the chat shows that the agent is writing."""
 
 SHOWN = 4.0
-"""The seconds for which a chat shows that; messengers show it for five."""
+"""The seconds for which a chat shows that the agent is writing. Messengers show it for five."""
 
 FAREWELL = 10.0
 """The seconds that the agent has for a greeting and for a farewell."""
@@ -194,7 +194,7 @@ class Chat:
         elif kind in ("picture", "voice"):
             await self._open_file(context, entry)
         elif kind == "edit" and self._room.store.answer_to(entry) is None:
-            pass  # the talk has moved on
+            pass  # the conversation has moved on
         elif message.text.strip():
             context.put(rawio.input, printable(message.text))
 
@@ -356,7 +356,7 @@ class Chat:
     async def _show_work(self) -> None:
         await asyncio.sleep(SLOW)
         while True:
-            with contextlib.suppress(DeliveryError):  # it is of no account
+            with contextlib.suppress(DeliveryError):  # a failure to show it does no harm
                 await self._room.carrier.show_work(self.id)
             await asyncio.sleep(SHOWN)
 

@@ -45,12 +45,12 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
                 name = Recognised(node["name"], node) if node.get("name") else name
     except (RavestateError, TimeoutError) as error:
         log.warning("memory was not asked about a person: %s", str(error) or "it took too long")
-        name = None  # their name alone might be that of another person, of whom memory knows more
+        name = None  # the name alone might mean another person, of whom memory knows more
     join(context, key(platform, person), name)
 
 
 async def recalled(context: Context) -> None:
-    """Wait until memory has answered what rules asked about a person who has come, and they have taken note of it."""
+    """Wait until memory has answered the rules' questions about a new person, and the rules have noted the answers."""
     with contextlib.suppress(RavestateError, TimeoutError):
         async with asyncio.timeout(PATIENCE):
             for _ in range(2):  # the rules may ask again after the first answer; memory answers in order
@@ -75,7 +75,7 @@ def present(context: Context, platform: str, person: Person) -> bool:
 
 
 async def forget(context: Context, platform: str, person: Person) -> None:
-    """Remove a person from memory, with all that only they need, and tell the other modules.
+    """Remove a person from memory, with all nodes that only they need, and tell the other modules.
 
     Raises:
         RavestateError: Memory failed.
@@ -113,7 +113,7 @@ async def _memory(context: Context) -> Memory | None:
 
 
 def _known(graph: Graph, account: str, name: str | None) -> Node:
-    """Return the person with an account; a new one if memory knows none."""
+    """Return the person with an account; a new person if memory knows nobody with this account."""
     from ravestate.modules.meta.ontology import Node
 
     known = graph.find("Account", {"name": account})

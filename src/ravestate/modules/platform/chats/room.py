@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .settings import ChatSettings
 
 LAST_WORDS = 5.0
-"""The seconds that the agent has to answer and to send when it ends. The rest is done at the next start."""
+"""The seconds that the agent has to answer and to send when it ends. All other work is done at the next start."""
 
 
 class Room:

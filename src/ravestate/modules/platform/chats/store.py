@@ -23,7 +23,7 @@ TRIES = 3
 """The number of starts after which a message is given up: it may be the cause of the crashes."""
 
 PARTING = ("stop", "forget")
-"""The commands after which the agent no longer counts the person as one whom it has met in the chat."""
+"""The commands after which the agent treats the person as somebody whom it has not met in the chat."""
 
 TABLES = """
 CREATE TABLE IF NOT EXISTS inbox (
@@ -57,7 +57,7 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A message that the agent wants to send, and the number of the message that caused it; None if none did."""
+    """A message that the agent wants to send, and the number of the message that caused it, or None."""
 
     message: Outgoing
     cause: int | None = None

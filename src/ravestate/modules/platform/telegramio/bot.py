@@ -31,7 +31,7 @@ CONFLICTS = 4
 """The number of conflicts in a row after which the bot gives up: another program polls it all the time."""
 
 SETTLED = 60.0
-"""The seconds after which the bot no longer gives up: then the other program is the newcomer, and should."""
+"""The seconds after which the bot no longer gives up: the other program has then come later, and should give up."""
 
 CONFLICT_WAIT = 2.0
 """The seconds to wait after the first conflict. After a crash, the server still holds the old process's request."""

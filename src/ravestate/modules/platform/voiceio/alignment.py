@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 _WORD = re.compile(r"\S+")
 _PHONEMES = 0.85
-"""Phonemes of a word per letter, on average."""
+"""The average number of phonemes per letter of a word."""
 _DIGIT = 4.0
-"""Phonemes of a digit."""
+"""The average number of phonemes in a spoken digit."""
 _MOST = 10
-"""The spoken words that one written word may be: 1859 has several."""
+"""The maximum number of spoken words for one written word: 1859 has several."""
 
 
 @dataclass(frozen=True, slots=True)

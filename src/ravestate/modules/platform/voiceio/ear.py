@@ -20,13 +20,13 @@ from .sound import Samples, samples
 BEFORE = 12
 """Chunks before the onset that belong to the turn: a soft beginning is not cut off."""
 ONSET = 2
-"""Chunks of speech in a row that make an onset: a click is none."""
+"""The number of chunks of speech in a row that make an onset. A click is shorter."""
 STAY = 0.7
 """The share of the threshold of speech above which speech goes on."""
 ARTICULATE = 3
-"""Articulate chunks since the onset that make sure that it is speech, not a hum or a cough."""
+"""The number of articulate chunks since the onset that prove speech, rather than a hum or a cough."""
 LONG = 16
-"""Chunks of speech since the onset that make sure in any case: half a second."""
+"""The number of chunks of any speech since the onset that prove it as well: half a second."""
 LONGEST = 60.0
 """The longest turn (seconds). A longer one is taken in parts."""
 CLIPPED = 0.02
@@ -84,7 +84,7 @@ class Ear:
         self.speaking = False
         """Whether the user speaks."""
         self.parted: Turn | None = None
-        """The turn of the person who spoke before another one went on (event ``another``)."""
+        """The turn of the person who spoke before another person went on (event ``another``)."""
         self.clipped = False
         """Whether the sound is so loud that it is cut off at the limit."""
         self._activity = Activity()

@@ -18,7 +18,7 @@ LEAST, MOST = 1e-6, 0.25
 CLEAR = 10.0
 """The factor above the expected power at which it is another voice: 10 dB."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
-"""Steps of the expectation in a chunk: for less than expected, for more, and for what is taken for another voice."""
+"""The factors by which a chunk changes the expected share: less power than expected, more, another voice."""
 
 
 class Leak:

@@ -62,7 +62,7 @@ class Speech:
         """End the text; `text` is the complete one."""
         if text is not None:
             if not text.startswith(self.text[: self._given]):
-                self._given = 0  # it is another text: speak it from its beginning
+                self._given = 0  # the complete text is another text: speak it from its beginning
             self.text = text
         self.whole = True
         self._grown.set()
@@ -100,7 +100,7 @@ class Mouth:
         self.line = line
         self.voice = voice
         self.turn = asyncio.Lock()
-        """One utterance at a time holds it."""
+        """The lock that an utterance holds while it is spoken, so that only one is spoken at a time."""
         self.growing: Speech | None = None
         """The utterance that still grows."""
         self.said = ""
@@ -108,7 +108,7 @@ class Mouth:
         self.speaking = False
         """Whether an utterance is under way, also while it is held."""
         self.silent_since: float | None = None
-        """The time since which the speech is held; None if it is not."""
+        """The time since which the speech is held back; None if it is not held back."""
         self._queue: list[_Queued] = []
         self._end = 0.0
         self._held_at: float | None = None

@@ -68,7 +68,7 @@ class Settings(rs.Settings):
     ask_back_below: Share = 0.38
     """The recogniser's confidence below which the agent asks back."""
     back_channel: Seconds = 1.0
-    """Seconds of the user's speech after which it is no mere "mhm": the agent gives way."""
+    """Seconds after which the user's speech is no mere "mhm", so that the agent gives way."""
     filler_after: Seconds = 0.8
     """Seconds without an answer after which the agent says a filler; 0 for none."""
     fillers: tuple[str, ...] = ("Hm.", "Well.", "Let me see.")
@@ -78,7 +78,7 @@ class Settings(rs.Settings):
 module = rs.Module("voiceio", requires=[rawio, verbaliser], settings=Settings)
 
 another_speaks: rs.Signal[Turn] = module.signal("another_speaks", payload=cast("type[Turn]", object))
-"""Another person has gone on in the pause of the first one, whose turn this is."""
+"""Another person has gone on in a pause of the first person. The payload is the first person's turn."""
 
 utterance: rs.Signal[Utterance] = module.signal("utterance", payload=Utterance)
 """The user has finished a turn. The words also go to ``rawio.input`` if the recogniser is confident enough."""
@@ -99,7 +99,7 @@ back_channel = module.signal("back_channel", payload=str)
 """The user has only shown that they listen ("mhm", "yes", laughter) while the agent was speaking."""
 
 false_alarm = module.signal("false_alarm", payload=str)
-"""The sound was nobody's turn: noise, a cough, the agent's own voice. The payload is the reason."""
+"""The sound was no turn of a user, but noise, a cough or the agent's own voice. The payload is the reason."""
 
 barge_in = module.signal("barge_in")
 """The user interrupts: the agent stops speaking."""

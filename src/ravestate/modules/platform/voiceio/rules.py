@@ -191,7 +191,7 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=another_speaks, reads=conversation, emits=(utterance, false_alarm))
 async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Take the turn of the person who spoke first: two people are not one sentence."""
+    """Take the turn of the person who spoke first, because the words of two people are not one sentence."""
     talk, turn = ctx[conversation], ctx.payload(another_speaks)
     if talk is None:
         return rs.Resign("the line is closed")
@@ -360,7 +360,7 @@ async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def give_way(ctx: rs.RuleContext) -> None:
-    """Stop for good when the user goes on speaking: that is no mere "mhm"."""
+    """Stop for good when the user goes on speaking, because a mere "mhm" would be shorter."""
     await ctx.sleep(ctx.settings.back_channel)
     ctx.emit(barge_in)
 
@@ -372,7 +372,7 @@ async def give_way(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Go on with the speech where it stopped: it was no interruption."""
+    """Go on with the speech where it stopped, because the user did not interrupt."""
     talk = ctx[conversation]
     if talk is None or not talk.mouth.held:
         return rs.Resign("nothing is held")

@@ -72,7 +72,7 @@ def wanted_silence(text: str, complete: float | None, settings: Settings) -> flo
 
 
 def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
-    """Return whether words are complete, by the last one: an article needs another word, an auxiliary verb may need one.
+    """Return whether words are complete, by the last word: an article needs more, an auxiliary verb may need more.
 
     Example:
         >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")

@@ -71,7 +71,7 @@ class PageLine:
 
     def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
         self.window: Window | None = None
-        """The window that has the line; None if none has it."""
+        """The window that has the line; None if no window has it."""
         self.stream = 0
         """The number of the present stream."""
         self._heard = bytearray()

@@ -19,7 +19,7 @@ ONLOOKERS = 8  # the maximum number of windows that may show one conversation at
 class Sessions:
     """All conversations with one agent, which makes a context for each.
 
-    Beyond `limit`, a new conversation ends one that has no window. If all have windows, the server refuses the new one.
+    Beyond `limit`, a new conversation ends a conversation without a window. If all have windows, it is refused.
     A conversation without a window is kept for `keep` seconds.
     """
 
@@ -42,7 +42,7 @@ class Sessions:
         return iter(tuple(self._tasks))
 
     def get(self, id: str) -> Session | None:
-        """Return the conversation with this secret id; None if there is none, or if it is about to end."""
+        """Return the conversation with this secret id; None if it does not exist, or is about to end."""
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
@@ -94,7 +94,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation without a window: if possible, one whose visitor said nothing; else the one left first."""
+        """End a conversation without a window: preferably of a silent visitor, else the one left earliest."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

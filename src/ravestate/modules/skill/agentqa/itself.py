@@ -28,7 +28,7 @@ RELATIONS: Mapping[str, tuple[str, str]] = {
 
 
 async def settle(life: Life, memory: Memory) -> Node:
-    """Update the agent's node in memory to match the file. Facts that are missing in the file stay.
+    """Update the agent's node in memory to match the file. Facts that the file does not mention stay.
 
     Raises:
         PlatformError: Memory failed.

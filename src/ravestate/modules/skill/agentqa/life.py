@@ -1,4 +1,4 @@
-"""The life of an agent: facts, and topics that people may ask about. `read_life` reads one from files."""
+"""The life of an agent: facts, and topics that people may ask about. `read_life` reads a life from files."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from datetime import date
 
 Fact = str | tuple[str, ...] | tuple[tuple[str, str], ...]
-"""A fact: a text, several, or pairs such as ``(("animal", "the octopus"),)``."""
+"""A fact: one text, several texts, or pairs such as ``(("animal", "the octopus"),)``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """A topic that people may ask about, with the answers."""
+    """A topic that people may ask or talk about, with the answers."""
 
     name: str
     questions: tuple[str, ...]
@@ -20,21 +20,21 @@ class Topic:
     phrases: tuple[str, ...]
     """Answers, with facts in braces. The agent chooses one whose facts are known."""
     otherwise: tuple[str, ...] = ()
-    """Answers if every phrase lacks a fact. Without such answers, other modules answer."""
+    """Answers for the case that every phrase lacks a fact. If there are none, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """For each fact, answers to a question that names one of its values. ``{it}`` is that value, and ``{that}`` the
     other text of a pair."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
-    """Regular expressions, matched on whole words, for remarks that no other module should answer."""
+    """Regular expressions for remarks: utterances that only this module should answer. They match whole words."""
     acts: tuple[str, ...] = ()
-    """Acts and feelings of the user, by the classes of `nlp.analysis`: ``insult``, ``thanks``, ``grief``."""
+    """The user's acts and feelings that this topic answers, as `nlp.analysis` names them: ``insult``, ``grief``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """Facts, topics, and questions that belong to none of them.
+    """The agent's facts and topics, and questions that belong to no topic.
 
     Example:
         >>> from ravestate.modules.skill.agentqa.life_file import read_life

@@ -45,7 +45,7 @@ asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; the payload has the topic."""
 
 remarked = module.signal("remarked", payload=Remark)
-"""The user makes a remark that takes priority over everything else, such as distress or an insult; the payload has the
+"""The user makes a remark, such as distress or an insult; it takes priority over everything else. The payload has the
 topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)

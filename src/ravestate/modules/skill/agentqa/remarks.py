@@ -1,4 +1,4 @@
-"""Remarks that the agent must answer: first distress, found by fixed expressions; then the user's acts and feelings."""
+"""Remarks that the agent must answer: distress, which fixed expressions find, then the user's acts and feelings."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
 def act_in(analysis: Analysis, life: Life) -> Remark | None:
     """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first in the life.
 
-    Without a *you*, a feeling counts only if nothing else is said. In *useless. how long do eggs boil*, it is ignored.
+    Unless the user says *you*, a feeling counts only if nothing else is said: not in *useless. how long do eggs boil*.
     """
     for name, topic in life.topics.items():
         for known in topic.acts:

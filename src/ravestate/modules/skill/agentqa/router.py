@@ -18,7 +18,7 @@ from ravestate.language.bundled import ModelMissing
 from .life import Life
 
 LEAST = 0.5
-"""The least confidence with which a question belongs to a topic."""
+"""The least confidence that a question needs to belong to a topic."""
 WORDS = 20
 """The maximum number of words in a question about the agent."""
 SENTENCES = 4
@@ -36,9 +36,9 @@ class Match:
     score: float
     """The confidence, 0 to 1."""
     example: str
-    """The nearest example."""
+    """The example that resembles the question most."""
     margin: float
-    """The distance to the next best topic, in scores of the classifier."""
+    """The topic's score in the classifier, minus the score of the next best topic."""
     returned: bool = False
     """Whether the user returned the agent's own question: *fine, and you?*"""
 
@@ -51,9 +51,9 @@ class Miss:
 
 
 class Router:
-    """A classifier for questions: a topic of the agent, or none. Thread-safe.
+    """A classifier that finds the topic of a question about the agent. Thread-safe.
 
-    It is a `Matcher` over the example questions of a life. Before `load`, only questions that equal an example count.
+    It is a `Matcher` over a life's example questions. Before `load`, only questions that equal an example count.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:

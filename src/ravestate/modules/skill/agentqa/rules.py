@@ -25,9 +25,9 @@ from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
 CERTAIN = 0.7
-"""The least confidence with which a topic needs no second sign that the question is about the agent."""
+"""The least confidence in a topic at which the agent needs no second sign that the question is about it."""
 STATED = 0.85
-"""The same confidence for a statement, because *I don't know what to say* is no question about the agent."""
+"""The same for a statement. It is higher, because statements may resemble a question: *I don't know what to say*."""
 TURNS = 6
 """The number of the user's utterances before the agent invites them to ask about it."""
 
@@ -67,7 +67,7 @@ async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         await settle(told, memory)
     except RuleError as error:
-        return rs.Resign(str(error))  # it was closed meanwhile: the conversation is over
+        return rs.Resign(str(error))  # memory was closed meanwhile: the conversation is over
     except RavestateError as error:
         ctx.log.warning("the agent's facts in memory may be out of date: %s", error)
     return None
@@ -80,7 +80,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     if told is None or seen is None:
         return rs.Resign("the agent has no life yet, or nothing was said")
     if seen.question is None and seen.move is not None and seen.move.listens:
-        return rs.Resign(f"the user wants another answer: {seen.move.name}")
+        return rs.Resign(f"the user wants to be listened to, and asks nothing: {seen.move.name}")
     route = router_of(told).route
     found: Match | Miss = Miss("")
     if ctx[idle.asked] and await asyncio.to_thread(_returns, seen):
@@ -93,7 +93,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign(found.reason)
     certain = CERTAIN if seen.question is not None or "?" in seen.text else STATED
     if seen.move is not None and found.score < certain and "self" not in (seen.move.name, seen.move.second):
-        return rs.Resign(f"{found.topic} is only likely, and the user wants another answer: {seen.move.name}")
+        reason = f"{found.topic} is only likely, and the utterance calls for another kind of reply: {seen.move.name}"
+        return rs.Resign(reason)
     ctx.log.debug("%s", found)
     ctx.emit(asked, found)
     return None
@@ -101,7 +102,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone, so that a user in distress gets an answer whatever is installed."""
+    """Notice a remark by its words alone. A user in distress thus gets an answer even without the sentence models."""
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
@@ -168,10 +169,10 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     reads=(prompted, turns, idle.unanswered),
     writes=(verbaliser.intent, rawio.output, prompted),  # the output, so that no other rule speaks at the same time
     weight=0.9,
-    detached=True,  # starts a causal group of its own: in the old one, nothing could turn the intent into words
+    detached=True,  # starts a causal group of its own: in the group of `bored`, no rule could put the intent into words
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Invite the user, once, to ask about the agent, when the conversation has stopped for a long time."""
+    """After a long silence, invite the user to ask about the agent. Do so only once."""
     count, last = ctx[turns]
     if ctx[prompted] is not None or count < TURNS:
         return rs.Resign("the agent has offered it before, or the talk has just begun")
@@ -195,7 +196,7 @@ def intent(topic: str, phrases: Sequence[str]) -> Intent:
 
 
 async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
-    """Return the agent's facts from memory, or from the file if there is none."""
+    """Return the agent's facts from memory; without a memory, from the file."""
     if memory is None:
         return told.facts
     try:

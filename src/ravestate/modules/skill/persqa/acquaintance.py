@@ -52,7 +52,7 @@ class Acquaintance:
         return Acquaintance(found, merged(remembered, self.facts), talk, free)
 
     def doubted(self, graph: ontology.Graph) -> Acquaintance:
-        """Return the user with a doubt if memory knows facts about a person with the name that they have just told."""
+        """Return the user. If memory knows facts about a person of the same name, set `Talk.doubt`."""
         if self.talk.met or self.who is None:
             return self
         found = records.named(graph, self.who[NAME])
@@ -63,7 +63,7 @@ class Acquaintance:
         return replace(self, talk=replace(self.talk, doubt=topics[0] if topics else ""))
 
     def settled(self, graph: ontology.Graph, answer: tuple[str, ...]) -> Acquaintance:
-        """Return the user as the person whose name and facts fit this answer; if there is none, as a new person."""
+        """Return the user as the person whose name and facts fit this answer; if nobody fits, as a new person."""
         assert self.who is not None
         for person in records.namesakes(graph, self.who[NAME]):
             values = records.known(graph, person).get(self.talk.doubt, ())
@@ -117,7 +117,7 @@ class Acquaintance:
 
         Parts that have changed since `base` stay as they are, because the user has kept talking."""
         facts = unless_changed(self.facts, base.facts, after.facts)
-        if (self.who, self.talk.met) != (base.who, base.talk.met):  # another user
+        if (self.who, self.talk.met) != (base.who, base.talk.met):  # by now, this is another user
             return replace(self, facts=facts)
         told = {
             key: one for key, one in {**after.told, **self.told}.items() if key not in base.told or key in after.told

@@ -1,4 +1,4 @@
-"""Bare answers to a question of the agent's, and corrections: *hannover*, *chess and football*, *no, Bremen*."""
+"""Bare answers to the agent's questions, and corrections: *hannover*, *chess and football*, *no, Bremen*."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _HEDGES = re.compile(
 )
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
-"""Kinds whose values contain no place: *teacher at a school*."""
+"""Kinds of values that end before a place: only *teacher* in *teacher at a school*."""
 _NOT_THIS = re.compile(
     r"^\W*(?:(?:no|it is|i am|i)\W+)*not (?P<wrong>.+?)[,;.]\s*(?:(?:but|it is|i am|rather) )*(?P<right>.+)$",
     re.IGNORECASE,
@@ -109,7 +109,7 @@ def correction(
 
 
 def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
-    """Return whether an utterance may be a bare answer: not a sentence about others, a request, or a mere yes or no.
+    """Return whether an utterance may be a bare answer. Sentences about others, requests, and a mere yes or no may not.
 
     Args:
         seen: The analysis of the utterance.

@@ -21,19 +21,19 @@ FITTING = {
     "trait": ("trait",),
     "possession": ("possession",),
 }
-"""The classes of `nouns.yaml` whose nouns may be values, by the kind or the name of a topic."""
+"""The kind or the name of a topic → the classes in `nouns.yaml` whose nouns may be its values."""
 _FOLDER = files(__name__.rpartition(".")[0])
 
 
 @cache
 def nouns() -> Matcher:
-    """Return the classifier of nouns, loaded or not."""
+    """Return the classifier of nouns, even if it is not loaded yet."""
     return Matcher(read_examples(_FOLDER / "nouns.yaml").classes, least=0.0, shapes=0.0)
 
 
 @cache
 def acts() -> Matcher:
-    """Return the classifier of the user's reactions to the agent's questions, loaded or not."""
+    """Return the classifier of the user's reactions to the agent's questions, even if it is not loaded yet."""
     found = read_examples(_FOLDER / "acts.yaml")
     return Matcher(found.classes, found.none)
 

@@ -28,9 +28,9 @@ class Settings(rs.Settings):
     """The topics and the pace of the agent's questions."""
 
     topics: Annotated[tuple[str, ...], AfterValidator(_known)] = ASKED
-    """Topics to ask about, in this order. The agent learns about the others as well, if the user mentions them."""
+    """Topics to ask about, in this order. If the user mentions other topics, the agent learns about them too."""
     gap: Annotated[float, Field(ge=0)] = 180.0
-    """Seconds from one question in a silence to the next."""
+    """The least number of seconds between two questions that the agent asks in silences."""
     turns: Annotated[int, Field(ge=0)] = 3
     """The number of the user's first utterances during which the agent asks for nothing but their name."""
     within: Annotated[float, Field(gt=0)] = 90.0

@@ -23,7 +23,7 @@ class News:
 
 
 def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) -> News:
-    """Return the facts after the user has `told` something; the name is not among them.
+    """Return the user's facts, without the name, after they have told the facts `told`.
 
     Args:
         facts: The facts before.
@@ -47,7 +47,7 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
             continue
         before = now.pop(topic, ())
         left = without(before, values) if values else ()
-        if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):  # there may be another place
+        if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):  # there may be a second place
             now[topic] = left
         if topic == "occupation" and not left:
             topics.append("employer")

@@ -35,7 +35,7 @@ _HERE = re.compile(
 )
 _OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.IGNORECASE)
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
-"""Words before a correction of the speaker's own: *I'm Voss, no wait, I'm Claudia*."""
+"""Words with which speakers correct themselves: *I'm Voss, no wait, I'm Claudia*."""
 _NONE = frozenset(["none", "neither", "nobody"])
 _TODAY = frozenset(["tonight", "today", "tomorrow", "now", "this"])
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
@@ -43,7 +43,7 @@ _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A topic in a statement, and the phrase with its value; None if the statement gives no value."""
+    """A topic in a statement, and the phrase with its value. The phrase is None if the statement gives no value."""
 
     topic: str
     phrase: Phrase | None = None
@@ -83,7 +83,7 @@ class Reader:
             for link in [Link(denied, said.object)] if instead else self.links(said):
                 denied = link.topic if said.negated else ""
                 values = self.values(link)
-                called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # his name was Joost
+                called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # "his name was Joost"
                 over = (said.past and link.topic not in LASTING and not called) or (
                     link.topic == NAME and not self.words.isdisjoint({"was", "were"})
                 )
@@ -102,7 +102,7 @@ class Reader:
                 _add(told, topic, values)
         if self.asked == "home" and "origin" in told and "home" not in told:
             told["home"] = told.pop("origin")
-        for topic in told:  # I live in Paris. I don't live in Paris.
+        for topic in told:  # "I live in Paris. I don't live in Paris."
             told[topic] = without(told[topic], gone.get(topic, ()))
         struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
@@ -167,11 +167,11 @@ class Reader:
         if self.words & _NONE:
             return False
         if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
-            return False  # when I live in Paris, I will eat cheese
+            return False  # "when I live in Paris, I will eat cheese"
         return not said.request or said.subject.text.lower() == "i"
 
     def _is_habit(self, said: nlp.Statement) -> bool:
-        """Return whether a statement marked as a plan is a habit: *I like to read*, but not *I would like to read*."""
+        """Return whether a statement flagged as a plan is a habit: *I like to read*, but not *I would like to read*."""
         first = _predicate(said).split()[0]
         likes = [word for word in self.tree.words if word.lemma == first]
         return first in WORDS["likes"] and not any(
@@ -201,7 +201,7 @@ class Reader:
     def noun(self, phrase: Phrase) -> str:
         """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
         owner = phrase.owner
-        if phrase.text.lower() == "name":  # name is Ada, the name's Ada
+        if phrase.text.lower() == "name":  # "name is Ada, the name's Ada"
             return NAME
         theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"
         if theirs or phrase.text.lower() in ("he", "she"):
@@ -209,7 +209,7 @@ class Reader:
         if owner is None or not phrase.of("I") or is_former(phrase.text):
             return ""
         if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
-            return self.noun(owner)  # my sister's name, one of my hobbies
+            return self.noun(owner)  # "my sister's name, one of my hobbies"
         low = phrase.text.lower()
         topic = NOUNS.get(" ".join(low.split()[-2:])) or NOUNS.get(phrase.head, "")
         best = re.search(r"\bfavou?rite .+", low)
@@ -219,7 +219,7 @@ class Reader:
         predicate, object = _predicate(said), said.object
         verb = self.verb(said)
         if verb is not None and verb.dep == "relcl":
-            return  # the film that I like
+            return  # "the film that I like"
         has = self._has(said)
         if has and (topic := NOUNS.get(object.head, "")) and (said.negated or said.question):
             yield Link(topic, object if object.names else None)
@@ -228,7 +228,7 @@ class Reader:
         yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
 
     def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
-        """Yield the table's topics for the predicate with a preposition, perhaps with its object: *have a job at*."""
+        """Yield the topics that the table has for a verb and a preposition, perhaps with an object: *have a job at*."""
         predicate, object = _predicate(said), said.object
         child = any(phrase.preposition == "as" and phrase.head in WORDS["young"] for phrase in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
@@ -245,7 +245,7 @@ class Reader:
                 topic = "childhood" if child and found[0] == "home" else found[0]
                 yield Link(topic, phrase, found[1])
                 if topic == "childhood" and "born" in self.tree.text:
-                    yield Link("birthplace", phrase)  # I was born and raised in Dresden
+                    yield Link("birthplace", phrase)  # "I was born and raised in Dresden"
 
     def _pursuit(self, said: nlp.Statement) -> Link | None:
         """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*, *I paint in my free time*."""
@@ -261,10 +261,10 @@ class Reader:
         if verbs[0] in WORDS["likes"]:
             wanted = chained
         elif verbs == ["do"] and direct and said.holds and likeness(object.text, "activity") > 0.2:
-            wanted, written = True, object.text  # I do judo
+            wanted, written = True, object.text  # "I do judo"
         elif verbs[0] in WORDS["pastimes"]:
             wanted = verb.tag != "VBD" and (chained or object.text.endswith("ing") if verbs[0] == "go" else direct)
-        elif verb.tag == "VBG" and verb.dep == "conj":  # I love climbing and baking bread
+        elif verb.tag == "VBG" and verb.dep == "conj":  # "I love climbing and baking bread"
             wanted = any(other.verb in WORDS["likes"] and other.holds for other in self.seen.statements)
         elif verbs[0] != "be" and _LEISURE.search(self.tree.text):
             wanted = direct or free
@@ -300,14 +300,14 @@ class Reader:
             yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
         elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
             yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
-            ages = (word for word in self.tree.words if word.dep == "appos" and word.pos == "NUM")  # I'm Ada, 36
+            ages = (word for word in self.tree.words if word.dep == "appos" and word.pos == "NUM")  # "I'm Ada, 36"
             yield from (Link("age", object, value=word.text) for word in ages)
         elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half"):
             several = any(word.lemma == object.head and word.tag == "NNS" for word in self.tree.words)
             if several and said.subject.text.lower() == "i":
-                return  # I'm all ears
+                return  # "I'm all ears"
             bare = len(text.split()) == 1 and not re.match("(?:an?|the) ", self.written(object))
-            if not bare or self.asked == "occupation" or likeness(text, "work") > 0.3:  # I'm noor
+            if not bare or self.asked == "occupation" or likeness(text, "work") > 0.3:  # "I'm noor"
                 yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
@@ -320,7 +320,7 @@ class Reader:
         return bool(found and phrase.text.istitle() and not labels and found[1].lower() not in WORDS["determiners"])
 
     def ended(self, said: nlp.Statement) -> str:
-        """Return the topic that *I quit my job*, *I moved away* ends; empty if there is none."""
+        """Return the topic whose value a statement ends, such as *I quit my job*; empty if there is none."""
         predicate = ("not " if said.negated else "") + _predicate(said)
         ended = ENDS.get(f"{predicate} {said.object.head or said.object.text.lower()}".strip(), "")
         return ended if said.subject.person == "I" and not said.past else ""
@@ -334,7 +334,7 @@ class Reader:
         whole: list[tuple[str, tuple[str, ...]]] = []
         for said in self.seen.statements:
             phrases = (said.subject, said.object, *said.phrases)
-            allowed = said.verb == "call" and said.subject.person == "you"  # you may call me Fitz
+            allowed = said.verb == "call" and said.subject.person == "you"  # "you may call me Fitz"
             open = (said.question or said.conditional or said.hearsay or said.plan) and not allowed
             open = open or (said.past and not said.subject.names)
             if open or (said.negated and said.verb == "call"):
@@ -349,7 +349,7 @@ class Reader:
             yield NAME, self._fitting(NAME, [here[1]], sure=sure)
         beside: dict[str, str] = {}
         for before, word in itertools.pairwise(words):
-            own = (before.low, word.low) == ("my", "name")  # my name's Tom
+            own = (before.low, word.low) == ("my", "name")  # "my name's Tom"
             me = before.lemma == "call" and before.tag != "VBD" and word.low == "me"
             topic = NAME if own or me else self.relative(word.lemma)
             if not topic or (topic != NAME and self._is_anothers(word)):
@@ -359,7 +359,7 @@ class Reader:
             if not first or unsaid & {word.lemma, before.lemma} or self.words & _NONE:
                 continue
             named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
-            if {one.pos for one in first} == {"PROPN"}:  # my sister Rosa; a dog, Rex, and a cat, Misty
+            if {one.pos for one in first} == {"PROPN"}:  # "my sister Rosa; a dog, Rex, and a cat, Misty"
                 named = named or (not passed and before.low in ("my", "our"))
                 named = named or (passed == [","] and (word.tag == "NNS" or before.low in ("a", "an", "my", "our")))
             if named and not is_former(f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"):
@@ -388,7 +388,7 @@ class Reader:
         if phrase is None:
             return ()
         if topic.kind in ("people", "name") and phrase.head == "name" and phrase.owner:
-            phrase = phrase.owner  # by the name of Blackbeard
+            phrase = phrase.owner  # "by the name of Blackbeard"
         raw = (phrase.names if topic.kind == "people" else ()) or (link.value or self.written(phrase),)
         return self._fitting(link.topic, raw, sure=link.sure or link.topic == self.asked == NAME)
 
@@ -405,7 +405,7 @@ class Reader:
         """Return a phrase with its article, as in the utterance."""
         inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
         articles = r"(?:(?:the|an?|our|this|that|these|those)\s+)?"
-        name = r"(?:-[\w-]+|\s&\s\w+|\s(?:am|an der|upon|de|del)\s\w+)*"  # Stoke-on-Trent, Frankfurt am Main
+        name = r"(?:-[\w-]+|\s&\s\w+|\s(?:am|an der|upon|de|del)\s\w+)*"  # "Stoke-on-Trent, Frankfurt am Main"
         found = re.search(rf"(?<![\w']){articles}{inner}(?!\w){name}", self.tree.text, re.IGNORECASE)
         return found[0] if found else phrase.name or phrase.text
 

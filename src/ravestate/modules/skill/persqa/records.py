@@ -11,13 +11,13 @@ from .topics import NAME, TOPICS, about, in_order
 from .wording import Facts, among
 
 REMARK = "has_told"
-"""The relation from a person to what they told."""
+"""The relation from a person to their free statements."""
 MOST = 200
-"""The number of remarks that memory keeps for a person."""
+"""The maximum number of free statements that memory keeps for a person."""
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name with the most relations; the oldest if there are several."""
+    """Return the person of this name; if there are several, the one with the most relations, then the oldest."""
     people = namesakes(graph, name)
     return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
 
@@ -51,7 +51,7 @@ def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts
         graph: The memory.
         person: The person; their node is saved as well.
         facts: Values by topic.
-        once: Values that earlier calls may have saved. Values that are missing in `facts` are removed.
+        once: Values that earlier calls may have saved. This call removes values that are missing in `facts`.
     """
     graph.save(person)
     related = _related(graph, person)
@@ -90,7 +90,7 @@ def _remarks(graph: ontology.Graph, person: ontology.Node) -> list[tuple[Told, o
 
 
 def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str, Told]) -> None:
-    """Save the last `MOST` free statements in `told`, and remove the person's others."""
+    """Save the last `MOST` free statements in `told`, and remove all other free statements of the person."""
     present = {one.key: node for one, node in _remarks(graph, person)}
     kept = dict(list(told.items())[-MOST:])
     for key, node in present.items():

@@ -30,7 +30,7 @@ class Response:
     """The reply; None if there is none."""
     user: Acquaintance
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
-    """A task with memory, before the reply. It takes the memory (None if there is none) and returns the final response.
+    """A task that needs memory and runs before the reply. It takes the memory, or None, and returns the final response.
     If memory fails, it raises nothing and sets ``talk.trouble``."""
     forgotten: bool = False
 
@@ -42,7 +42,7 @@ def respond_to(
 
     Args:
         meaning: The meaning of the utterance.
-        user: The user before it.
+        user: The user before the utterance.
         now: Seconds from the beginning of the context.
         chance: The source of random choices.
         confirm: Whether the user must confirm a known name before the agent uses memory's facts.
@@ -119,7 +119,7 @@ async def _at_once(memory: ontology.Memory | None, operations: Callable[[ontolog
 async def _settled(
     meaning: Meaning, user: Acquaintance, memory: ontology.Memory | None, now: float, chance: random.Random
 ) -> Response:
-    """Return the response to the answer that should confirm who the user is."""
+    """Return the response once the user has answered the question that tests who they are."""
     answer = meaning.facts[0].values if meaning.facts else ()
     user = _closing(user)
     try:
@@ -149,7 +149,7 @@ async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: flo
 def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random, *, confirm: bool) -> Response:
     names = [fact for fact in meaning.facts if fact.topic == NAME]
     name = next((fact.values[0] for fact in names if not fact.gone), None)
-    if names and name is None:  # my name is not Ada
+    if names and name is None:  # "my name is not Ada"
         return Response(asking(NAME, {}), replace(user, talk=user.talk.asking(NAME, now)))
     before = user
     news = learn(user.facts, meaning.facts, user.talk.latest if meaning.kind == "corrected" else ())
@@ -255,10 +255,10 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
         if any(known.values()):
             return Response(say("recall_everything", known, facts=clauses(known)), _with(user, reminded=True))
         return Response(say("recall_nothing", known), user)
-    if not topic:  # no topic covers it
+    if not topic:  # the question is about no topic
         return Response(say("recall_not", known), user)
     answers = {name: known[name] for name in (topic, *TOPICS[topic].besides) if known.get(name)}
-    if topic == "home" and not answers and known.get("origin"):  # the nearest that the agent knows
+    if topic == "home" and not answers and known.get("origin"):  # the nearest fact that the agent knows
         answers = {"origin": known["origin"]}
     if answers:
         right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)

@@ -34,7 +34,7 @@ T = TypeVar("T")
     writes=(verbaliser.intent, rawio.output, talk),  # the output, so that no other rule speaks at the same time
     weight=1.2,
     cooldown=20.0,
-    detached=True,  # starts a causal group of its own: in the old one, nothing could turn the intent into words
+    detached=True,  # starts a causal group of its own: in the group of `bored`, no rule could put the intent into words
 )
 async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the user about themselves, or show that the agent remembers them."""
@@ -50,7 +50,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign(f"the user left {now.ignored} questions unanswered")
     known = acquaintance_of(ctx).known
     remembered = {name: had for name, had in now.remembered.items() if had and had == known.get(name)}
-    if remembered and not now.reminded:  # only facts that still hold
+    if remembered and not now.reminded:  # `remembered` has only facts that still hold
         topic = memorable(remembered, ctx.random)
         values = now.remembered[topic]
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
@@ -163,7 +163,7 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note that the agent said something else after its question, because the user's next words may answer that."""
+    """Note that the agent said something else after its question. The user's next words may answer the later words."""
     if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
         return rs.Resign("that was no word")  # for example, an emoji after an answer
     ctx[talk] = ctx[talk].speaking()
@@ -190,7 +190,7 @@ async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up a new user whose name is known. `hibye` greets them; later, in a silence, `ask` reminds them."""
+    """Look up a new user whose name is known. `hibye` greets them; later, in a silence, `ask` mentions a known fact."""
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
@@ -213,7 +213,7 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def part(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Begin a new talk when the user leaves."""
+    """Reset the state of the conversation when the user leaves."""
     left, known = person_of(ctx.payload(interloc.users.removed).item), ctx[who]
     others = list(ctx[interloc.users].values())
     if len(others) > 1 or (others and (left is None or known is None or left[NAME] != known[NAME])):
@@ -232,7 +232,7 @@ def person_of(item: object) -> ontology.Node | None:
 
 
 async def begin(ctx: rs.RuleContext, user: Acquaintance) -> None:
-    """Begin a talk with this user, and ask memory about them."""
+    """Begin a conversation with this user, and ask memory about them."""
     keep(ctx, acquaintance_of(ctx), user)
     memory = ctx[ontology.memory]
     if memory is None or user.who is None:
@@ -246,12 +246,12 @@ async def begin(ctx: rs.RuleContext, user: Acquaintance) -> None:
 
 
 def acquaintance_of(ctx: rs.RuleContext) -> Acquaintance:
-    """Return the user from the slots."""
+    """Return the user as the slots describe them."""
     return Acquaintance(ctx[who], dict(ctx[facts]), ctx[talk], dict(ctx[told]))
 
 
 def keep(ctx: rs.RuleContext, before: Acquaintance, after: Acquaintance) -> None:
-    """Write the differences to the slots."""
+    """Write to the slots all that differs between `before` and `after`."""
     if after.who != before.who:
         ctx[who] = after.who
     if after.talk != before.talk:

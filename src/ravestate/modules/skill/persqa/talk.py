@@ -12,10 +12,10 @@ FORGET = "forget"
 """The topic of the question: do you really want to be forgotten?"""
 
 CONFIRM = "confirm"
-"""The topic of the question that confirms that a user with a known name is that person."""
+"""The topic of the question that tests whether the user is the person of the same name in memory."""
 
 ENOUGH = 1_000
-"""A number of tries that means: never ask about this topic again."""
+"""The number of tries to note for a topic that the agent must never ask about again."""
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
@@ -35,10 +35,10 @@ class Question:
     since: float
     """Seconds from the beginning of the context to the question."""
     turns: int = 0
-    """The number of the user's utterances since then that did not answer it."""
+    """The number of the user's utterances since the question, without an answer to it."""
     heard: bool = False
     spoken_over: bool = False
-    """Whether the agent has said something else since then. If so, a mere "no" may answer that instead."""
+    """Whether the agent has said something else since the question. If so, a mere "no" may answer the later words."""
 
     @property
     def fresh(self) -> bool:
@@ -57,17 +57,17 @@ class Talk:
     ignored: int = 0
     """The number of unanswered questions in a row."""
     told: frozenset[str] = frozenset()
-    """Topics that the user told about in this conversation."""
+    """Topics about which the user told something in this conversation."""
     last: str = ""
-    """The topic that was learnt or mentioned last."""
+    """The topic that the agent has learnt or mentioned most recently. "No, Bremen" corrects its values, `latest`."""
     latest: tuple[str, ...] = ()
     age: int = 0
-    """The number of utterances since `last` was learnt or mentioned."""
+    """The number of utterances since the agent learnt or mentioned `last`."""
     met: bool = False
-    """Whether memory was asked about the user."""
+    """Whether the agent has asked memory about the user."""
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """All values told in this conversation, including those that no longer hold."""
+    """All values that the user told in this conversation, including values that no longer hold."""
     returns: bool = False
     """Whether the user has talked to the agent before, as far as memory knows."""
     newcomer: bool = False
@@ -81,11 +81,11 @@ class Talk:
     quiet: bool = False
     """Whether the user has said goodbye."""
     doubt: str = ""
-    """The topic of the fact that the user must know before the agent takes them for the person of that name."""
+    """A topic about which the user must first answer a question, to prove who they are; empty if there is no doubt."""
     wants_out: bool = False
     """Whether the user asked to be forgotten before the agent knew who they are."""
     asked: float | None = None
-    """Seconds from the beginning of the context to the agent's last question out of boredom."""
+    """Seconds from the beginning of the context to the last question that the agent asked in a silence."""
     touched: frozenset[str] = frozenset()
     """Topics that the user's words have touched."""
     person: str = ""
@@ -97,7 +97,7 @@ class Talk:
     """The user's last statements of any kind, oldest first."""
     turns: int = 0
     moved: bool = False
-    """Whether the user's last utterance shows a feeling, or jokes."""
+    """Whether the user's last utterance shows a feeling or is a joke."""
 
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""
@@ -131,7 +131,7 @@ class Talk:
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """Note the `topics` that the user told about. A correction would change the `latest` values of `last`."""
+        """Note the `topics` that the user told about. "No, Bremen" would correct the values `latest` of `last`."""
         answered = self.question is not None and self.question.topic in topics
         told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
         return told.mentioning(last, latest)
@@ -146,23 +146,23 @@ class Talk:
         return talk.keeping(gone).learning(gone.keys(), "", ())
 
     def keeping(self, values: Mapping[str, tuple[str, ...]]) -> Talk:
-        """Note values that memory may have because of this conversation."""
+        """Note values that this conversation may have saved in memory."""
         return replace(
             self, once={**self.once, **{topic: self.once.get(topic, ()) + values[topic] for topic in values}}
         )
 
     @property
     def ever(self) -> Mapping[str, tuple[str, ...]]:
-        """All values that memory had, or may have because of this conversation."""
+        """All values that memory had before, or that this conversation may have saved."""
         topics = {**self.remembered, **self.once}
         return {topic: self.remembered.get(topic, ()) + self.once.get(topic, ()) for topic in topics}
 
     def mentioning(self, topic: str, values: tuple[str, ...]) -> Talk:
-        """Note that the agent states a topic, which the user may correct."""
+        """Note that the agent states the values of a topic, so that the user may correct them."""
         return replace(self, last=topic, latest=values, age=0)
 
     def rebased(self, base: Talk, after: Talk) -> Talk:
-        """Return this state with the changes from `base` to `after`, except where it has changed since `base`."""
+        """Return this state with the changes from `base` to `after`. Fields that already differ from `base` stay."""
         mine, old, new = ({one.name: getattr(talk, one.name) for one in fields(Talk)} for talk in (self, base, after))
         return Talk(**unless_changed(mine, old, new))
 
@@ -173,6 +173,6 @@ class Talk:
 
 
 def unless_changed(mine: Mapping[str, Any], base: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `mine` with the changes from `base` to `after`, except to entries that have changed since `base`."""
+    """Return `mine` with the changes from `base` to `after`. Entries of `mine` that already differ from `base` stay."""
     kept = {key: value for key, value in mine.items() if value != base.get(key)}
     return {**{key: value for key, value in after.items() if mine.get(key) == base.get(key)}, **kept}

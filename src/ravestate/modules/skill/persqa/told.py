@@ -56,13 +56,13 @@ class Told:
     """Something that the user told: *Jonas plays the violin*."""
 
     subject: str
-    """As the user names it: ``Jonas``, ``my mother``, ``I``."""
+    """The subject, as the user names it: ``Jonas``, ``my mother``, ``I``."""
     verb: str
     """The predicate as a lemma: ``play``."""
     object: str
-    """Without its article: ``violin``; empty if there is none."""
+    """The object without its article: ``violin``; empty if there is none."""
     text: str
-    """A clause that says it to the user: *you painted a dragon*."""
+    """The statement as the agent would say it to the user: *you painted a dragon*."""
     by: str = ""
     """The name of the person who told it; empty while their name is not known."""
     at: datetime | None = None
@@ -71,12 +71,12 @@ class Told:
 
     @property
     def key(self) -> str:
-        """The key in `persqa.told`."""
+        """The statement's key in `persqa.told`."""
         return f"{self.subject} / {self.verb} / {self.object}".lower()
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all its statements. *He* is the last person named."""
+    """Return the free statements of an utterance, and all its statements. *He* stands for the person named last."""
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
@@ -85,7 +85,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         he = said.subject.text.lower() in ("he", "she", "they") and not _LABEL.search(said.triple.predicate)
         subject = last if he else _about(reader, said)
         if said.subject.names or reader.noun(said.subject) or WORDS["kin"] & {said.subject.head}:
-            owner = said.subject.owner if said.subject.head == "name" else None  # my wife's name is..., and she...
+            owner = said.subject.owner if said.subject.head == "name" else None  # "my wife's name is..., and she..."
             last = (owner or said.subject).name or named.get(reader.noun(said.subject)) or (owner or said.subject).text
             last = last.removeprefix("ex ")
         elif said.subject.person == "I" and said.object.names and not said.object.preposition:
@@ -96,13 +96,13 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             continue
         top = reader.verb(said)
         if top is not None and top.dep == "relcl" and not subject and said.subject.text.islower():
-            continue  # the main clause already says it: there is a girl who waves at me
+            continue  # the main clause already says it: "there is a girl who waves at me"
         if top is not None and top.dep == "relcl" and said.subject.names:
-            subject = said.subject.name  # a sister called Eva who lives in Ghent
+            subject = said.subject.name  # "a sister called Eva who lives in Ghent"
         text = _retold(reader, said)
         if he and last:
             text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)
-        thing = said.object.text  # a parrot called Coco
+        thing = said.object.text  # "a parrot called Coco"
         if said.object.head and said.object.names and not reader.noun(said.object):
             thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)
         one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
@@ -184,7 +184,7 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _gained(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether the subject has, or got, a possession: *a red bicycle*, but not *a headache*."""
+    """Return whether the subject owns something or has got it: *a red bicycle*, but not *a headache*."""
     verb = reader.verb(said)
     gets = said.verb == "get" and verb is not None and verb.low == "got"
     thing = reader.written(said.object)
@@ -194,19 +194,19 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether it is an event with a name: *I went to Prague*, but not *I went to the shop*."""
+    """Return whether a statement tells an event and a name: *I went to Prague*, but not *I went to the shop*."""
     return bool(said.object.names) and said.verb in WORDS["events"] and _happened(reader, said)
 
 
 def _happened(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether it is an event of the past: *I painted a dragon*, but not *I lived in Rome*."""
+    """Return whether a statement tells an event of the past: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
     return not flags and verb is not None and verb.tag == "VBD" and said.verb not in WORDS["states"] | WORDS["pastimes"]
 
 
 def _about(reader: Reader, said: nlp.Statement) -> str:
-    """Return the subject of a statement about the user or somebody they know; empty for others."""
+    """Return the subject of a statement about the user or somebody they know; empty for other statements."""
     subject, object = said.subject, said.object
     if subject.person == "I":
         mine = {"my", "our"} & set(object.text.lower().split()) and not _happened(reader, said)
@@ -216,7 +216,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
         there = (
             object.preposition and not object.text[:1].isupper()
-        )  # I drive for Transkorn, but not I wait for the bus
+        )  # "I drive for Transkorn", but not "I wait for the bus"
         fits = object.text and not there and not mine and not deictic
         if said.verb == "be":
             fits = fits and likeness(object.text, "trait") > 0.1
@@ -230,8 +230,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     if WORDS["kin"] & {subject.head, *map(str.lower, words[1:2])} and words:
         return subject.name or subject.text
     number = {"CARDINAL", "QUANTITY"} & {entity.label for entity in reader.seen.entities if object.text in entity.text}
-    dated = said.verb == "be" and (said.when or (object.text and number))  # my birthday is in May
-    thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # my car is a Fiat
+    dated = said.verb == "be" and (said.when or (object.text and number))  # "my birthday is in May"
+    thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # "my car is new"
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
@@ -245,7 +245,7 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
         return ""
     while top.dep == "xcomp":
         top = tree.head(top)
-    relative = top.dep == "relcl"  # the girl who lives next door
+    relative = top.dep == "relcl"  # "the girl who lives next door"
     parts = [child for child in tree.children(top) if child.dep not in _ASIDE]
     parts = [
         child for child in parts if not (relative and child.dep.startswith("nsubj") and child.tag in ("WP", "WDT"))

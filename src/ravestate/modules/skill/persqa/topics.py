@@ -18,10 +18,10 @@ Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """Something to know about a person: a row of `topics.yaml`, which explains the columns."""
+    """Something to know about a person: a row of `topics.yaml`. That file explains its columns."""
 
     name: str
-    """The name; also the parameter of phrases with the values."""
+    """The topic's name. In a phrase, a parameter of this name stands for the values."""
     kind: Kind
     clause: str
     relation: str = ""
@@ -89,7 +89,7 @@ def favourite(words: str) -> str:
 
 
 def is_topic(name: str) -> bool:
-    """Return whether there is a topic of this name; any favourite is one."""
+    """Return whether there is a topic of this name; every favourite counts as a topic."""
     return name in TOPICS or name.startswith("favourite ")
 
 
@@ -118,15 +118,15 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    The topic with the fewest tries comes first. Among equals the name wins, then the follow-up of the `last` topic, then a
-    topic that the user has touched.
+    The topic with the fewest tries comes first. If several have the fewest, the name comes first, then the follow-up of
+    the `last` topic, then a topic that the user has touched.
 
     Args:
         wanted: Names of topics.
         known: The values by topic; an empty tuple means that there are none.
         closed: Topics not to ask about.
         tries: The number of questions about each topic.
-        last: The topic of the conversation.
+        last: The topic that the agent learnt or mentioned most recently.
         touched: Topics that the user's words have touched.
         limit: The maximum number of questions about one topic.
 

@@ -22,24 +22,24 @@ from .values import value_of
 from .wording import Facts, among
 
 EVERYTHING = "everything"
-"""Stands for all topics."""
+"""The value of `Meaning.topic` that stands for all topics."""
 
 Kind = Literal[
-    "nothing",  # for persqa
+    "nothing",  # nothing that concerns persqa
     "told",
     "corrected",
     "declined",  # the user would rather not say
-    "none",  # no hobby, for example
+    "none",  # the user has none, for example no hobby
     "unsure",
-    "which",  # the user only said yes
-    "mentioned",  # a relative without a name
-    "asked",  # about themselves
-    "asked_told",  # about an earlier free statement
-    "vouched",  # the user's answer to the question that confirms who they are
-    "identified",  # it's me, perhaps with a name
-    "mistaken",  # they are not the person that the agent takes them for
-    "strike",  # forget some facts
-    "forget",  # forget everything
+    "which",  # the user only said yes, so the agent must ask for the value
+    "mentioned",  # the user mentioned a relative without a name
+    "asked",  # the user asked about themselves
+    "asked_told",  # the user asked about an earlier free statement
+    "vouched",  # the user answered the question that tests who they are
+    "identified",  # the user said "it's me", perhaps with a name
+    "mistaken",  # the user is not the person that the agent takes them for
+    "strike",  # the agent should forget some facts
+    "forget",  # the agent should forget everything
     "forget_yes",
     "forget_no",
 ]
@@ -55,8 +55,8 @@ class Meaning:
     """The topic of the agent's question that the user answers."""
     leave: bool = False
     aloud: bool = True
-    """Whether persqa replies. If the user also asks something, says goodbye or plays a game, another rule replies to
-    that. The agent then learns the rest without a reply."""
+    """Whether persqa replies. If the user also asks something, says goodbye or plays a game, another rule replies, and
+    persqa learns the facts silently."""
     free: tuple[Told, ...] = ()
     """Free statements that the user makes, asks for, or wants forgotten."""
     touched: frozenset[str] = frozenset()
@@ -132,14 +132,14 @@ class _Hearing:
         free = tuple(told_in(self.reader, self.talk.said)[0])
         aside = self.leave or asks
         if facts or free:
-            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # others console it
+            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # other modules console
             return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
         if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
             return corrected
         if identity := self.identity():
             return identity
         if aside:
-            named = _INTRODUCED.search(self.text)  # I'm Ada, how are you?
+            named = _INTRODUCED.search(self.text)  # "I'm Ada, how are you?"
             name = value_of(named[1], TOPICS[NAME], seen, sure=False) if named and not self.known.get(NAME) else None
             if name:
                 return Meaning("told", (Fact(NAME, (name,)),), topic, self.leave, aloud=False)
@@ -170,11 +170,11 @@ class _Hearing:
         if self.fresh and "nothing" in self.acts and not self.sorry:
             return Meaning("none" if topic != NAME else "declined", topic=topic, aloud=not self.sum)
         if topic == NAME and self.reader.words & {"he", "she", "they"}:
-            return None  # he's called Jonathan
+            return None  # "he's called Jonathan"
         felt = seen.feelings and len(self.text.split()) > 2
         facts = (not felt and answer(self.text, topic, seen)) or (
             yesno.no and correction(self.text, topic, (), seen)
-        )  # no, from Bremen
+        )  # "no, from Bremen"
         loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
         values = [value for fact in facts or () for value in fact.values]
         clear = not loose and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
@@ -191,12 +191,12 @@ class _Hearing:
             return Meaning(
                 "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
             )
-        known = plain(seen.text) in bundled_matcher("answers").exact  # a mere resemblance may be a statement
+        known = plain(seen.text) in bundled_matcher("answers").exact  # similar words may be a statement
         mere = known and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
-        """Return the user's answer to the question who they are. If they cannot or will not answer, it has no facts."""
+        """Return the user's answer to the test of who they are. Without an answer, the meaning has no facts."""
         seen, topic = self.seen, self.talk.doubt
         told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
         if not told and seen.question is None:
@@ -213,9 +213,9 @@ class _Hearing:
         other = any(
             said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
             for said in self.seen.statements
-        )  # my name is..., who am I talking to
+        )  # "my name is..., who am I talking to"
         match = self.seen.act("identify")
-        if other or match is None or match.text.endswith("?"):  # me?
+        if other or match is None or match.text.endswith("?"):  # "me?"
             return None
         name = Reader(self.seen).remaining_name()
         known = not name or among(name, self.known.get(NAME, ()))
@@ -228,11 +228,11 @@ class _Hearing:
             return Meaning("asked", (Fact(EVERYTHING),))
         if asked := self.reader.asks():
             return Meaning("asked", (asked,))
-        wished = any(said.plan for said in self.seen.statements)  # do you want to know my name
+        wished = any(said.plan for said in self.seen.statements)  # "do you want to know my name"
         for said in () if wished else self.seen.statements:
             if said.question and said.verb in ("be", *WORDS["knowing"]):
                 named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]
-                people = [topic for topic in self.known if TOPICS[topic].kind == "people"]  # who is Emma
+                people = [topic for topic in self.known if TOPICS[topic].kind == "people"]  # "who is Emma"
                 people = people if self.seen.question != nlp.QuestionWord.AMOUNT else []
                 people = [topic for topic in people if any(among(name, self.known[topic]) for name in named)]
                 if topic := self.reader.noun(said.object) or next(iter(people), ""):
@@ -272,7 +272,7 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether a denial matters: the denied fact is known, or the user has no hobby, for example."""
+        """Return whether to note a denial: of a known fact, or of any value, as in *I have no hobby*."""
         if fact.values or fact.topic == NAME:
             return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))

@@ -21,7 +21,7 @@ _LEADS = {
     "work": r"(?:an?|the) (?=\S)",
     "place": r"(?:the )?(?:city|town|village) of (?=\S)|.*\b(?:called|named) (?=\S)",
 }
-"""Words before a value that do not belong to it."""
+"""Words that stand before a value and do not belong to it."""
 _ANYTHING = re.compile(r"(?:any|some|every|no)(?:thing|one|body|where)\b", re.IGNORECASE)
 _DEICTIC = re.compile(
     r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|more|most|a|many|much|"
@@ -31,7 +31,7 @@ _DEICTIC = re.compile(
 
 
 def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) -> str | None:
-    """Return a value in the form in which it is kept; None if these words cannot be a value.
+    """Return the value that these words are, as memory keeps it; None if they cannot be a value.
 
     Args:
         text: The words.
@@ -48,10 +48,10 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
         return None
     if kind in ("work", "subject") and any(word.low == words[0] and word.pos == "ADP" for word in seen.tree.words):
-        return None  # between jobs
+        return None  # "between jobs"
     if kind != "name" and (_DEICTIC if kind in ("activity", "thing") else _ANYTHING).match(text):
         return None
-    if text.lower() in topic.nouns:  # I go to university
+    if text.lower() in topic.nouns:  # "I go to university"
         return None
     if kind == "number":
         number = number_in(text)
@@ -92,7 +92,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
     if kind in ("activity", "thing"):
         return True
     labels = {entity.label for entity in seen.entities if text.lower() in entity.text.lower()}
-    if kind == "place":  # Sendai in Japan
+    if kind == "place":  # "Sendai in Japan"
         labels |= {entity.label for entity in seen.entities if f"{text} in {entity.text}" in seen.tree.text}
     digits = any(map(str.isdigit, text))
     if (labels & _TIMES and not labels & _PLACES) or (digits and kind != "organisation"):
@@ -126,7 +126,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
 
 
 def _is_proper(text: str, seen: nlp.Analysis) -> bool:
-    """Return whether words are a name by the parse."""
+    """Return whether the parser takes words for a name."""
     found = {word.text: word.pos for word in seen.tree.words}
     return text[:1].isupper() and all(found.get(word, "PROPN") == "PROPN" for word in text.split())
 
@@ -154,5 +154,5 @@ def gerund(text: str, seen: nlp.Analysis) -> str:
             return f"{verb}{verb[-1]}ing"
         return re.sub(r"(?<!e)e$", "", verb) + "ing"
 
-    text = re.sub(r"^(?:to )?go (?=[a-z]{2,}ing\b)", "", text)  # go swimming
+    text = re.sub(r"^(?:to )?go (?=[a-z]{2,}ing\b)", "", text)  # "go swimming"
     return re.sub(r"^(to )?(\w+)", turned, text)

@@ -72,7 +72,7 @@ def without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
 
 
 def alike(value: str, others: Iterable[str]) -> bool:
-    """Return whether one of `others` means the same as `value`, or contains it: *the city of Bremen*, *Bremen*."""
+    """Return whether `value` equals, contains or is part of one of `others`: *Bremen*, *the city of Bremen*."""
     words = set(_key(value).split())
     return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
 

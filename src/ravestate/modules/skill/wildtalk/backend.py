@@ -1,4 +1,4 @@
-"""The interface between small talk and a language model, and a backend that is still being chosen."""
+"""The interface between small talk and a language model, and a stand-in until the model is chosen."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ravestate.errors import PlatformError
 Role = Literal["system", "user", "assistant"]
 
 Progress = Callable[[float], None]
-"""A callback with the loaded fraction of a model, 0.0 to 1.0, on the event loop."""
+"""A callback that gets the loaded fraction of a model, 0.0 to 1.0. It is called on the event loop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +28,10 @@ class Backend(Protocol):
     """A language model. An instance belongs to one event loop."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Get ready to answer, once. If nobody has called this, `stream` does.
+        """Get ready to answer. Later calls do nothing. If nobody has called `load`, `stream` does.
 
         Raises:
-            PlatformError: A package, a file or a server is missing or broken. The message says how to mend that.
+            PlatformError: A package, a file or a server is missing or broken. The message says what to do.
         """
         ...
 
@@ -79,7 +79,7 @@ class PendingBackend:
             self._chosen.set_result(backend)
         else:
             self._chosen.set_exception(fault or PlatformError("wildtalk: the agent ended before it had a model"))
-            self._chosen.exception()  # otherwise asyncio complains if no call waits
+            self._chosen.exception()  # if no call waits, asyncio would complain about a fault that nobody has seen
 
     async def settled(self) -> Backend | None:
         """Wait for the choice, and return the chosen backend; None if the choice found none."""

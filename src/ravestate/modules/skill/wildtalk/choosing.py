@@ -21,7 +21,7 @@ FETCH = "ravestate model get"
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A backend, as complete settings, and a sentence about the choice."""
+    """The settings of the chosen backend, complete, and a sentence about the choice."""
 
     settings: Settings
     text: str

@@ -16,18 +16,18 @@ from ravestate.errors import PlatformError
 from .model_store import CatalogueModel
 
 SPARE = 64 << 20
-"""Bytes that a download leaves free on the disk."""
+"""The least number of bytes that a download must leave free on the disk."""
 
 
 def size_of(number: float) -> str:
-    """Return a number of bytes for people."""
+    """Return a number of bytes in a form that people read easily, such as ``1.1 GB``."""
     return f"{number / 1e9:.1f} GB" if number >= 1e9 else f"{number / 1e6:.0f} MB"
 
 
 def download(model: CatalogueModel) -> None:
     """Fetch a model's file, with a progress bar on a terminal. A finished file is verified, and then gets its name.
 
-    `model.part` keeps the bytes of an interrupted download for the next call. As for other programs of the hub,
+    `model.part` keeps the bytes of an interrupted download for the next call. As in other programs for the hub,
     ``HF_ENDPOINT`` may give the address of another hub, and ``HF_TOKEN`` a token.
 
     Raises:
@@ -136,7 +136,7 @@ def _verify(model: CatalogueModel, part: BinaryIO) -> None:
 
 
 def _kept(model: CatalogueModel) -> str:
-    """Return the end of a message, with the size of the part that has arrived; empty if nothing has."""
+    """Return the end of a message, with the size of the part that has arrived; empty if no byte has arrived."""
     have = model.part.stat().st_size if model.part.exists() else 0
     return f"; {size_of(have)} of {size_of(model.size)} are kept in {model.part}" if have else ""
 

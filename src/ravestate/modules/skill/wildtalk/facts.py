@@ -11,7 +11,7 @@ from ravestate.language import Matcher, read_examples, sentences
 
 @cache
 def facts_matcher() -> Matcher:
-    """Return the matcher of questions about facts, one for all contexts."""
+    """Return the matcher of questions about facts, which all contexts share."""
     examples = read_examples(files(__package__ or "") / "facts.yaml")
     return Matcher(examples.classes, examples.none)
 

@@ -23,7 +23,7 @@ _NUMBERS: dict[int, str] = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhI
 
 @dataclass(frozen=True, slots=True)
 class GgufHeader:
-    """The facts about a model in its header."""
+    """The facts that a header tells about its model."""
 
     architecture: str
     parameters: int

@@ -33,7 +33,7 @@ NOTES = 1000
 
 
 class History:
-    """The last turns of one conversation, within a budget.
+    """The last turns of one conversation, up to a maximum length.
 
     A turn is an utterance of the user with its answer.
 
@@ -65,7 +65,7 @@ class History:
         if not message.text:
             return
         if self._messages and self._messages[-1].role == message.role:
-            # Two in a row are one turn.
+            # Two messages of one speaker in a row are one turn.
             last = self._messages.pop()
             message = Message(message.role, f"{last.text} {message.text}"[-2 * self._characters :])
         self._messages.append(message)
@@ -84,7 +84,7 @@ class History:
         """Return the prompt: the persona with the notes, the examples, and the history, oldest first.
 
         `notes` are sentences about the user and the situation; their first `NOTES` characters are kept.
-        User and agent take turns strictly, and the user begins: several templates demand that.
+        The user begins, and the speakers alternate strictly, because several templates demand it.
         """
         left = self._characters
         kept: list[Message] = []
@@ -111,6 +111,6 @@ class History:
         return (Message("system", system), *shown, *kept)
 
     def _clean(self, text: str) -> str:
-        # A user may paste a book: anything far beyond the budget is dropped at once.
+        # A user may paste a book: drop at once all that goes far beyond the maximum length.
         text = text[: max(1000, 4 * self._characters)]
         return " ".join(_MARKERS.sub(" ", printable(text)).split())

@@ -38,7 +38,7 @@ class LlamaBackend:
         threads: int = 0,
         read_timeout: float = 60.0,
     ) -> None:
-        """Take the settings. Nothing is looked for or loaded yet.
+        """Take the settings. The file is not opened or loaded yet.
 
         Args:
             model_path: The GGUF file.
@@ -93,7 +93,7 @@ class LlamaBackend:
             await self._close()
 
     async def stream(self, messages: Sequence[Message], **options: Any) -> AsyncGenerator[str, None]:
-        """See `Backend.stream`. The chat template is the model's own."""
+        """See `Backend.stream`. The model's own chat template is used."""
         await self.load()
         client, process = self._client, self._process
         assert client is not None and process is not None

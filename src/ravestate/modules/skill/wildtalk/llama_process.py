@@ -55,7 +55,7 @@ class LlamaProcess:
         Raises:
             PlatformError: The model cannot be loaded; the message has llama.cpp's reason.
         """
-        with self._starting:  # a second caller waits for the first
+        with self._starting:  # a second caller waits until the first has finished
             if not self.alive:
                 self._end()
                 self._warm(progress or (lambda _: None))
@@ -149,7 +149,7 @@ class LlamaProcess:
             raise PlatformError("wildtalk: the model was closed while it was loading")
 
     def _reason(self) -> str:
-        """Return llama.cpp's reason for a failure: the first line about an error, which is the most exact one."""
+        """Return llama.cpp's reason for a failure: its first line about an error, which is the most exact line."""
         if self._errors is None:
             return ""
         self._errors.seek(0)
@@ -198,7 +198,7 @@ def take(key: ModelKey) -> LlamaProcess:
 
 
 def drop(process: LlamaProcess) -> None:
-    """Count one user of `process` less. Without users, the process ends; this blocks for a few milliseconds."""
+    """Take one user away from `process`. Without users, the process ends; this blocks for a few milliseconds."""
     with _sharing:
         process.users -= 1
         if process.users:

@@ -19,7 +19,7 @@ PORTS = {11434: "Ollama", 8080: "llama.cpp", 1234: "LM Studio", 8000: "vLLM"}
 PATIENCE = 1.0
 """The seconds to wait for all servers, which are asked at the same time."""
 
-# Models for other purposes than talk, and models for which a server on this machine asks a remote server.
+# Models that do not chat, and models that a server on this machine only passes on from a remote server.
 _NOT_CHAT = re.compile(
     r"embed|rerank|minilm|whisper|\btts|\bbge|\be5-|\bgte-|nomic|mxbai|clip\b|diffusion|flux|guard|moderation|[-:]cloud$"
 )
@@ -64,7 +64,7 @@ class _Listing(BaseModel):
 async def find_servers(ports: Mapping[int, str] | None = None) -> list[LocalServer]:
     """Return the servers that answer on these ports of the loopback interface (by default `PORTS`), within a second.
 
-    The request has no key, and no words of the user. Web servers without a list of models are left out.
+    The request contains neither a key nor any words of the user. Web servers without a list of models are left out.
     """
     if find_spec("httpx2") is None:
         return []
@@ -76,7 +76,7 @@ async def _ask(port: int, name: str) -> LocalServer:
     address = f"http://127.0.0.1:{port}/v1"
     try:
         async with asyncio.timeout(PATIENCE):
-            # Without a listener this ends at once, and httpx2 need not be imported.
+            # If no server listens on the port, this ends at once, without the import of httpx2.
             _, writer = await asyncio.open_connection("127.0.0.1", port)
             writer.close()
             return LocalServer(name, address, await chat_models(address))
@@ -90,7 +90,7 @@ async def chat_models(base_url: str, key: str = "", patience: float = PATIENCE) 
     Args:
         base_url: The address of the API. For most servers, it ends in ``/v1``.
         key: The user's key for this server, if it needs one.
-        patience: Seconds.
+        patience: The maximum number of seconds to wait.
     """
     import httpx2
 

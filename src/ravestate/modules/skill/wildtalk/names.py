@@ -19,7 +19,7 @@ from .listening.state import Overheard, State
 Seconds = Annotated[float, Field(gt=0)]
 
 OLLAMA = "http://localhost:11434/v1"
-"""The server for the backend ``openai`` if the settings name none, and no server on this machine answers."""
+"""The default server for the backend ``openai``, if no server on this machine answers."""
 
 
 class Settings(rs.Settings):
@@ -55,11 +55,11 @@ class Settings(rs.Settings):
     persona: str = PERSONA
     """The system prompt; ``{name}`` stands for the name."""
     examples: tuple[tuple[str, str], ...] = EXAMPLES
-    """Utterances and answers that show the model how to talk; small models need some."""
+    """Utterances and answers that show the model how to talk. Small models need a few of these examples."""
     facts: bool = False
     """Whether the model may answer questions about facts. Small models make facts up."""
     no_facts: str = "I don't know that, I'm afraid."
-    """The answer to a question about facts, unless the model may answer it."""
+    """The answer to a question about facts, unless `facts` lets the model answer."""
     gate: bool = True
     """Whether to check each generated sentence before it is spoken. The listening skill replaces an unfit answer."""
     no_model: str = "I cannot think just now."
@@ -86,7 +86,7 @@ model: rs.Slot[Backend | None] = module.slot("model", None, input=True)
 """The backend. You may write a backend of your own into this slot."""
 
 chosen: rs.Signal[object] = module.signal("chosen", payload=object)
-"""A backend was chosen, by the settings or by what this machine has; None if there is none."""
+"""A backend was chosen, by the settings or by what this machine has. The payload is the backend, or None."""
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
 """The reason why the model does not answer; empty while it does. It is logged once."""

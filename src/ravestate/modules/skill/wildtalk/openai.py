@@ -38,7 +38,7 @@ class OpenAIBackend:
         read_timeout: float = 60.0,
         extra: Mapping[str, object] | None = None,
     ) -> None:
-        """Take the settings. The server is not contacted yet.
+        """Take the settings, without contacting the server.
 
         Args:
             base_url: The address of the API; with most servers it ends in ``/v1``.
@@ -139,7 +139,7 @@ class OpenAIBackend:
             raise PlatformError(
                 "wildtalk: api_key has characters that no key has: check the environment variable it is read from"
             )
-        anyio.run(anyio.sleep, 0)  # imports modules that the client would else import on the loop, at its first request
+        anyio.run(anyio.sleep, 0)  # imports here what the client's first request would import on the event loop
         return make_client(self._base_url, self._key, httpx2.Timeout(self._read_timeout, connect=self._connect_timeout))
 
     async def _pieces(self, answer: httpx2.Response) -> AsyncGenerator[str, None]:
@@ -151,7 +151,7 @@ class OpenAIBackend:
         finished = False
         events = aiter(EventSource(answer, max_event_size=LIMIT))
         while True:
-            async with asyncio.timeout(self._read_timeout):  # a comment that keeps the connection open is no event
+            async with asyncio.timeout(self._read_timeout):  # a comment in the stream is no event
                 event = await anext(events, None)
             if event is None or event.data == "[DONE]":
                 break
@@ -189,7 +189,7 @@ class OpenAIBackend:
         return self._safe(str(error.get("message") or error.get("detail") or body.decode("utf-8", "replace")))
 
     def _broken(self, error: Exception) -> str:
-        """Return a message about a broken connection, with the mend."""
+        """Return a message about a broken connection that says what to do."""
         import httpx2
 
         reason = self._safe(str(error)) or type(error).__name__
@@ -243,7 +243,7 @@ class _Choice(BaseModel):
 
 
 class _Answer(BaseModel):
-    """An answer, or a piece of one. The last event of a stream may only count tokens."""
+    """A whole answer, or a piece of an answer. The last event of a stream may only count tokens."""
 
     choices: list[_Choice] | None = None
     error: Any = None
@@ -257,7 +257,7 @@ def make_client(base_url: str, key: str, timeout: Any) -> httpx2.AsyncClient:
     return httpx2.AsyncClient(
         headers={"Authorization": f"Bearer {key}"} if key else {},
         timeout=timeout,
-        trust_env=not here,  # a proxy would look for localhost on its own machine
+        trust_env=not here,  # a proxy on another machine would take localhost for itself
         verify=not base_url.startswith("http:"),  # certificates take 30 ms to read, and http needs none
     )
 
@@ -273,7 +273,7 @@ async def read(answer: httpx2.Response) -> bytes:
 
 
 def _error(body: bytes) -> dict[str, Any]:
-    """Return the part with the reason from an error's body; its place differs between servers."""
+    """Return the part of an error's body that has the reason. Servers put it in different places."""
     try:
         document: Any = json.loads(body)
     except (RecursionError, ValueError):

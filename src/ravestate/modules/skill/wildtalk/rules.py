@@ -67,7 +67,7 @@ async def choose_model(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=chosen.max_age(None).detached(), writes=model)
 async def use(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Replace the stand-in by the chosen backend, unless the designer has written their own backend."""
+    """Replace the stand-in by the chosen backend, unless the designer has put another backend into the slot."""
     if not isinstance(ctx[model], PendingBackend):
         return rs.Resign("there is another backend already")
     ctx[model] = cast("Backend | None", ctx.payload(chosen))
@@ -137,11 +137,11 @@ def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=nlp.analysis.changed | rawio.input.changed,  # without an analysis, the input alone starts it
+    when=nlp.analysis.changed | rawio.input.changed,  # without an analysis, the input starts the rule
     reads=(model, nlp.analysis, nlp.text, interloc.agent, interloc.users, interloc.facts, notes, clock, overheard),
     writes=(rawio.output, rawio.speaking, history, trouble, listening),
     emits=rawio.piece,
-    until=rawio.input.changed | rs.shutdown,  # a model that is still loading would delay the shutdown
+    until=rawio.input.changed | rs.shutdown,  # otherwise, a model that is still loading would delay the shutdown
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer with small talk, piece by piece; a new utterance interrupts it."""
@@ -173,7 +173,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     newest = Message("user", text[:LONGEST])
     for message in ctx[history].values():
         past.add(message)
-    if list(ctx[history].values())[-1:] != [newest]:  # `hear` may run later
+    if list(ctx[history].values())[-1:] != [newest]:  # `hear` may not have added these words yet
         past.add(newest)
     name = settings.name or ctx[interloc.agent]
     told = past.prompt(settings.persona, name, settings.examples, notes=notes_for(ctx, heard))
@@ -293,7 +293,7 @@ def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
 
 
 def make_backend(settings: Settings) -> Backend:
-    """Return the backend in `settings`, which must name it completely, as those of `choose` do.
+    """Return the backend in `settings`, which must be complete, as the settings from `choose` are.
 
     Raises:
         PlatformError: The server's address is malformed.

@@ -17,14 +17,14 @@ from .listening.state import Pending
 from .names import clock, history, listening, notes, overheard
 
 LATELY = 12
-"""The number of the agent's latest answers that it must not repeat."""
+"""The number of its latest answers that the agent must not repeat."""
 MENTIONED = 4
 """The number of latest utterances that an answer may refer to."""
 
 SORROWFUL = frozenset(("console", "mourn"))
-"""Moves in reply to a sorrow."""
+"""Moves (next steps of a good listener) in reply to a sorrow."""
 OVERHEARD = 6
-"""The number of latest utterances whose traces are kept until the skill answers."""
+"""The number of latest utterances whose traces are kept until the listening skill answers."""
 
 _TONES = {
     "sad": "The user is sad. Be gentle and brief.",
@@ -73,12 +73,12 @@ async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
 
 
 def is_open(state: State) -> bool:
-    """Return whether the skill waits for the user: for a move in a game, or for an answer."""
+    """Return whether the skill waits for the user's turn in a game, or for an answer."""
     return state.game is not None or state.pending is not None
 
 
 async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
-    """Return the skill's answer to a move or a short answer; an empty string if the utterance is neither."""
+    """Return the skill's reply to a turn in a game or to a short answer; an empty string for other utterances."""
     skill = await asyncio.to_thread(listener)
     return await listen(ctx, heard) if skill.continues(heard, up_to_date(ctx, heard.text)) else ""
 

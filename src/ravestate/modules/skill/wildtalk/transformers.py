@@ -34,7 +34,7 @@ class TransformersBackend:
     """A causal model in a thread of this process; contexts with the same model share it."""
 
     def __init__(self, model: str, *, read_timeout: float = 60.0) -> None:
-        """Take the settings. Nothing is looked for or loaded yet.
+        """Take the settings. The model is not looked up or loaded yet.
 
         Args:
             model: A folder with a model, or a model's name on the hub; it is downloaded once.
@@ -179,7 +179,7 @@ class _Model:
     def write(
         self, prompt: str, max_tokens: int, temperature: float, seed: int | None, pieces: Any, left: threading.Event
     ) -> None:
-        """Write an answer into the streamer `pieces`; stop once `left` says that the caller has gone."""
+        """Write an answer into the streamer `pieces`. Stop when `left` says that the caller has gone."""
         import torch as real_torch
 
         torch = cast("Any", real_torch)
@@ -192,7 +192,7 @@ class _Model:
         if room:  # for the prompt and the answer together
             max_tokens = min(max_tokens, room - 1)
             tokens = {key: value[:, max_tokens - room :] for key, value in tokens.items()}
-        # Write one answer at a time: two would be no faster, and the process has only one random state for both.
+        # Write one answer at a time: two would be no faster, and they would share the random state of the process.
         with self._writing:
             if left.is_set():
                 return
@@ -222,7 +222,7 @@ def transcript(messages: Sequence[Message]) -> str:
 def cut(text: str, stops: Sequence[str], *, last: bool) -> tuple[str, bool]:
     """Return the part of a growing text to show, and whether one of `stops` has ended it.
 
-    Unless the text is complete (`last`), hold back an end that might become one of `stops`.
+    Unless the text is complete (`last`), hold back an end that may be the beginning of one of `stops`.
 
     Example:
         >>> cut("Hello.\\nUser", ["\\nUser:"], last=False)

@@ -61,7 +61,7 @@ class Utterance:
         return self._said
 
     def feed(self, piece: str) -> str:
-        """Take the next piece; return the words to say now."""
+        """Take the next piece, and return the words to say now."""
         if self.complete:
             return ""
         piece = without_controls(piece)
@@ -71,7 +71,7 @@ class Utterance:
         return self._say(last=False)
 
     def finish(self) -> str:
-        """End the output; return the words that were held back."""
+        """End the output, and return the words that were held back."""
         rest = "" if self.complete else self._say(last=True)
         if not self.worth_saying() and self._emoji:
             rest = self._said = self._emoji
@@ -79,7 +79,7 @@ class Utterance:
         return rest
 
     def worth_saying(self) -> bool:
-        """Return whether there is anything but punctuation."""
+        """Return whether the utterance has more than punctuation."""
         return any(unicodedata.category(character)[0] not in "PZC" for character in self._said)
 
     # ------------------------------------------------------------------------------- internals

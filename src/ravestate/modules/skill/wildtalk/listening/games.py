@@ -15,18 +15,18 @@ from .state import Game, State
 LONGEST = 6
 """The maximum number of words in an utterance that may belong to a game."""
 CHAINED = 2
-"""The maximum number of words in a move of word chain: *a tiger*."""
+"""The maximum number of words in the user's turn of word chain: *a tiger*."""
 
 HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
-"""The request that the agent thinks of an animal."""
+"""The user asks the agent to think of an animal, which the user will guess."""
 GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
-"""The announcement that the user thinks of an animal."""
+"""The user says that they think of an animal, which the agent will guess."""
 
 Played = tuple[str, State]
 
 
 def named(shows: Mapping[str, Any], text: str, *, most: int = 3) -> str:
-    """Return the performance that a text of at most `most` words names: *word chain*, *a riddle please*."""
+    """Return the performance that a text names: *word chain*, *a riddle please*; empty beyond `most` words."""
     low = text.lower()
     if GUESSER.search(low) or HOLDER.search(low):
         return "animal" if GUESSER.search(low) else "holder"
@@ -38,7 +38,7 @@ def named(shows: Mapping[str, Any], text: str, *, most: int = 3) -> str:
 
 
 class Turn:
-    """One turn of a performance: the user's words, and the methods that answer them."""
+    """One turn of a performance (a joke, song, story or game): the user's words, and the methods that answer."""
 
     def __init__(
         self, shows: Mapping[str, Any], text: str, seen: Analysis | None, state: State, chance: random.Random
@@ -77,7 +77,7 @@ class Turn:
         return game is not None and game.word != "" and game.kind in ("riddle", "holder") and "give" in self._words
 
     def move(self) -> Played | None:
-        """Return the next move; None if the utterance does not belong to the game."""
+        """Return the agent's next turn; None if the utterance does not belong to the game."""
         game = self._state.game
         if game is None or not self._words:
             return None
@@ -103,7 +103,7 @@ class Turn:
         return {*self._words, *(word.lemma.lower() for word in (self._seen.tree.words if self._seen else ()))}
 
     def solves(self) -> bool:
-        """Return whether an utterance of any length has the solution of the riddle."""
+        """Return whether the utterance, however long, contains the solution of the riddle."""
         game = self._state.game
         if game is None or game.kind != "riddle":
             return False
@@ -199,7 +199,7 @@ class Turn:
         return text, state
 
     def _new(self, kind: str, listed: Sequence[str]) -> Played:
-        """Return a performance that was not shown yet, as long as there is one."""
+        """Return a performance that was not shown yet. When all have been shown, start again."""
         left = [one for one in listed if one not in self._state.shown]
         text = self._chance.choice(left or listed)
         shown = self._state.shown if left else tuple(one for one in self._state.shown if one not in listed)

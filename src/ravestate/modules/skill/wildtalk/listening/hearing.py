@@ -1,4 +1,8 @@
-"""An utterance as the listener sees it: tags for the table of answers, roles for the phrases, and meanings."""
+"""An utterance as the listener sees it: tags for the table of answers, roles for the phrases, and meanings.
+
+A *moment* is a situation in a talk that has phrases of its own, such as good news. A *move* is the next step of a good
+listener, such as to console. A *role* is a placeholder in a phrase. The *tone* of a talk is sad, angry, glad or tired.
+"""
 
 from __future__ import annotations
 
@@ -21,27 +25,27 @@ from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
 
 SURE, MEANT = 0.85, 0.7
-"""The least confidence with which a moment and an act decide."""
+"""The least confidence that a moment or an act needs to decide the answer."""
 EXACT = 0.97
-"""The least confidence with which a moment decides even if no likely move suits it."""
+"""The least confidence at which a moment decides the answer even if it suits no likely move."""
 FINER = 0.1
-"""The advantage of moments over feelings and acts, which are broader."""
+"""The bonus of a moment over feelings and acts, because a moment is more specific."""
 FELT, GLAD, AMAZED = 0.65, 0.8, 0.9
-"""The least confidence with which a sad feeling, another feeling, and astonishment decide."""
+"""The least confidence that a sad feeling, any other feeling, and astonishment need to decide the answer."""
 TURNED = 0.95
-"""The least confidence with which a glad feeling or a light moment ends a sad tone."""
+"""The least confidence at which a glad feeling or a moment that is not sad ends a sad tone."""
 CLOUDED = 0.85
-"""The least confidence with which a sad moment ends a glad tone."""
+"""The least confidence at which a sad moment ends a glad tone."""
 ASKED = 0.8
-"""The least confidence with which a request is met."""
+"""The least confidence at which the agent does what the user requests."""
 FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
-"""Short sentences resemble many others: the maximum number of their words, and the confidences that they need."""
+"""Short sentences resemble many others. The maximum number of words in one, and the confidences that it needs."""
 PLAINLY = 12
 """The maximum number of words in a statement about one thing."""
 SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
-"""Acts that count only if they are sure."""
+"""Acts that count only if their confidence is high."""
 _ASKING = word_set(
     "who what when where why which how whose do does did is are was can could will would should may have"
 )
@@ -49,9 +53,9 @@ _ASKING = word_set(
 _LEAVING = re.compile(
     r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
 )
-"""The farewell at the end of an utterance: *I have to go now, bye!*"""
+"""A farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
-"""The offer to tell something."""
+"""The user's offer to tell something."""
 _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
 """The end of a statement that astonishes: *he ate it all, can you believe it?*"""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
@@ -80,11 +84,11 @@ class Hearing:
     roles: Roles = field(default_factory=Roles)
     tongue: str = ""
     meanings: list[Moment] = field(default_factory=list[Moment])
-    """The feelings, acts and moments, best first."""
+    """The feelings, acts and moments that may decide the answer, best first."""
     moment: str = ""
     """The name of the moment that the utterance resembles most, even if only a little."""
     moves: tuple[str, ...] = ()
-    """The moves that may come next, the likeliest first: one, or two if both are likely; none if no move is known."""
+    """The agent's next moves, the likeliest first: one, or two if both are likely; none if no move is known."""
     topic: Moment | None = None
     thing: str = ""
     """The thing about which the user asks the agent's opinion."""
@@ -166,7 +170,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
-    """Return the moves that may come next: the likeliest, and also the second one if the first is not likely enough."""
+    """Return the agent's likeliest next move; if it is not likely enough, also the second likeliest move."""
     move = seen.move
     if move is None:
         return ()
@@ -225,16 +229,16 @@ def _statement_tags(phrases: Material, seen: Analysis, statement: Statement, rol
 def _ranked(
     phrases: Material, seen: Analysis, state: State, found: Hearing, asking: str, score: float, feeling: Moment | None
 ) -> list[Moment]:
-    """Return the feelings, acts and moments that decide, best first."""
+    """Return the feelings, acts and moments that may decide the answer, best first."""
     ranked: list[tuple[float, Moment]] = []
     moment = phrases.moments.get(found.moment)
     light = moment is not None and moment.tone != "sad" and "sad" not in moment.groups
     if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
         score = (
             score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
-        )  # no light talk
+        )  # no light talk in a sad tone
     if moment is not None and state.tone == "glad" and moment.tone == "sad":
-        score = score if score >= CLOUDED else 0.0  # tears of joy
+        score = score if score >= CLOUDED else 0.0  # "tears of joy"
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
         score = 0.0  # "I must tell you, I am afraid"
     if moment is not None and score >= SURE:
@@ -293,7 +297,7 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
         if match is None or match.score <= score:
             continue
         found = phrases.moments[match.name]
-        few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry", beside more words
+        few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry" beside another sentence
         told = asking != "" and shape(plain(match.example))[3] == 0
         fits = match.score >= EXACT or (not told and _fits(found, heard.moves) and not imagined)
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
@@ -320,7 +324,7 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
 
 
 def _least(match: Match, tone: str) -> float:
-    """Return the least confidence with which a feeling decides."""
+    """Return the least confidence that a feeling needs to decide the answer."""
     least = (
         FELT
         if match.name in _SAD

@@ -1,6 +1,7 @@
 """Choose an answer that fits what was said, by the table in order.yaml.
 
-The listener takes the first phrase that has all its roles and was not said lately. Games and performances come first.
+The listener takes the first phrase whose placeholders (*roles*) can all be filled, unless it was said lately. Games and
+performances (jokes, songs, stories) come first. `hearing` explains moments, moves and tones.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ SHOWS = ("joke", "song", "story", "play")
 LONG, SHORT = 9, 3
 """The maximum number of words in a request for a performance: with a verb, and without a verb."""
 BRIEF, BRIEFLY = 12, 12
-"""The maximum length of a sign of listening, in characters, and the number of answers after which it may come again."""
+"""The maximum length of a sign of listening such as *mhm*, in characters, and the answers until it may come again."""
 MORE = re.compile(r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)?\W*(?:please|pls)?\W*$", re.IGNORECASE)
-"""The request for another performance: *meh, one more*."""
+"""A request for another performance: *meh, one more*."""
 OFFER = re.compile(r"\bI(?:'ve)? (?:have|know|got|ask)\b.*\briddle|\bask you a riddle", re.IGNORECASE)
 """The user's offer to ask the agent a riddle."""
 STANCES = ("like", "curious", "cool")
@@ -43,21 +44,21 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class _Source:
-    """Groups of phrases, in the order in which they are tried, and the effects of saying one of them."""
+    """Groups of phrases, in the order in which they are tried, and the effects of saying one of the phrases."""
 
     groups: Groups
     moment: Moment | None = None
     weak: bool = False
-    """Whether the phrases fit nearly every utterance. After two questions, such a source asks no third one."""
+    """Whether the phrases fit nearly every utterance. After two questions, such a source asks no third question."""
     stance: str = ""
-    """The opinion that it expresses."""
+    """The opinion that the phrases express."""
 
 
 class Listener:
     """The listening skill. It has no state of its own, so all contexts share it."""
 
     def __init__(self, phrases: Material | None = None) -> None:
-        """`phrases`: by default the built-in ones."""
+        """`phrases`: by default the built-in phrases."""
         self._phrases = phrases or material()
 
     def load(self) -> None:
@@ -70,13 +71,13 @@ class Listener:
             matcher.load()
 
     def performs(self, heard: Heard, state: State) -> bool:
-        """Return whether the utterance asks for a performance or belongs to one. No language model should answer it."""
+        """Return whether the utterance asks for a performance or belongs to it. No language model should answer it."""
         return state.game is not None or self._request(heard) != ""
 
     def continues(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance belongs to a game, or is a short answer to the skill's own question.
 
-        Other modules would misunderstand such words: *tomato* is a move in word chain, not a question about vegetables.
+        Other modules would misunderstand such words: in word chain, *tomato* is no question about vegetables.
         """
         seen, pending = heard.seen, state.pending
         if seen is None or not heard.text.strip():
@@ -102,7 +103,7 @@ class Listener:
         return replace(said, state=replace(said.state, before=heard.text))
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
-        """Return the traces of an utterance: its tone, and the being that it mentions, or else `focus`."""
+        """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
         feeling, sentence = feeling_of(self._phrases, seen, "", "")
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
@@ -178,7 +179,7 @@ class Listener:
             special = getattr(self, f"_{row.group[1:]}", None) if row.group.startswith("@") else None
             if special is not None:
                 yield from (replace(source, weak=row.weak) for source in special(hearing, state, chance))
-            elif row.group.startswith("@"):  # the question's own answers
+            elif row.group.startswith("@"):  # reactions that the agent's question brought along
                 then = state.pending.then.get(row.group[1:], ()) if state.pending is not None else ()
                 yield _Source([[Line(text, frozenset()) for text in then if "{" not in text]])
             else:
@@ -186,7 +187,7 @@ class Listener:
                 yield _Source(plain[row.group].lines(*lists), weak=row.weak)
 
     def _meaning(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the feelings, acts and moments, each with the groups that fit, the most specific first."""
+        """Yield each feeling, act and moment with its fitting groups of phrases, the most specific group first."""
         roles, statement = hearing.roles, hearing.roles.statement
         for moment in hearing.meanings:
             groups = ["again"] if state.moment == moment.name else []
@@ -216,7 +217,7 @@ class Listener:
         yield _Source(replies[unsure].lines(*groups))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the agent's opinion, which is chosen once. The agent has no opinions of people."""
+        """Yield the agent's opinion, which is chosen only once per talk. The agent has no opinions about people."""
         roles, stances = hearing.roles, self._phrases.plain["stances"]
         hearing.roles = roles.having(thing=hearing.thing)
         before = state.stances.get(hearing.thing.lower())
@@ -226,7 +227,7 @@ class Listener:
         yield _Source(stances.lines(before or stance), stance=before or stance)
 
     def _topic(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the questions about a topic. If the utterance is about others, yield only questions about them."""
+        """Yield the questions about a topic. If the utterance is about others, yield only questions about others."""
         if hearing.topic is not None:
             lines: Groups = hearing.topic.lines("say")
             if "living" in hearing.tags:
@@ -235,13 +236,13 @@ class Listener:
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:
-    """Return whether a phrase was said lately; a sign of listening may come again soon."""
+    """Return whether a phrase was said lately. A sign of listening counts as lately for a shorter time."""
     lately = BRIEFLY if len(text) <= BRIEF else len(state.said)
     return text in state.said[-lately:] or (len(text) > BRIEF and template in state.recent)
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources with fewer questions: after two in a row, or if the user wants no questions."""
+    """Yield the sources, but with fewer questions after two questions in a row, or if the user wants no questions."""
     asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
     later: list[_Source] = []
     for source in sources:

@@ -25,19 +25,19 @@ _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads",
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A phrase with roles in braces."""
+    """A phrase with *roles*, its placeholders, in braces."""
 
     text: str
     roles: frozenset[str]
-    """The roles that must be known, in lower case."""
+    """The roles whose values must be known, in lower case."""
     then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """Answers to the user's answer, by ``yes``, ``no``, ``unsure`` and ``any``."""
+    """The kind of the user's answer (``yes``, ``no``, ``unsure`` or ``any``) → the agent's reactions to it."""
     start: str = ""
-    """The joke, riddle... that a *yes* begins."""
+    """The kind of performance that begins if the user answers yes."""
 
     @property
     def asks(self) -> bool:
-        """Whether it ends with a question."""
+        """Whether the phrase ends with a question."""
         return self.text.endswith("?")
 
 
@@ -49,21 +49,21 @@ class Moment:
     groups: Mapping[str, tuple[Line, ...]]
     tone: str = ""
     lasts: int = LASTING
-    """The turns for which its tone lasts."""
+    """The number of turns for which its tone lasts."""
     examples: tuple[str, ...] = ()
     words: frozenset[str] = frozenset()
-    """The nouns or verbs that are typical of it."""
+    """The nouns or verbs that are typical of the situation."""
     moves: frozenset[str] = frozenset()
-    """The moves for which it may answer (language/moves.py)."""
+    """The moves of a listener (language/moves.py) for which its phrases fit."""
     after: str = ""
-    """A tag that the utterance needs: ``shown`` for remarks about a joke."""
+    """A tag that the utterance needs, such as ``shown``: the agent has just told a joke."""
     least: float = 0.0
-    """The confidence in a move from which its replies are used."""
+    """The least confidence in a move at which the phrases may be used."""
     heads: str = ""
-    """The list in heads.yaml with the words of which it needs one."""
+    """The name of a list in heads.yaml. The utterance must have a word of this list."""
 
     def lines(self, *groups: str) -> list[Sequence[Line]]:
-        """Return its groups of these names, as far as it has them."""
+        """Return the groups with these names, without the names that it lacks."""
         return [self.groups[name] for name in groups if name in self.groups]
 
 
@@ -86,7 +86,7 @@ class Material:
         self.acts = {**self.feelings, **_moments("acts")}
         files = {file: _moments(file) for file in MOMENTS}
         self.none = files["moments"].pop("none").examples
-        """Sentences that belong to none of the moments."""
+        """Sentences that belong to no moment."""
         self.topics = {**_moments("subjects"), **_moments("topics")}
         self.moments = {name: one for file in MOMENTS for name, one in files[file].items()}
         none = (*self.none, *bundled("none").none)
@@ -94,7 +94,7 @@ class Material:
             Matcher({one.name: one.examples for one in moments.values()}, none, least=0.45)
             for moments in files.values()
         ]
-        """One matcher a file: all of them together learn faster than one of all examples."""
+        """One matcher per file. Several small matchers learn faster than one with all examples."""
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
         self.plain = {**_moments("plain"), **self.replies}

@@ -1,4 +1,4 @@
-"""The roles of a phrase, filled from the parse of an utterance."""
+"""The *roles* of a phrase, its placeholders such as ``{who}``, filled from the parse of an utterance."""
 
 from __future__ import annotations
 
@@ -46,10 +46,10 @@ class Roles:
     values: Mapping[str, str] = field(default_factory=dict[str, str])
     being: Being | None = None
     statement: Statement | None = None
-    """The statement that the roles stand for."""
+    """The statement from which the values come."""
 
     def having(self, **values: str) -> Roles:
-        """Return the roles with more values; empty ones are left out."""
+        """Return the roles with more values; empty values are left out."""
         return replace(self, values={**self.values, **{name: value for name, value in values.items() if value}})
 
     def fill(self, text: str) -> str:
@@ -75,7 +75,7 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
     """Return the roles that an utterance fills.
 
     Args:
-        seen: Its analysis.
+        seen: The analysis of the utterance.
         sentence: The sentence that matters most. If it has a statement, the roles come from that statement.
         focus: The being that was mentioned before. A pronoun means this being.
         material: The nouns for living beings.
@@ -102,7 +102,7 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
 
 
 def turned(tree: Tree, words: Sequence[Word]) -> str:
-    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty for odd ones."""
+    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty if odd."""
     found = ""
     for word in words:
         text = _TURNED.get(word.low, word.text)
@@ -124,12 +124,12 @@ def is_request(seen: Analysis) -> bool:
 
 
 def _is_aside(tree: Tree, verb: Word) -> bool:
-    """Return whether a verb only comments on the rest, as in *tea, I think*."""
+    """Return whether a verb only comments on the rest of its sentence, as in *tea, I think*."""
     return verb.lemma in _ASIDES and not tree.children(verb, "ccomp", "dobj", "prep", "neg", "xcomp", "advmod")
 
 
 def _statement(seen: Analysis, sentence: str) -> Statement | None:
-    """Return the statement of the sentence that matters most, by default of the last one."""
+    """Return the statement of the sentence that matters most, by default the last sentence."""
     told = [
         one for one in seen.statements if isinstance(one.triple.subject, str) and isinstance(one.triple.object, str)
     ]
@@ -143,7 +143,7 @@ def _statement(seen: Analysis, sentence: str) -> Statement | None:
 
 
 def _thing(tree: Tree, statement: Statement) -> str:
-    """Return the object with its articles, from the agent's view."""
+    """Return the object of a statement with its articles, from the agent's view."""
     phrase = statement.object
     if phrase.text and phrase.person == "other" and (phrase.head or phrase.names):
         last = phrase.text.split()[-1].lower()
@@ -173,7 +173,7 @@ def _being(seen: Analysis, material: Material) -> Being | None:
 
 
 def _owners(phrase: Phrase) -> Iterator[Phrase]:
-    """Yield a phrase, and its owner: *my mother's car* is about *my mother*."""
+    """Yield a phrase and its possessor, because *my mother's car* is also about *my mother*."""
     yield phrase
     if phrase.owner is not None and phrase.owner.person == "other":
         yield from _owners(phrase.owner)

@@ -18,7 +18,7 @@ class Being:
     """A person or an animal that was mentioned."""
 
     text: str
-    """From the agent's view: ``your mother``, ``Rex``."""
+    """The words for the being, from the agent's view: ``your mother``, ``Rex``."""
     kind: str = ""
     """``relative``, ``pet`` or ``person``."""
     gender: str = "n"
@@ -32,9 +32,9 @@ class Pending:
 
     text: str
     then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """By ``yes``, ``no``, ``unsure`` and ``any``."""
+    """The kind of the user's answer (``yes``, ``no``, ``unsure`` or ``any``) → the agent's reactions to it."""
     start: str = ""
-    """The joke, riddle... that a *yes* begins."""
+    """The kind of performance that begins if the user answers yes."""
 
     @property
     def closed(self) -> bool:
@@ -45,7 +45,7 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class Overheard:
-    """The traces of an utterance, kept even if another module answers it."""
+    """The traces of an utterance: the being that it mentions, and its tone. They stay if another module answers."""
 
     text: str
     being: Being | None = None
@@ -70,27 +70,27 @@ class State:
     """The state of the listener. Immutable; each answer makes a new one."""
 
     recent: tuple[str, ...] = ()
-    """The last phrases, before their roles were filled, oldest first."""
+    """The templates of the last phrases, with their placeholders not filled, oldest first."""
     said: tuple[str, ...] = ()
     """The last answers, oldest first."""
     before: str = ""
     """The user's previous utterance."""
     moment: str = ""
-    """The feeling or moment of the last answer."""
+    """The name of the feeling, or of the *moment* (a situation in a talk), that the last answer was for."""
     pending: Pending | None = None
     being: Being | None = None
     tone: str = ""
     turns: int = 0
     """The number of turns for which the tone still lasts."""
     stances: Mapping[str, str] = field(default_factory=dict[str, str])
-    """The agent's opinions, each chosen once."""
+    """The agent's opinions. It chooses each opinion once, and then keeps it."""
     game: Game | None = None
     shown: tuple[str, ...] = ()
     """The jokes, songs, stories and riddles of this talk."""
     show: str = ""
     """The kind of the latest performance."""
     asks: bool = True
-    """Whether the listener may ask questions. It may not once the user wants none."""
+    """Whether the listener may ask questions. False after the user has asked for no more questions."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
         """Return the state after an utterance with this tone. Anger and tiredness do not end sadness."""
