@@ -1,6 +1,6 @@
 """An index of a trace for one causal group: the group's spikes, and each rule's attempts to run on them.
 
-Each question builds such an index anew, from the records alone.
+The board builds the index anew for each question about a spike, from the records alone.
 """
 
 from __future__ import annotations
@@ -272,7 +272,10 @@ class Rivals:
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Return a phrase with the rule that waited until the patience of `rule` ran out, at or before `end` (seconds)."""
+        """Return a phrase that says when the patience of `rule` ran out, and which rule had waited for it.
+
+        The last such wait that ended by `end` (seconds) counts.
+        """
         pressed = self._history.pressed.get(rule.name, [])
         times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted, since a rule's patience never changes
         ended = f"this rule's patience ran out at {seconds(end)}"

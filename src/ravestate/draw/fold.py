@@ -46,7 +46,7 @@ def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
 
 
 def _modules(diagram: Diagram) -> dict[str, str]:
-    """Return node's id → the node's module. A junction belongs to the module of its rule."""
+    """Return a mapping from each node's id to its module. A junction belongs to the module of its rule."""
     home = {node.id: node.module for node in diagram.nodes}
     leads = {edge.source: edge.target for edge in diagram.edges if edge.kind.startswith("condition")}
     kinds = {node.id: node.kind for node in diagram.nodes}

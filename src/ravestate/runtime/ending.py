@@ -35,8 +35,8 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
     if isinstance(result, Coroutine):
         cast("Coroutine[Any, Any, Any]", result).close()
         return RuleError(
-            f"rule {rule.name} ({rule.origin}) is a plain function that returned a coroutine: write async def, also in "
-            "the wrapper of a decorator"
+            f"rule {rule.name} ({rule.origin}) is a plain function that returned a coroutine: write async def; "
+            "the wrapper of a decorator must be async, too"
         )
     return RuleError(
         f"rule {rule.name} ({rule.origin}) returned {short(result)}; a rule returns nothing, rs.Resign(reason) or "

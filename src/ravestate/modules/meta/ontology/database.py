@@ -74,7 +74,7 @@ def _read_all(path: Path, *, whole_log: bool) -> None:
 
 
 def copy_database(source: Any, target: Any) -> None:
-    """Copy all tables, nodes and relations in one transaction, including those that no type declares.
+    """Copy all tables, nodes and relations in one transaction, even tables of types that memory does not declare.
 
     The copy has no bytes of deleted nodes; the old file still has them.
 

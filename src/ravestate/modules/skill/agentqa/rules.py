@@ -25,7 +25,7 @@ from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
 CERTAIN = 0.7
-"""The least confidence in a topic at which the agent needs no second sign that the question is about it."""
+"""The agent accepts a topic without further evidence if its confidence in the topic is at least this high."""
 STATED = 0.85
 """The same for a statement. It is higher, because statements may resemble a question: *I don't know what to say*."""
 TURNS = 6

@@ -15,7 +15,7 @@ CONFIRM = "confirm"
 """The topic of the question that tests whether the user is the person of the same name in memory."""
 
 ENOUGH = 1_000
-"""The number of tries to note for a topic that the agent must never ask about again."""
+"""The count of tries that is recorded for a topic so that the agent never asks about it again."""
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
@@ -35,7 +35,7 @@ class Question:
     since: float
     """Seconds from the beginning of the context to the question."""
     turns: int = 0
-    """The number of the user's utterances since the question, without an answer to it."""
+    """How many times the user has spoken since the question without an answer to it."""
     heard: bool = False
     spoken_over: bool = False
     """Whether the agent has said something else since the question. If so, a mere "no" may answer the later words."""
