@@ -159,4 +159,4 @@ class _NoModel(llm.LLM[Any]):
         return "ravestate"
 
     def chat(self, **_: Any) -> llm.LLMStream:
-        raise NotImplementedError("RavestateAgent answers in llm_node")
+        raise RuntimeError("RavestateAgent has no language model to chat with: its method llm_node answers")

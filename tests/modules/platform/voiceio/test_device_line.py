@@ -142,7 +142,7 @@ def test_a_slow_agent_loses_the_oldest_sound(audio: PortAudio) -> None:
         line = DeviceLine()
         for number in range(device_line.WAITING + 5):
             audio.microphone.take(bytes([number % 250, 0]))
-        await asyncio.sleep(0)
+        await asyncio.sleep(0)  # one turn of the loop, no time: the blocks arrive by callbacks
         assert (await anext(line.blocks()))[0] == 5
         line.close()
 

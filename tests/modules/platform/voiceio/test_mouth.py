@@ -40,7 +40,6 @@ def test_the_heard_part_is_right_to_the_word(seconds: float, heard: str) -> None
         one = mouth()
         one.begin()
         one.queue(said(), 0)
-        await asyncio.sleep(0)
         await _wait(seconds)
         assert one.heard(TEXT) == heard
 

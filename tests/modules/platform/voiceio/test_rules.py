@@ -268,7 +268,6 @@ def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.Mo
 
 def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A page brings its line in the instant in which its context begins."""
-    import asyncio
 
     from modules.platform.voiceio.test_wav_line import run
     from ravestate.modules.platform.voiceio.wav_line import WavLine
@@ -288,7 +287,6 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
             said = await context.next(rawio.output.changed, timeout=5)
             opened.append(context.read(voiceio.conversation))
             assert said == "Good night."
-            await asyncio.sleep(0)
 
     run(follow)
     assert opened[0] is opened[1]

@@ -113,7 +113,7 @@ class Room:
     async def _run(self, chat: Chat) -> None:
         try:
             await chat.live()
-        except Exception:
+        except Exception:  # a fault in one chat must not end the others
             self.log.exception("%r failed", chat)
         finally:
             if self._chats.get(chat.id) is chat:

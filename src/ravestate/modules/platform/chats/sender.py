@@ -73,7 +73,7 @@ class Sender:
     async def _deliver(self, chat: str) -> None:
         try:
             await self._drain(chat)
-        except Exception:
+        except Exception:  # a fault in one chat must not end the others
             self._log.exception("the messages to chat %s are not sent", chat)
         finally:
             del self._tasks[chat]  # at once, so that no message is overlooked that comes now

@@ -162,7 +162,7 @@ class Inlet:
                 self._warn(room.room_id, "is encrypted: its messages cannot be read")
             try:
                 message = incoming(event, room, me, names)
-            except Exception:
+            except Exception:  # anybody may send an event of any shape
                 log.exception("an event cannot be read, and is left out")
                 continue
             if message is None:

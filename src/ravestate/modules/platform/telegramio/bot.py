@@ -140,7 +140,7 @@ class Inlet:
             try:
                 if (message := self._read(Update.de_json(dict(data), self._bot))) is not None:
                     messages.append(message)
-            except Exception:
+            except Exception:  # a malformed update must not block those after it
                 log.exception("an update cannot be read, and is left out")
         self._room.receive(messages)
 
