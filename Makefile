@@ -73,7 +73,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the en
 
 .PHONY: test
 test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
+	@$(BIN)/python -m pytest -n 2 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
 check: lint types layers docs pages compatibility test ## run everything that continuous integration runs

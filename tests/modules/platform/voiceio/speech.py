@@ -13,6 +13,7 @@ import numpy as np
 import ravestate as rs
 from ravestate.modules import rawio
 from ravestate.modules.platform.voiceio import Settings, sound
+from ravestate.modules.platform.voiceio.manner import Prosody
 from ravestate.modules.platform.voiceio.synthesiser import Synthesiser
 
 FOLDER = Path(sys.prefix) / "share" / "ravestate" / "voice"
@@ -28,8 +29,11 @@ def voice(name: str = "piper") -> Synthesiser:
 
 @lru_cache(maxsize=256)
 def spoken(text: str, name: str = "piper") -> bytes:
-    """The text as the microphone hears it, without silence at its ends."""
-    pcm = sound.resample(voice(name).speak(text).sound, 24000, 16000)
+    """The text as the microphone hears it, without silence at its ends.
+
+    The voice is monotonous: otherwise it would vary with what it has spoken before, and so with the order of the tests.
+    """
+    pcm = sound.resample(voice(name).speak(text, Prosody(range=0.0)).sound, 24000, 16000)
     loud = np.flatnonzero(np.abs(sound.samples(pcm).astype(int)) > 150)
     return pcm[2 * loud[0] : 2 * loud[-1]]
 

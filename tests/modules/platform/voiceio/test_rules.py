@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import wave
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,8 @@ from modules.platform.voiceio.speech import (
 )
 from ravestate.errors import PlatformError
 from ravestate.modules import idle, rawio, voiceio
-from ravestate.modules.platform.voiceio import opening
+from ravestate.modules.platform.voiceio import Settings, opening
+from ravestate.modules.platform.voiceio.synthesiser import Synthesiser
 from ravestate.testing import Said, talk
 
 WHOLE = "".join(STORY)
@@ -75,12 +77,16 @@ def test_a_question_is_answered(tmp_path: Path) -> None:
 
 
 def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also while somebody else uses the same voice, which varies from sentence to sentence."""
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "No, stop."), length=8.0))
-    runs = []
+    other = Synthesiser(Settings(voice=FAST["voiceio"]["voice"]))
+    runs: list[tuple[list[Said], str]] = []
     for number in range(2):
+        other.speak("Somebody else.")
         script(monkeypatch, "Tell me a story.", "No, stop.")
         said = talk(file, tmp_path / f"{number}.wav", storyteller(), settings=FAST)
-        runs.append((said, (tmp_path / f"{number}.wav").read_bytes()))
+        runs.append((said, hashlib.sha256((tmp_path / f"{number}.wav").read_bytes()).hexdigest()))
+    other.close()
     assert runs[0] == runs[1]
 
 

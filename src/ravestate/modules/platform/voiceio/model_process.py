@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import itertools
 import json
 import os
 import selectors
@@ -213,12 +214,18 @@ def _remedy(kind: str, reason: str) -> str:
 _processes: dict[str, ModelProcess] = {}
 _users: dict[str, int] = {}
 _sharing = threading.Lock()
+_unshared = itertools.count()
 
 
-def take(kind: str, config: Mapping[str, Any], python: str = sys.executable) -> ModelProcess:
-    """Return the process for this backend and configuration, started or not, with one more user. Pair it with `drop`."""
-    key = json.dumps([kind, dict(config), python], sort_keys=True)
+def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True) -> ModelProcess:
+    """Return the process for this backend and configuration, started or not, with one more user. Pair it with `drop`.
+
+    Args:
+        kind, config, python: As for `ModelProcess`.
+        shared: Whether all users of the same configuration get the same process; if not, this user gets a fresh one.
+    """
     with _sharing:
+        key = json.dumps([kind, dict(config), python, None if shared else next(_unshared)], sort_keys=True)
         process = _processes.get(key)
         if process is None:
             process = _processes[key] = ModelProcess(kind, config, python)

@@ -78,7 +78,8 @@ async def open_conversation(line: Line | None, settings: Settings, warn: Callabl
     recogniser = await asyncio.to_thread(Recogniser, settings)
     voice = None
     try:
-        voice = await asyncio.to_thread(Synthesiser, settings)
+        recorded = line is None and is_file(settings.source)  # the same recording gives the same conversation
+        voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         melody = await asyncio.to_thread(_melody, warn)
         ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(settings, warn))

@@ -39,20 +39,27 @@ class Spoken:
 class Synthesiser:
     """The voice that the settings name. All methods block and are thread-safe.
 
+    A voice varies from sentence to sentence, and its process draws these variations one after another. So a
+    conversation sounds the same each time only if its process speaks nothing else.
+
+    Args:
+        settings: The settings of voiceio.
+        shared: Whether other conversations with the same voice use the same process.
+
     Raises:
         PlatformError: A program or a voice is missing; the message says how to get it.
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, *, shared: bool = True) -> None:
         kind, _, name = settings.voice.partition(":")
         python = None if kind == "espeak" else piper_python(settings.piper)
         voice = None if kind == "espeak" else piper_voice("" if settings.voice == "piper" else settings.voice)
         if python and voice:
             self.name = f"piper:{voice.stem}"
-            self._process = model_process.take("piper", {"voice": str(voice)}, python)
+            self._process = model_process.take("piper", {"voice": str(voice)}, python, shared=shared)
         elif kind in ("", "espeak"):
             self.name = f"espeak:{name or settings.language or 'en'}"
-            self._process = model_process.take("espeak", {"voice": name or settings.language or "en"})
+            self._process = model_process.take("espeak", {"voice": name or settings.language or "en"}, shared=shared)
         elif voice is None:
             raise PlatformError(
                 f"voiceio has no voice {settings.voice!r}: name a file of a Piper voice (.onnx), or espeak, or espeak:en-gb"

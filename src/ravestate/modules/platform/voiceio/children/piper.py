@@ -21,7 +21,7 @@ def load(config: dict[str, Any]) -> Any:
         style = piper.SynthesisConfig(
             length_scale=normal / header["rate"],
             noise_scale=min(1.0, 0.667 * header["range"]),
-            noise_w_scale=0.8,
+            noise_w_scale=min(1.0, 0.8 * header["range"]),
         )
         sound = bytearray()
         spoken: list[list[float]] = []
