@@ -147,6 +147,7 @@ def serve(open_node):
         except BaseException as error:
             pipe.tell(FAULT, reason(error))
             return
+        pipe.send(READY)
         _obey(pipe, node)
         node.close()
     except (EOFError, OSError):
