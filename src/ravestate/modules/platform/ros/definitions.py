@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from ravestate.errors import PlatformError
@@ -43,12 +43,12 @@ class Definitions:
 
     Args:
         own: The user's files, or folders that hold them.
-        folders: Folders that hold packages: ``FOLDER/PACKAGE/msg/NAME.msg``.
+        folders: Returns the folders that hold packages: ``FOLDER/PACKAGE/msg/NAME.msg``.
     """
 
-    def __init__(self, own: Iterable[Path], folders: Iterable[Path]) -> None:
+    def __init__(self, own: Iterable[Path] = (), folders: Callable[[], Iterable[Path]] = tuple) -> None:
         self._own = [path.expanduser() for path in own]
-        self.folders = list(folders)
+        self._folders = folders
 
     def text(self, name: str) -> str | None:
         """Return the text of the definition of a type with its full name; None if there is none.
@@ -79,7 +79,7 @@ class Definitions:
                 yield path / kind / file
             yield path / kind / file
             yield path / file
-        for folder in self.folders:
+        for folder in self._folders():
             yield folder / package / kind / file
 
 

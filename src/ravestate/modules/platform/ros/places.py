@@ -50,6 +50,16 @@ class Place:
             return line
         return ["bash", "-c", f"source {shlex.quote(str(self.setup))} && exec {shlex.join(line)}"]
 
+    @property
+    def folders(self) -> list[Path]:
+        """The folders that hold packages of message definitions."""
+        paths = [Path(path) for path in os.environ.get("ROS_PACKAGE_PATH", "").split(":") if path]
+        for variable in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH"):
+            paths += [Path(path) / "share" for path in os.environ.get(variable, "").split(":") if path]
+        if self.setup is not None:
+            paths.append(self.setup.parent / "share")
+        return [*paths, Path(self.python).parent.parent / "share"]
+
 
 def ros1_place(python: Path | None) -> Place:
     """Return where rospy is: the setting, the sourced ROS 1, one under /opt/ros, or Debian's packages.

@@ -59,6 +59,7 @@ class BridgeProcess:
         self._again: asyncio.TimerHandle | None = None
         self._idle_deaths = 0
         self._works = False
+        self._closing = False
 
     @property
     def pid(self) -> int | None:
@@ -98,6 +99,7 @@ class BridgeProcess:
 
     async def close(self) -> None:
         """Let the process finish and end; kill it if it does not."""
+        self._closing = True
         if self._again is not None:
             self._again.cancel()
         frames, process = self._frames, self._process
@@ -129,6 +131,8 @@ class BridgeProcess:
             self._handle(kind, channel, number, body)
 
     def _died(self) -> None:
+        if self._closing:
+            return
         how = self._bury()
         self._works = False
         if self.failed is None:

@@ -27,10 +27,11 @@ class Types:
         definitions: The definition files to read types from that the library does not bring.
     """
 
-    def __init__(self, version: Literal[1, 2], definitions: Definitions) -> None:
+    def __init__(self, version: Literal[1, 2], definitions: Definitions | None = None) -> None:
         self.version = version
-        self.definitions = definitions
-        self._store = _store(version)
+        self.definitions = definitions or Definitions()
+        self.store = _store(version)
+        """The library's store of types."""
 
     def require(self, name: str, kind: str = "msg") -> str:
         """Make a type known, with all that it contains; return its full name.
@@ -43,19 +44,19 @@ class Types:
             self._learn(name)
         else:
             for title in PARTS[name.split("/")[1]]:
-                if f"{name}_{title}" not in self._store.fielddefs:
+                if f"{name}_{title}" not in self.store.fielddefs:
                     self._read(name)
         return name
 
     def _learn(self, name: str) -> None:
-        if name not in self._store.fielddefs:
+        if name not in self.store.fielddefs:
             self._read(name)
 
     def _read(self, name: str) -> None:
         text = self.definitions.text(name)
         if text is None:
-            known = [each for each in self._store.fielddefs if each.split("/")[-1] == name.split("/")[-1]]
-            hint = f"; did you mean {known[0]}?" if known else nearest(name, self._store.fielddefs)
+            known = [each for each in self.store.fielddefs if each.split("/")[-1] == name.split("/")[-1]]
+            hint = f"; did you mean {known[0]}?" if known else nearest(name, self.store.fielddefs)
             raise PlatformError(
                 f"there is no definition of {name}{hint}. Install its package, or name its file in "
                 f"ros{self.version}.definitions"
@@ -80,8 +81,8 @@ class Types:
                     what = what[1][0]
                 if what[0] == NAME and what[1] != name:
                     self._learn(what[1])
-        new = {full: fields for full, fields in parsed.items() if full not in self._store.fielddefs}
-        self._store.register(new)
+        new = {full: fields for full, fields in parsed.items() if full not in self.store.fielddefs}
+        self.store.register(new)
 
     # ------------------------------------------------------------------------------- wire forms
 
@@ -97,7 +98,7 @@ class Types:
         """
         message = self.message(value, name)
         try:
-            return (self._store.serialize_cdr if self.version == 2 else self._store.serialize_ros1)(message, name)
+            return (self.store.serialize_cdr if self.version == 2 else self.store.serialize_ros1)(message, name)
         except Exception as error:  # wrong kinds of values fail in generated code, in many ways
             raise PlatformError(f"{value!r} does not fit {name}: {error}; its fields are {self.describe(name)}") from error
 
@@ -108,7 +109,7 @@ class Types:
             PlatformError: The bytes are not a message of this type.
         """
         try:
-            return (self._store.deserialize_cdr if self.version == 2 else self._store.deserialize_ros1)(data, name)
+            return (self.store.deserialize_cdr if self.version == 2 else self.store.deserialize_ros1)(data, name)
         except Exception as error:  # the library's reader raises many kinds
             raise PlatformError(f"a message is not of the type {name}: {error}") from error
 
@@ -117,8 +118,8 @@ class Types:
         return self._build(value, name, name)
 
     def _build(self, value: Any, name: str, path: str) -> Any:
-        fields = self._store.fielddefs[name][1]
-        cls = self._store.types[name]
+        fields = self.store.fielddefs[name][1]
+        cls = self.store.types[name]
         if getattr(type(value), "__msgtype__", None) == name:
             return value
         if value is None:
@@ -169,7 +170,7 @@ class Types:
 
     def describe(self, name: str) -> str:
         """Return the fields of a type as text, such as ``data: string``."""
-        fields = self._store.fielddefs[name][1]
+        fields = self.store.fielddefs[name][1]
         return ", ".join(f"{field}: {_spelt(what)}" for field, what in fields if field != DUMMY) or "none"
 
     def fields(self, name: str) -> dict[str, Any]:
@@ -178,7 +179,7 @@ class Types:
 
         def collect(type_: str) -> None:
             if type_ not in found:
-                found[type_] = [(field, what) for field, what in self._store.fielddefs[type_][1]]
+                found[type_] = [(field, what) for field, what in self.store.fielddefs[type_][1]]
                 for _, what in found[type_]:
                     while what[0] in (ARRAY, SEQUENCE):
                         what = what[1][0]
@@ -191,15 +192,15 @@ class Types:
     def ros1_definition(self, name: str) -> tuple[str, str]:
         """Return the text and the MD5 sum by which ROS 1 knows a message type or a service type."""
         if name.split("/")[1] == "msg":
-            return self._store.generate_msgdef(name, ros_version=1)
+            return self.store.generate_msgdef(name, ros_version=1)
         text = "".join(self._hashed(f"{name}_{title}") for title in PARTS["srv"])
         return "", hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
 
     def _hashed(self, name: str) -> str:
         """Return the text whose MD5 sum is that of a message: constants, then fields, messages by their own sums."""
         subdefs: dict[str, tuple[str, str]] = {}
-        lines = [f"{type_} {field}={value}" for field, type_, value in self._store.fielddefs[name][0]]
-        for field, (kind, of) in self._store.fielddefs[name][1]:
+        lines = [f"{type_} {field}={value}" for field, type_, value in self.store.fielddefs[name][0]]
+        for field, (kind, of) in self.store.fielddefs[name][1]:
             if field == DUMMY:
                 continue
             inner, suffix = (kind, of), ""
@@ -207,7 +208,7 @@ class Types:
                 inner, suffix = of[0], f"[{of[1] or ''}]"
             if inner[0] == NAME:
                 short = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}.get(inner[1])
-                lines.append(f"{short}{suffix} {field}" if short else f"{self._store.gendefhash(inner[1], subdefs)[1]} {field}")
+                lines.append(f"{short}{suffix} {field}" if short else f"{self.store.gendefhash(inner[1], subdefs)[1]} {field}")
             else:
                 lines.append(f"{inner[1][0]}{suffix} {field}")
         return "\n".join(lines)

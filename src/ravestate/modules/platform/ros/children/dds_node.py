@@ -93,11 +93,8 @@ class DdsNode:
         """Remove what `bind` has made."""
         self._channels.pop(channel, None)
 
-    def ask(self, question):
-        """Answer a question: where the definitions of messages are, or what there is in the network."""
-        if question == "folders":
-            folder = os.path.join(sys.prefix, "share")
-            return [folder] if os.path.isdir(folder) else []
+    def ask(self):
+        """Return the topics, services and actions of the network, without those of this node."""
         import time
 
         from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription

@@ -182,7 +182,7 @@ def _obey(pipe, node):
                 outlets.pop(channel, None)
                 node.unbind(channel)
             elif kind == ASK:
-                pipe.tell(TOLD, node.ask(json.loads(body)), 0, number)
+                pipe.tell(TOLD, node.ask(), 0, number)
             elif kind == CLOSE:
                 return
         except (EOFError, BrokenPipeError):

@@ -188,9 +188,7 @@ class Ros1Node:
         elif hasattr(thing, "shutdown"):
             thing.shutdown()
 
-    def ask(self, question):
-        if question == "folders":
-            return definition_folders()
+    def ask(self):
         import rosgraph
 
         master = rosgraph.Master(self._rospy.get_name())
@@ -239,16 +237,6 @@ def service_header(name, uri):
             return dict(read_ros_handshake_header(sock, BytesIO(), 2048))
     except Exception:
         return {}
-
-
-def definition_folders():
-    """Return the folders that hold packages of message definitions."""
-    folders = [path for path in os.environ.get("ROS_PACKAGE_PATH", "").split(":") if path]
-    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
-        if prefix:
-            folders.append(os.path.join(prefix, "share"))
-    folders += ["/usr/share", os.path.join(sys.prefix, "share")]
-    return [folder for folder in dict.fromkeys(folders) if os.path.isdir(folder)]
 
 
 if __name__ == "__main__":

@@ -202,10 +202,8 @@ class Ros2Node:
         if thing is not None:
             thing.destroy()
 
-    def ask(self, question):
-        """Answer a question: where the definitions of messages are, or what there is in the network."""
-        if question == "folders":
-            return definition_folders()
+    def ask(self):
+        """Return the topics, services and actions of the network, without those of this node."""
         node = self._node
         topics = []
         own = node.get_name(), node.get_namespace()
@@ -272,13 +270,6 @@ def quality(qos):
         reliability=ReliabilityPolicy[qos["reliability"].upper()],
         durability=DurabilityPolicy[qos["durability"].upper()],
     )
-
-
-def definition_folders():
-    """Return the folders that hold packages of message definitions."""
-    folders = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if prefix]
-    folders.append(os.path.join(sys.prefix, "share"))
-    return [folder for folder in dict.fromkeys(folders) if os.path.isdir(folder)]
 
 
 if __name__ == "__main__":
