@@ -22,6 +22,8 @@ from .types import Types
 WAITING = 1000
 """The maximum number of messages that wait while the bridge starts. Then the oldest is dropped."""
 
+_nodes = itertools.count(1)  # two nodes of one process need two names: ROS 1 ends an older node of the same name
+
 
 class Link(Protocol):
     """What carries a node's frames: a bridge process, or a connection to the bus."""
@@ -132,7 +134,8 @@ class Node:
         """Slot's name → its goals under way."""
         self.ready = asyncio.Event()
         """Set while the link works."""
-        self._name = f"{name}_{os.getpid()}"
+        number = next(_nodes)
+        self._name = f"{name}_{os.getpid()}" + (f"_{number}" if number > 1 else "")
         self._namespace = namespace
         self._remap = remap or {}
         self._log = log or logging.getLogger(f"ravestate.{title}")
