@@ -231,7 +231,7 @@ def test_the_graph_names_topics_services_and_types(either: Network) -> None:
                 graph = await node.graph()
                 found.update({row["name"]: row for kind in ("topics", "services") for row in graph[kind]})
 
-            while "/lamp" not in found or "/back" not in found:
+            while not found.get("/lamp", {}).get("servers") or not found.get("/back", {}).get("publishers"):
                 await look()
             assert found["/back"]["publishers"] == 1
             assert found["/back"]["types"] in (["std_msgs/String"], ["std_msgs/msg/String"])

@@ -139,9 +139,7 @@ class Node:
         self._namespace = namespace
         self._remap = remap or {}
         self._log = log or logging.getLogger(f"ravestate.{title}")
-        config = {
-            "name": resolve(self._name, "", namespace, {}), "namespace": namespace, "environment": dict(environment or {}),
-        }  # fmt: skip
+        config = {"name": resolve(self._name, "", namespace, {}), "environment": dict(environment or {})}
         self._make_link = partial(make_link, config, self._handle, self._bind_all, self._lost)
         self._link: Link | None = None
         self._failed = failed

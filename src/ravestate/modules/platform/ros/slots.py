@@ -68,7 +68,9 @@ class ServiceSlot(TopicSlot):
     """
 
     __slots__ = ("failed", "requested")
-    names = ("requested", "changed", "failed")
+    names = ("requested",)
+    answers: tuple[str, ...] = ("changed", "failed")
+    """The signals that the other end causes. The slot's own write does not raise them."""
     requested: rs.Signal[Any]
     failed: rs.Signal[str]
 
@@ -81,7 +83,7 @@ class ActionSlot(ServiceSlot):
     """
 
     __slots__ = ("feedback",)
-    names = ("requested", "changed", "failed", "feedback")
+    answers = ("changed", "failed", "feedback")
     feedback: rs.Signal[Any]
 
 
@@ -333,6 +335,11 @@ class Declarations:
         check_name(name, f"{owner.name}.slot")
         slot = cls(f"{owner.name}:{name}", None, origin=place_of_call(), always=True, **options)
         slot.binding = binding
+        if isinstance(slot, ServiceSlot):
+            for what in slot.answers:
+                answer: rs.Signal[Any] = rs.Signal(f"{slot.name}:{what}", None, origin=slot.origin)
+                setattr(slot, what, answer)
+                owner.signals.append(answer)
         owner.slots.append(slot)
         if self.module not in owner.requires and owner is not self.module:
             owner.requires.append(self.module)

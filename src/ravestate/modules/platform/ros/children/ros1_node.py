@@ -56,13 +56,12 @@ class Ros1Node:
                 waits = True
             time.sleep(PROBE / 4)
         self._pid = self._master_pid()
+        namespace, _, name = config["name"].rpartition("/")
+        os.environ["ROS_NAMESPACE"] = namespace or "/"
         import rospy
 
         self._rospy = rospy
-        rospy.init_node(
-            config["name"].strip("/"), argv=["node", "__ns:=" + (config["namespace"] or "/")], disable_signals=True,
-            disable_rosout=True, log_level=rospy.ERROR,
-        )  # fmt: skip
+        rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
         self._bindings = {}
         self._replies = {}
