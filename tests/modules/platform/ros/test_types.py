@@ -72,7 +72,7 @@ def test_ros_1_knows_types_by_their_sums() -> None:
 
 
 def test_an_unknown_or_broken_definition_is_an_error_in_words(tmp_path: Path) -> None:
-    with pytest.raises(PlatformError, match=r"no definition of std_msgs/msg/Strin.*ros2.definitions"):
+    with pytest.raises(PlatformError, match=r"no definition of std_msgs/msg/Strin: .*ros2.definitions"):
         Types(2).require("std_msgs/Strin")
     (tmp_path / "Bad.msg").write_text("int32 32 32")
     (tmp_path / "Half.srv").write_text("int32 a")

@@ -217,7 +217,7 @@ class Node:
             binding["text"], binding["md5"] = self.types.ros1_definition(full)
         elif group == "msg":
             binding["fields"] = self.types.fields(full)
-        absolute = resolve(name, self._name, self._namespace, self._remap)
+        absolute = self.absolute(name)
         number = next(self._numbers)
         binding = {"kind": kind, "name": absolute, "type": wire, **binding}
         channel = self.channels[number] = Channel(self, number, binding, full, **options)
@@ -225,6 +225,10 @@ class Node:
         if frames := self._frames:
             frames.tell(Kind.BIND, channel.binding, number)
         return channel
+
+    def absolute(self, name: str) -> str:
+        """Return the absolute name that a name stands for, after remapping."""
+        return resolve(name, self._name, self._namespace, self._remap)
 
     def drop(self, channel: Channel) -> None:
         """End a channel."""

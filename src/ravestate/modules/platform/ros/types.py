@@ -55,11 +55,11 @@ class Types:
     def _read(self, name: str) -> None:
         text = self.definitions.text(name)
         if text is None:
-            known = [each for each in self.store.fielddefs if each.split("/")[-1] == name.split("/")[-1]]
-            hint = f"; did you mean {known[0]}?" if known else nearest(name, self.store.fielddefs)
+            package, _, short = name.split("/")
+            akin = [each for each in self.store.fielddefs if each.startswith(f"{package}/") or each.endswith(f"/{short}")]
             raise PlatformError(
-                f"there is no definition of {name}{hint}. Install its package, or name its file in "
-                f"ros{self.version}.definitions"
+                f"there is no definition of {name}: install its package, or name its file in ros{self.version}.definitions"
+                f"{nearest(name, akin)}"
             )
         from rosbags.typesys import get_types_from_msg
 
