@@ -50,6 +50,11 @@ class Definitions:
         self._own = [path.expanduser() for path in own]
         self._folders = folders
 
+    def add(self, path: Path) -> None:
+        """Add a file, or a folder of files."""
+        if path not in self._own:
+            self._own.append(path)
+
     def text(self, name: str) -> str | None:
         """Return the text of the definition of a type with its full name; None if there is none.
 
