@@ -13,7 +13,7 @@ from ravestate.modules import interloc, rawio, ros1, ros2
 from .serving import serve
 
 if TYPE_CHECKING:
-    from .body import Body
+    from .connection import Connection
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ module = rs.Module("roboyio", requires=(rawio, interloc, ros1, ros2), settings=S
 here = module.flag("here", input=True)
 """Whether the robot belongs to this context although a platform with many users runs beside it."""
 
-body: rs.Slot[Body | None] = module.slot("body", None)
+body: rs.Slot[Connection | None] = module.slot("body", None)
 """The connection to the robot; None without one, as in virtual time."""
 
 words: rs.Slot[str] = module.slot("words", "", type=str, always=True, input=True)

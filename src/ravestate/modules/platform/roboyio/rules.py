@@ -22,8 +22,11 @@ THINKS_AFTER = 0.6
 
 
 @module.rule(
-    when=rs.startup.detached() | here.true.max_age(None).detached(),
-    reads=(ros1.node, ros2.node),
+    when=rs.startup.detached()
+    | here.true.max_age(None).detached()
+    | ros1.node.changed.max_age(None).detached()
+    | ros2.node.changed.max_age(None).detached(),
+    reads=(here, ros1.node, ros2.node),
     writes=(body, words, direction, interloc.users),
     detached=True,  # all that the robot senses is a cause of its own
     background=True,
@@ -33,22 +36,18 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     if getattr(asyncio.get_running_loop(), "is_virtual", False):
         return rs.Resign("time is virtual: a test writes the slots")
-    others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
-    if others and ctx.payload(here.true) is None:
-        return rs.Resign(f"the robot is not this user's, who comes by {others[0]}")
+    if (reason := _not_now(ctx)) is not None:
+        return rs.Resign(reason)
     own: Node | None = None
     try:
         robot = load_robot(settings.robot)
+        node = ctx[ros1.node] if settings.link == "ros1" else ctx[ros2.node]
         if settings.link == "bus":
             node = own = open_node(2, NodeSettings(bus=settings.bus), _nowhere, {}, bus=True)
-        else:
-            found = ctx[ros1.node] if settings.link == "ros1" else ctx[ros2.node]
-            if found is None:
-                return rs.Resign(f"{settings.link} is not connected")
-            node = found
-        from .body import Body
+        assert node is not None  # `_not_now` has looked
+        from .connection import Connection
 
-        made = Body(robot, node, ctx.sleep, settings.speech_timeout)
+        made = Connection(robot, node, ctx.sleep, settings.speech_timeout)
 
         def hear(message: Any) -> None:
             assert robot.hear is not None
@@ -82,6 +81,22 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         if own is not None:
             await own.close()
     return None
+
+
+def _not_now(ctx: rs.RuleContext) -> str | None:
+    """Return why this run of `connect` is not the one that connects; None if it is."""
+    link: str = ctx.settings.link
+    others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
+    if others and not ctx[here]:
+        return f"the robot is not this user's, who comes by {others[0]}"
+    if ctx[body] is not None:
+        return "the robot is connected"
+    if link != "bus":
+        return None if ctx[ros1.node if link == "ros1" else ros2.node] is not None else f"{link} is not connected"
+    at_startup = all(ctx.payload(signal) is None for signal in (here.true, ros1.node.changed, ros2.node.changed))
+    if at_startup if not others else ctx.payload(here.true) is not None:
+        return None
+    return "the bus needs no node of ROS"
 
 
 def _nowhere() -> Place:

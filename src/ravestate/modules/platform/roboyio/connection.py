@@ -1,4 +1,4 @@
-"""A robot's body: its topics and services, over one node."""
+"""A connection to a robot: its topics and services, over one node."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ SHAKE = ((0.0, 0.25), (0.3, -0.25), (0.3, 0.2), (0.3, 0.0))
 """A shake of the head: the seconds to wait, and then the yaw to add."""
 
 
-class Body:
+class Connection:
     """A connected robot.
 
     Args:
         robot: The data file's content.
-        node: The node; the body does not close it.
+        node: The node; this class does not close it.
         sleep: Waits for seconds on the context's clock.
         speech_timeout: Seconds that speaking an utterance may take.
 
