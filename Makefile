@@ -106,7 +106,7 @@ layers: setup
 .PHONY: pages
 pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
-	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/board/page || { \
+	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/modules/platform/roboyio/page src/ravestate/board/page || { \
 		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
 
 # The core's tests on other Python versions, and with the lowest and the newest requirements.

@@ -51,7 +51,9 @@ async def test_a_visitor_talks_with_the_robot(stage: Stage, tmp_path: Path) -> N
         async with rs.Context(roboyio, emotion, guide, settings=settings) as context:
             await expect(page.get_by_role("heading", name="Roboy")).to_be_visible()
             await expect(page.get_by_role("button", name="Say")).to_be_enabled()
-            while context.read(roboyio.body) is None or not bus.find("subscriber", "/roboy/cognition/speech/recognition"):
+            while context.read(roboyio.body) is None or not bus.find(
+                "subscriber", "/roboy/cognition/speech/recognition"
+            ):
                 await context.quiet()
                 await page.wait_for_timeout(20)
             await page.get_by_label("Where you stand").fill("-0.5")

@@ -8,7 +8,7 @@ import json
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ravestate.cli.agent import load_agent
 from ravestate.errors import PlatformError, nearest
@@ -42,7 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             help="a setting, e.g. ros2.domain=7 or ros2.backend=bus (may be repeated)",
         )  # fmt: skip
         if action is not checking:
-            action.add_argument("--version", type=int, choices=(1, 2), help="ROS 1 or ROS 2; by default, the one that is here")
+            action.add_argument(
+                "--version", type=int, choices=(1, 2), help="ROS 1 or ROS 2; by default, the one that is here"
+            )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -196,7 +198,9 @@ async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) 
     type_: str = options.type or (row["types"][0] if row is not None and row["types"] else "")
     if not type_:
         raise PlatformError(f"the type of {options.topic} is not known: --type std_msgs/String")
-    node.subscribe(options.topic, type_, lambda message: None if done.is_set() else show(message), latest=False, qos=qos)
+    node.subscribe(
+        options.topic, type_, lambda message: None if done.is_set() else show(message), latest=False, qos=qos
+    )
     await done.wait()
     return 0
 
@@ -204,9 +208,10 @@ async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) 
 def _shortened(value: Any) -> Any:
     """Return plain data without the middle of its long lists, such as the pixels of an image."""
     if isinstance(value, dict):
-        return {key: _shortened(item) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType]
+        fields = cast("dict[str, Any]", value)
+        return {key: _shortened(item) for key, item in fields.items()}
     if isinstance(value, list):
-        items: list[Any] = value
+        items = cast("list[Any]", value)
         if len(items) > LONG:
             return [*items[:8], f"... {len(items)} values"]
         return [_shortened(item) for item in items]

@@ -38,7 +38,7 @@ def test_a_wrong_file_is_named(tmp_path: Path) -> None:
         load_robot("robby")
     file = tmp_path / "robot.yaml"
     file.write_text("name: X\nhear: {topic: /a, service: /b, type: std_msgs/String, field: data}\n")
-    with pytest.raises(DeclarationError, match="hear: .*either `topic` or `service`"):
+    with pytest.raises(DeclarationError, match=r"hear: .*either `topic` or `service`"):
         load_robot(str(file))
     file.write_text("name: X\nspeek: {topic: /a, type: std_msgs/String, field: data}\n")
     with pytest.raises(DeclarationError, match="speek"):

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import PATIENCE, Network, until
+from modules.platform.ros.networks import PATIENCE, Network, pause, until
 from ravestate.modules import emotion, interloc, rawio, roboyio, ros2
 from ravestate.modules.platform.roboyio.rules import speakable
 from ravestate.modules.platform.roboyio.stand_in import StandIn
@@ -25,7 +25,7 @@ def parrot() -> rs.Module:
 
 
 async def quickly(seconds: float) -> None:
-    await asyncio.sleep(seconds / 50)
+    await pause(seconds / 50)
 
 
 @pytest.mark.parametrize("name", ["roboy", "turtlebot"])
@@ -74,7 +74,9 @@ def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
             robot.watch(seen.append)
             settings = {**ros1_network.settings, "roboyio": {"link": "ros1"}}
             async with rs.Context(roboyio, emotion, parrot(), settings=settings) as context:
-                await until(lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5)
+                await until(
+                    lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
+                )
                 await until(lambda: any(looks["yaw"] == pytest.approx(0.4, abs=0.01) for looks in seen))
                 context.emit(emotion.surprised)
                 await until(lambda: any(looks["face"] == "surprised" for looks in seen))
@@ -93,7 +95,9 @@ def test_turtlebot_on_real_ros_2(ros2_network: Network) -> None:
             robot.watch(seen.append)
             settings = {**ros2_network.settings, "roboyio": {"link": "ros2", "robot": "turtlebot"}}
             async with rs.Context(roboyio, parrot(), settings=settings):
-                await until(lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5)
+                await until(
+                    lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
+                )
                 await until(lambda: any(looks["yaw"] > 0.2 for looks in seen))
             await robot.close()
             await node.close()

@@ -18,6 +18,7 @@ from ravestate.modules import ros1, ros2
 from ravestate.modules.platform.ros.definitions import Definitions
 from ravestate.modules.platform.ros.node import Node
 from ravestate.modules.platform.ros.types import Types
+from ravestate.runtime.clock import Clock
 
 HERE = Path(__file__).parent
 PATIENCE = 20.0
@@ -149,9 +150,14 @@ async def opened(node: Node) -> AsyncIterator[Node]:
         await node.close()
 
 
+async def pause(seconds: float) -> None:
+    """Give the world outside some real time."""
+    await Clock(asyncio.get_running_loop()).sleep(seconds)
+
+
 async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.05) -> None:
     """Wait until something outside is reached; repeat an action meanwhile, because discovery takes its time."""
     async with asyncio.timeout(PATIENCE):
         while not reached():
             again()
-            await asyncio.sleep(every)
+            await pause(every)

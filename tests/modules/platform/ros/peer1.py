@@ -2,7 +2,6 @@
 
 import sys
 import threading
-import time
 
 import genpy
 import rospy
@@ -12,8 +11,8 @@ from std_msgs.msg import Float32, Int32, String
 class Raw(genpy.Message):
     """A message of any type, as bytes."""
 
-    __slots__ = ["data"]
-    _slot_types = ["uint8[]"]
+    __slots__ = ("data",)
+    _slot_types = ("uint8[]",)
     _has_header = False
 
     def __init__(self, data=b""):
@@ -57,6 +56,10 @@ def answer(request):
     return SETBOOL._response_class(bytes([on]) + len(text).to_bytes(4, "little") + text)
 
 
+def pause(seconds):
+    threading.Event().wait(seconds)
+
+
 def main():
     rospy.init_node("peer", anonymous=True, disable_signals=True)
     options = {"queue_size": 20000, "tcp_nodelay": True}
@@ -66,7 +69,7 @@ def main():
     images = rospy.Publisher("/images", image, **options)
     wrong = rospy.Publisher("/wrong", Float32, latch=True, queue_size=1)
     wrong.publish(1.5)
-    point = typed("robot_msgs/Reading", "%s" % sys.argv[1], "")
+    point = typed("robot_msgs/Reading", f"{sys.argv[1]}", "")
     own = rospy.Publisher("/own", point, latch=True, queue_size=1)
     own.publish(point((7).to_bytes(4, "little") + (4).to_bytes(4, "little") + b"warm"))
     rospy.Service("/lamp", SETBOOL, answer)
@@ -77,21 +80,27 @@ def main():
         for n in range(count):
             numbers.publish(n)
             if rate:
-                time.sleep(1 / rate)
+                pause(1 / rate)
 
     def show(message):
         import struct
 
         pixels = bytes(640 * 480 * 3)
         head = struct.pack("<IIII", 1, 2, 3, 4) + b"base"
-        body = head + struct.pack("<III", 480, 640, 4) + b"rgb8" + b"\0" + struct.pack("<II", 1920, len(pixels)) + pixels
+        body = (
+            head + struct.pack("<III", 480, 640, 4) + b"rgb8" + b"\0" + struct.pack("<II", 1920, len(pixels)) + pixels
+        )
         for _ in range(message.data):
             images.publish(image(body))
-            time.sleep(1 / 30)
+            pause(1 / 30)
 
     rospy.Subscriber("/chat", String, lambda message: back.publish("echo " + message.data), tcp_nodelay=True)
-    rospy.Subscriber("/burst", String, lambda message: threading.Thread(target=burst, args=(message,), daemon=True).start())
-    rospy.Subscriber("/show", Int32, lambda message: threading.Thread(target=show, args=(message,), daemon=True).start())
+    rospy.Subscriber(
+        "/burst", String, lambda message: threading.Thread(target=burst, args=(message,), daemon=True).start()
+    )
+    rospy.Subscriber(
+        "/show", Int32, lambda message: threading.Thread(target=show, args=(message,), daemon=True).start()
+    )
     print("ready", flush=True)
     sys.stdin.read()  # until the test ends
 

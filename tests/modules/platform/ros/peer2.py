@@ -2,7 +2,6 @@
 
 import sys
 import threading
-import time
 
 import rclpy
 from rclpy.action import ActionServer, CancelResponse
@@ -13,6 +12,10 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Float32, Int32, String
 from std_srvs.srv import SetBool
 from test_msgs.action import Fibonacci
+
+
+def pause(seconds):
+    threading.Event().wait(seconds)
 
 
 def main():
@@ -35,13 +38,13 @@ def main():
         for n in range(count):
             numbers.publish(Int32(data=n))
             if rate:
-                time.sleep(1 / rate)
+                pause(1 / rate)
 
     def show(message):
         picture = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
         for _ in range(message.data):
             images.publish(picture)
-            time.sleep(1 / 30)
+            pause(1 / 30)
 
     def lamp(request, response):
         response.success, response.message = request.data, "on" if request.data else "off"
@@ -62,7 +65,7 @@ def main():
             feedback.sequence = sequence[-5:]
             feedback.sequence = [min(n, 2**30) for n in feedback.sequence]
             goal.publish_feedback(feedback)
-            time.sleep(0.01 if goal.request.order < 100 else 0.05)
+            pause(0.01 if goal.request.order < 100 else 0.05)
         goal.succeed()
         result = Fibonacci.Result()
         result.sequence = sequence

@@ -74,7 +74,7 @@ def test_a_node_waits_for_its_bus_and_finds_it_again() -> None:
             node.subscribe("/chat", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
             for n in range(2):
                 async with Bus(port) as bus, opened(on(bus)) as other:
-                    await until(lambda: bus.find("subscriber", "/chat"))  # noqa: B023  # of this round
+                    await until(lambda: bus.find("subscriber", "/chat"))  # of this round
                     other.advertise("/chat", "std_msgs/String", qos=ALL).publish(f"round {n}")
                     await until(lambda: f"round {n}" in heard)  # noqa: B023
             assert heard == ["round 0", "round 1"]
@@ -92,10 +92,12 @@ def test_other_types_and_addresses_are_refused_in_words(caplog: pytest.LogCaptur
         node = ros1.make_node(ros1.Settings(backend="bus", bus="here"))
         with pytest.raises(PlatformError, match="write HOST:PORT"):
             node.start()
-        with socket.create_server(("127.0.0.1", 0)) as taken:
-            with pytest.raises(PlatformError, match="does another stand-in robot run"):
-                async with Bus(taken.getsockname()[1]):
-                    pass
+        with (
+            socket.create_server(("127.0.0.1", 0)) as taken,
+            pytest.raises(PlatformError, match="does another stand-in robot run"),
+        ):
+            async with Bus(taken.getsockname()[1]):
+                pass
 
     async def limited() -> None:
         async with asyncio.timeout(PATIENCE):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import pytest
 
-from modules.platform.ros.networks import Network, Ros1, Ros2, opened, until
+from modules.platform.ros.networks import Network, Ros1, Ros2, opened, pause, until
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.ros import Node, quality
 
@@ -22,7 +22,7 @@ async def echo(node: Node, count: int = 3) -> list[str]:
     node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), latest=False, qos=ALL)
     chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
     await until(lambda: heard, lambda: chat.publish("first"))
-    await asyncio.sleep(0.1)
+    await pause(0.1)
     heard.clear()
     for n in range(count):
         chat.publish({"data": f"text {n}"})
@@ -42,10 +42,12 @@ def test_all_of_a_fast_topic_arrives_in_order(either: Network) -> None:
     async def main() -> None:
         async with opened(either.node()) as node:
             got: list[int] = []
-            node.subscribe("/numbers", "std_msgs/Int32", lambda message: got.append(message.data), latest=False, qos=ALL)
+            node.subscribe(
+                "/numbers", "std_msgs/Int32", lambda message: got.append(message.data), latest=False, qos=ALL
+            )
             burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
             await until(lambda: got, lambda: burst.publish("1 0"), 0.3)
-            await asyncio.sleep(0.3)
+            await pause(0.3)
             got.clear()
             burst.publish("400 1000")
             await until(lambda: len(got) >= 400)
@@ -61,7 +63,7 @@ def test_the_latest_of_a_fast_topic_replaces_those_that_wait(either: Network) ->
             node.subscribe("/numbers", "std_msgs/Int32", lambda message: got.append(message.data), rate=10, qos=ALL)
             burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
             await until(lambda: got, lambda: burst.publish("1 0"), 0.3)
-            await asyncio.sleep(0.3)
+            await pause(0.3)
             got.clear()
             burst.publish("300 1000")
             await until(lambda: got and got[-1] == 299)
@@ -126,7 +128,7 @@ def test_a_killed_bridge_comes_back_with_all_its_channels(either: Network, caplo
             assert len(await echo(node)) == 3
             silent = node.client("/silent", "std_srvs/SetBool", timeout=30.0)
             call = asyncio.ensure_future(silent.call(True))
-            await asyncio.sleep(0.1)
+            await pause(0.1)
             assert node.pid is not None
             os.kill(node.pid, signal.SIGKILL)
             with pytest.raises(PlatformError, match="killed by signal 9"):
@@ -141,7 +143,9 @@ def test_a_killed_bridge_comes_back_with_all_its_channels(either: Network, caplo
         asyncio.run(main())
 
 
-def test_a_message_of_the_wrong_type_is_named_and_dropped(ros1_network: Network, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_message_of_the_wrong_type_is_named_and_dropped(
+    ros1_network: Network, caplog: pytest.LogCaptureFixture
+) -> None:
     async def main() -> None:
         async with opened(ros1_network.node()) as node:
             got: list[Any] = []
@@ -173,7 +177,7 @@ def test_two_nodes_without_ros_speak_dds_with_an_own_package(ros2_network: Netwo
             await until(lambda: got, lambda: own.publish({"value": 7, "unit": "warm"}))
             assert (got[0].value, got[0].unit) == (7, "warm")
             client = one.client("/lamp", "std_srvs/SetBool", timeout=5.0)
-            with pytest.raises(PlatformError, match="DDS alone .* carries topics"):
+            with pytest.raises(PlatformError, match=r"DDS alone .* carries topics"):
                 await client.call(True)
 
     asyncio.run(main())
@@ -187,7 +191,9 @@ def test_dds_speaks_with_a_real_node(ros2_network: Network) -> None:
     asyncio.run(main())
 
 
-def test_a_quality_of_service_that_does_not_fit_is_named(ros2_network: Network, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_quality_of_service_that_does_not_fit_is_named(
+    ros2_network: Network, caplog: pytest.LogCaptureFixture
+) -> None:
     async def main() -> None:
         async with opened(ros2_network.node()) as node:
             node.subscribe("/sensor", "std_msgs/Int32", print, qos=ALL)

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import PATIENCE, until
+from modules.platform.ros.networks import PATIENCE, pause, until
 from ravestate.modules import ros2
 from ravestate.modules.platform.ros import Bus, quality
 
@@ -36,10 +36,10 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
                 await until(lambda: bus.find("subscriber", "/clock"))
                 at(100)
                 start = context.now
-                await asyncio.sleep(0.05)
+                await pause(0.05)
                 begun = context.now
                 assert begun >= start
-                await asyncio.sleep(0.05)
+                await pause(0.05)
                 assert context.now == begun  # halted: no message, no time
                 context.emit(go)
                 at(129)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import PATIENCE, Network, until
+from modules.platform.ros.networks import PATIENCE, Network, pause, until
 from ravestate.modules import ros1, ros2
 from ravestate.testing import simulate
 
@@ -125,7 +125,7 @@ def test_until_cancels_the_goal_of_an_action(ros2_network: Network, way: str) ->
                 assert failures == ["the goal was cancelled"]
             await until(lambda: not context.snapshot()["running"] if "running" in context.snapshot() else True)
             seen = len(fed)
-            await asyncio.sleep(0.3)
+            await pause(0.3)
             assert len(fed) <= seen + 1
             assert cut == ([True] if way == "perform" else [])
 

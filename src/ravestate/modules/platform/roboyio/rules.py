@@ -93,8 +93,9 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
         return "the robot is connected"
     if link != "bus":
         return None if ctx[ros1.node if link == "ros1" else ros2.node] is not None else f"{link} is not connected"
-    at_startup = all(ctx.payload(signal) is None for signal in (here.true, ros1.node.changed, ros2.node.changed))
-    if at_startup if not others else ctx.payload(here.true) is not None:
+    asked = bool(ctx.payload(here.true))
+    at_startup = not asked and not ctx.payload(ros1.node.changed) and not ctx.payload(ros2.node.changed)
+    if asked if others else at_startup:
         return None
     return "the bus needs no node of ROS"
 

@@ -102,7 +102,9 @@ class Bus:
             return
         server, place, other = found[0]
         if other["type"] != binding["type"]:
-            caller.frames.tell(Kind.FAULT, f"{binding['name']} is a {other['type']}, not {binding['type']}", channel, number)
+            caller.frames.tell(
+                Kind.FAULT, f"{binding['name']} is a {other['type']}, not {binding['type']}", channel, number
+            )
             return
         own = next(self._numbers)
         self._calls[own] = caller, channel, number
@@ -224,7 +226,10 @@ class BusLink:
                 sock.close()
                 if not told:
                     told = True
-                    note = {"text": f"waits for the bus at {self._address}: start `ravestate robot`", "level": "warning"}
+                    note = {
+                        "text": f"waits for the bus at {self._address}: start `ravestate robot`",
+                        "level": "warning",
+                    }
                     self._handle(Kind.NOTE, 0, 0, memoryview(json.dumps(note).encode()))
                 await asyncio.sleep(AGAIN)
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

@@ -72,10 +72,12 @@ def look_at(slot: TopicSlot, node: Node, graph: Mapping[str, list[dict[str, Any]
         hint = f"; of this type there is {', '.join(sorted(known)[:3])}: write remap or another name" if known else ""
         return Line(False, slot.name, f"{bound}: no {OTHERS[binding.kind]}{hint or ': start the other node'}")
     if row["types"] and not _has(row, binding.type, KINDS[binding.kind]):
-        return Line(False, slot.name, f"{bound}: the other end has {row['types'][0]}: write type={_short(row['types'][0])!r}")
-    if binding.kind == "subscriber" and row.get("reliability") == ["best_effort"]:
-        if binding.options["qos"]["reliability"] == "reliable":
-            return Line(False, slot.name, f"{bound}: its publishers are best-effort: write qos='sensor_data'")
+        return Line(
+            False, slot.name, f"{bound}: the other end has {row['types'][0]}: write type={_short(row['types'][0])!r}"
+        )
+    reliable = binding.kind == "subscriber" and binding.options["qos"]["reliability"] == "reliable"
+    if reliable and row.get("reliability") == ["best_effort"]:
+        return Line(False, slot.name, f"{bound}: its publishers are best-effort: write qos='sensor_data'")
     return Line(True, slot.name, f"{bound}: {count} {OTHERS[binding.kind]}")
 
 

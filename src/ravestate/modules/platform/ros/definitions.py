@@ -106,6 +106,8 @@ def messages(name: str, text: str) -> Iterator[tuple[str, str]]:
             parts[-1].append(line)
     titles = PARTS[kind]
     if len(parts) != len(titles):
-        raise PlatformError(f"the definition of {name} has {len(parts)} parts instead of {len(titles)} ({', '.join(titles)})")
+        raise PlatformError(
+            f"the definition of {name} has {len(parts)} parts instead of {len(titles)} ({', '.join(titles)})"
+        )
     for title, lines in zip(titles, parts, strict=True):
         yield f"{name}_{title}", "\n".join(lines)

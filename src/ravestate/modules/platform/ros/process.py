@@ -140,7 +140,9 @@ class BridgeProcess:
             self._idle_deaths += 1
             self.restarts += 1
             self._again = asyncio.get_running_loop().call_later(wait, self.start)
-        self._lost(str(self.failed) if self.failed else f"the process of {self._place.name} ended ({how}); it starts again")
+        self._lost(
+            str(self.failed) if self.failed else f"the process of {self._place.name} ended ({how}); it starts again"
+        )
 
     def _bury(self) -> str:
         """Make sure that the process is gone; return how it ended."""

@@ -67,13 +67,10 @@ def open_node(
         except PlatformError:
             return []
 
-    make: MakeLink
-    if bus:
-        make = bus_link(settings.bus)
-    else:
+    def start(config: Any, handle: Any, ready: Any, lost: Any) -> BridgeProcess:
+        return BridgeProcess(place(), config, handle=handle, ready=ready, lost=lost)
 
-        def make(config: Any, handle: Any, ready: Any, lost: Any) -> BridgeProcess:
-            return BridgeProcess(place(), config, handle=handle, ready=ready, lost=lost)
+    make: MakeLink = bus_link(settings.bus) if bus else start
 
     return Node(
         f"ros{version}",

@@ -6,7 +6,7 @@ import hashlib
 import importlib
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 from ravestate.errors import PlatformError, nearest
 
@@ -56,7 +56,9 @@ class Types:
         text = self.definitions.text(name)
         if text is None:
             package, _, short = name.split("/")
-            akin = [each for each in self.store.fielddefs if each.startswith(f"{package}/") or each.endswith(f"/{short}")]
+            akin = [
+                each for each in self.store.fielddefs if each.startswith(f"{package}/") or each.endswith(f"/{short}")
+            ]
             raise PlatformError(
                 f"there is no definition of {name}: install its package, or name its file in ros{self.version}.definitions"
                 f"{nearest(name, akin)}"
@@ -100,7 +102,9 @@ class Types:
         try:
             return (self.store.serialize_cdr if self.version == 2 else self.store.serialize_ros1)(message, name)
         except Exception as error:  # wrong kinds of values fail in generated code, in many ways
-            raise PlatformError(f"{value!r} does not fit {name}: {error}; its fields are {self.describe(name)}") from error
+            raise PlatformError(
+                f"{value!r} does not fit {name}: {error}; its fields are {self.describe(name)}"
+            ) from error
 
     def decode(self, data: memoryview | bytes, name: str) -> Any:
         """Return the message with this wire form. Its arrays are views of `data`, not copies.
@@ -120,18 +124,19 @@ class Types:
     def _build(self, value: Any, name: str, path: str) -> Any:
         fields = self.store.fielddefs[name][1]
         cls = self.store.types[name]
-        if getattr(type(value), "__msgtype__", None) == name:
+        if getattr(cast("object", type(value)), "__msgtype__", None) == name:
             return value
         if value is None:
             value = {}
         if not isinstance(value, Mapping):
-            if hasattr(type(value), "__msgtype__"):
-                raise PlatformError(f"{path} takes {name}, not {type(value).__msgtype__}")
+            other = getattr(cast("object", type(value)), "__msgtype__", None)
+            if other is not None:
+                raise PlatformError(f"{path} takes {name}, not {other}")
             own = [field for field, _ in fields if field != DUMMY]
             if len(own) != 1:
                 raise PlatformError(f"{path} takes the fields {self.describe(name)}, not {value!r}")
             value = {own[0]: value}
-        given: Mapping[str, Any] = value
+        given = cast("Mapping[str, Any]", value)
         if unknown := [str(key) for key in given if key not in dict(fields)]:
             raise PlatformError(
                 f"{path} has no field {unknown[0]!r}{nearest(unknown[0], dict(fields))}: its fields are {self.describe(name)}"
@@ -157,6 +162,7 @@ class Types:
 
             numbers = {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(inside[0], inside[0])
             if isinstance(items, (bytes, bytearray, memoryview)):
+                items = cast("bytes", items)
                 return numpy.frombuffer(items, numpy.uint8)
             try:
                 return numpy.asarray(items if value is not None else [0] * count, numbers)
@@ -207,8 +213,12 @@ class Types:
             if kind in (ARRAY, SEQUENCE):
                 inner, suffix = of[0], f"[{of[1] or ''}]"
             if inner[0] == NAME:
-                short = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}.get(inner[1])
-                lines.append(f"{short}{suffix} {field}" if short else f"{self.store.gendefhash(inner[1], subdefs)[1]} {field}")
+                short = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}.get(
+                    inner[1]
+                )
+                lines.append(
+                    f"{short}{suffix} {field}" if short else f"{self.store.gendefhash(inner[1], subdefs)[1]} {field}"
+                )
             else:
                 lines.append(f"{inner[1][0]}{suffix} {field}")
         return "\n".join(lines)
@@ -216,8 +226,9 @@ class Types:
 
 def plain(message: Any) -> Any:
     """Return a message as plain data: mappings, lists, numbers and text."""
-    if hasattr(type(message), "__msgtype__"):
-        return {key: plain(value) for key, value in vars(message).items() if key not in (DUMMY, "__msgtype__")}
+    if hasattr(cast("object", type(message)), "__msgtype__"):
+        fields = cast("dict[str, Any]", vars(message))
+        return {key: plain(value) for key, value in fields.items() if key not in (DUMMY, "__msgtype__")}
     if hasattr(message, "tolist"):
         return message.tolist()
     return [plain(item) for item in message] if isinstance(message, list) else message  # pyright: ignore[reportUnknownVariableType]

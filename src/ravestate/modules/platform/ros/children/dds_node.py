@@ -3,15 +3,13 @@
 DDS-RPC tells the answer to a call by metadata of a sample, which the library does not give; so there are no services.
 """
 
-# pyright: basic
+# pyright: basic, reportMissingImports=false
 from __future__ import annotations
 
 import os
-import sys
 import threading
 
 from pipe import Pipe, reason, serve
-
 
 BASE, NAME, ARRAY = 1, 2, 3  # kinds of fields
 
@@ -37,8 +35,9 @@ class DdsNode:
 
         if binding["kind"] not in ("subscriber", "publisher"):
             raise LookupError(
-                "%s is a service or an action, which need ROS 2 itself; DDS alone (ros2.backend=dds) carries topics"
-                % binding["name"]
+                "{} is a service or an action, which need ROS 2 itself; DDS alone (ros2.backend=dds) carries topics".format(
+                    binding["name"]
+                )
             )
         qos = quality(binding["qos"])
         topic = self._topic(binding, qos)
@@ -46,9 +45,11 @@ class DdsNode:
             self._channels[channel] = (DataWriter(self._participant, topic, qos=qos), topic.data_type)
             return
 
+        read = self._read
+
         class Reading(Listener):
-            def on_data_available(listener, reader):
-                self._read(reader, outlet)
+            def on_data_available(self, reader):
+                read(reader, outlet)
 
         self._channels[channel] = (DataReader(self._participant, topic, qos=qos, listener=Reading()), topic.data_type)
 
@@ -131,7 +132,7 @@ def raw_type(name, fields):
     def struct(type_):
         if type_ not in known:
             package, kind, short = type_.split("/")
-            title = "%s.%s.dds_.%s_" % (package, kind, short)
+            title = f"{package}.{kind}.dds_.{short}_"
             known[type_] = make_idl_struct(short, title, {field: described(what) for field, what in fields[type_]})
         return known[type_]
 

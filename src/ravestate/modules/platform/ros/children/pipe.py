@@ -143,7 +143,7 @@ def serve(open_node):
         kind, _, _, body = pipe.receive()
         assert kind == OPEN
         try:
-            node = open_node(pipe, json.loads(body))
+            node = open_node(pipe, json.loads(bytes(body)))
         except BaseException as error:
             pipe.tell(FAULT, reason(error))
             return
@@ -198,7 +198,7 @@ def _obey(pipe, node):
 
 def reason(error):
     """Return a sentence about an exception."""
-    return "%s: %s" % (type(error).__name__, error) if str(error) else type(error).__name__
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 
 def every(seconds, function):

@@ -1,11 +1,10 @@
 """The bridge process of ROS 1: a rospy node that passes messages on as they are on the wire."""
 
-# pyright: basic
+# pyright: basic, reportMissingImports=false
 from __future__ import annotations
 
 import os
 import socket
-import sys
 import threading
 import time
 import xmlrpc.client
@@ -20,8 +19,8 @@ def message_class(type_, md5, text=""):
     import genpy
 
     class Raw(genpy.Message):
-        __slots__ = ["data"]
-        _slot_types = ["uint8[]"]
+        __slots__ = ("data",)
+        _slot_types = ("uint8[]",)
         _type = type_
         _md5sum = md5
         _full_text = text
@@ -52,7 +51,7 @@ class Ros1Node:
         waits = False
         while not self._master_pid():
             if not waits:
-                pipe.note(0, "waits for a ROS master at %s: start one with `roscore`" % self._uri)
+                pipe.note(0, f"waits for a ROS master at {self._uri}: start one with `roscore`")
                 waits = True
             time.sleep(PROBE / 4)
         self._pid = self._master_pid()
@@ -83,7 +82,7 @@ class Ros1Node:
         if pid == self._pid:
             return
         if not pid:
-            self._pipe.note(0, "the ROS master at %s is gone; waits until it is back" % self._uri)
+            self._pipe.note(0, f"the ROS master at {self._uri} is gone; waits until it is back")
             while not (pid := self._master_pid()):
                 time.sleep(PROBE / 4)
         if pid != self._pid:
@@ -163,8 +162,9 @@ class Ros1Node:
             found = service_header(self._rospy.resolve_name(name), self._uri)
             if found.get("md5sum") not in (None, wanted):
                 raise TypeError(
-                    "the service %s has the type %s, not %s: write type=%r"
-                    % (name, found.get("type"), service._type, found.get("type"))
+                    "the service {} has the type {}, not {}: write type={!r}".format(
+                        name, found.get("type"), service._type, found.get("type")
+                    )
                 )
             answer = self._rospy.ServiceProxy(name, service)(service._request_class(body))
             self._pipe.send(ANSWER, channel, number, answer.data)
@@ -204,7 +204,9 @@ class Ros1Node:
         listed = []
         for name, nodes in services:
             type_ = service_header(name, self._uri).get("type") if own not in nodes else None
-            listed.append({"name": name, "types": [type_] if type_ else [], "servers": len([n for n in nodes if n != own])})
+            listed.append(
+                {"name": name, "types": [type_] if type_ else [], "servers": len([n for n in nodes if n != own])}
+            )
         return {"topics": list(found.values()), "services": listed, "actions": []}
 
     def close(self):
@@ -213,7 +215,7 @@ class Ros1Node:
 
 
 def _mismatch(binding, header):
-    return "%s: %s publishes %s, which is not the %s that the agent reads: write type=%r%s" % (
+    return "{}: {} publishes {}, which is not the {} that the agent reads: write type={!r}{}".format(
         binding["name"], header.get("callerid"), header.get("type"), binding["type"], header.get("type"),
         " (same name, but other fields: give the agent the publisher's .msg files in ros1.definitions)"
         if header.get("type") == binding["type"] else "",

@@ -1,6 +1,6 @@
 """The bridge process of ROS 2: an rclpy node that passes messages on as they are on the wire (CDR)."""
 
-# pyright: basic
+# pyright: basic, reportMissingImports=false
 from __future__ import annotations
 
 import importlib
@@ -88,8 +88,8 @@ class Ros2Node:
         policy = str(getattr(info.last_policy_kind, "name", info.last_policy_kind)).lower()
         self._pipe.note(
             channel,
-            "%s: the other end offers another quality of service (%s): write qos='sensor_data' for a best-effort topic, "
-            "or latch=True for a transient-local one" % (self._bindings[channel]["name"], policy),
+            "{}: the other end offers another quality of service ({}): write qos='sensor_data' for a best-effort topic, "
+            "or latch=True for a transient-local one".format(self._bindings[channel]["name"], policy),
         )
 
     async def _serve(self, channel, cls, request):
@@ -127,7 +127,7 @@ class Ros2Node:
         binding, client = self._bindings[channel], self._channels[channel]
         cls = interface(binding["type"])
         if not client.wait_for_service(timeout_sec=binding["timeout"]):
-            raise LookupError("nobody offers the service %s%s" % (binding["name"], self._hint(binding)))
+            raise LookupError("nobody offers the service {}{}".format(binding["name"], self._hint(binding)))
 
         def done(future):
             error = future.exception()
@@ -142,7 +142,7 @@ class Ros2Node:
     def _hint(self, binding):
         for name, types in self._node.get_service_names_and_types():
             if name == binding["name"] and types != [binding["type"]]:
-                return " with the type %s: it has %s" % (binding["type"], ", ".join(types))
+                return " with the type {}: it has {}".format(binding["type"], ", ".join(types))
         return ""
 
     def _act(self, channel, number, body):
@@ -152,7 +152,7 @@ class Ros2Node:
         cls = interface(binding["type"])
         goal = self._goals[channel, number] = {"handle": None, "cancelled": False}
         if not client.wait_for_server(timeout_sec=binding["timeout"]):
-            raise LookupError("nobody offers the action %s" % binding["name"])
+            raise LookupError("nobody offers the action {}".format(binding["name"]))
 
         def feedback(message):
             self._pipe.send(FEEDBACK, channel, number, serialize_message(message.feedback))
@@ -175,7 +175,7 @@ class Ros2Node:
             if status == "succeeded":
                 self._pipe.send(ANSWER, channel, number, serialize_message(answer.result))
             else:
-                self._pipe.tell(FAULT, "the goal was %s" % status, channel, number)
+                self._pipe.tell(FAULT, f"the goal was {status}", channel, number)
 
         client.send_goal_async(deserialize_message(body, cls.Goal), feedback).add_done_callback(accepted)
         self._executor.wake()
@@ -212,7 +212,10 @@ class Ros2Node:
             return len([info for info in infos if (info.node_name, info.node_namespace) != own])
 
         for name, types in node.get_topic_names_and_types():
-            publishers, subscribers = node.get_publishers_info_by_topic(name), node.get_subscriptions_info_by_topic(name)
+            publishers, subscribers = (
+                node.get_publishers_info_by_topic(name),
+                node.get_subscriptions_info_by_topic(name),
+            )
             offered = {info.qos_profile.reliability.name.lower() for info in publishers}
             topics.append({
                 "name": name, "types": list(types), "publishers": others(publishers), "subscribers": others(subscribers),
@@ -255,8 +258,8 @@ def interface(name):
         return getattr(importlib.import_module(package + "." + kind), short)
     except (ImportError, AttributeError):
         raise LookupError(
-            "ROS 2 at %s does not have the type %s: source the workspace in which %s is built, or set ros2.backend=dds, "
-            "which needs only its .msg files" % (sys.prefix, name, package)
+            f"ROS 2 at {sys.prefix} does not have the type {name}: source the workspace in which {package} is built, or set ros2.backend=dds, "
+            "which needs only its .msg files"
         ) from None
 
 
