@@ -1,6 +1,6 @@
 // The geometry of the face: what an expression, a head pose and a spoken text look like.
 
-/** What the server tells of the robot; see `Looks` in roboyio/stand_in.py. */
+/** The server's description of the robot; see `Looks` in roboyio/stand_in.py. */
 export interface Looks {
   name: string;
   face: string;

@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -92,6 +93,12 @@ class Ros1(Network):
             ["rosmaster", "--core", "-p", str(self.port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             env={**os.environ, **self.environment, "ROS_LOG_DIR": "/tmp/ros-log"},
         )  # fmt: skip
+
+        for _ in range(200):
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0):
+                return
+            threading.Event().wait(0.05)
+        raise AssertionError("rosmaster did not start: is `make ros` done?")
 
     def start_peer(self) -> None:
         types = Types(1, Definitions((OWN,)))

@@ -22,7 +22,7 @@ TICK = 0.05
 
 @dataclass(slots=True)
 class Looks:
-    """What a visitor sees of the robot.
+    """The visible state of the robot.
 
     Attributes:
         name: The robot's name.

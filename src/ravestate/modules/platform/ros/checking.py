@@ -1,4 +1,4 @@
-"""What an agent's slots are bound to: whether there is another end, whether the types match, and how to mend it."""
+"""The check of an agent's slots: whether there is another end, whether the types match, and how to mend it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .slots import TopicSlot
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""What a slot is → the other end that it needs, as the graph calls it."""
+"""Kind of a slot → the other end that it needs, as the graph calls it."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8
@@ -31,7 +31,7 @@ class Line:
     Attributes:
         good: Whether all is well.
         what: The slot or part.
-        text: What it is bound to and what is there; after a fault, how to mend it.
+        text: Its binding and its other end; after a fault, how to mend it.
     """
 
     good: bool

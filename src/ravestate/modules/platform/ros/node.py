@@ -26,7 +26,7 @@ _nodes = itertools.count(1)  # two nodes of one process need two names: ROS 1 en
 
 
 class Link(Protocol):
-    """What carries a node's frames: a bridge process, or a connection to the bus."""
+    """The carrier of a node's frames: a bridge process, or a connection to the bus."""
 
     failed: PlatformError | None
     restarts: int
@@ -50,7 +50,7 @@ class Channel:
 
     Attributes:
         number: The channel's number on the link.
-        binding: What the bridge is told.
+        binding: The description that the bridge gets.
         type: The full name of the type.
         fault: Why the bridge could not make it; empty if it could.
     """
@@ -101,7 +101,7 @@ class Node:
     """A node of ROS or of the bus. It connects at its first use; a link that breaks is made again.
 
     Args:
-        title: What the user calls it, such as ``ros1``.
+        title: The user's name for it, such as ``ros1``.
         types: The types of its messages.
         make_link: Makes the link.
         name: The node's name.

@@ -28,12 +28,12 @@ class Place:
     """A program beside this file, and what runs it.
 
     Attributes:
-        name: What the user calls it.
+        name: The user's name for it.
         program: The file's name in the folder `CHILDREN`.
         python: The interpreter.
         setup: A shell script to source first; None if there is none.
         environment: Variables to set.
-        mend: What to say after a failure to start.
+        mend: The remedy to name after a failure to start.
     """
 
     name: str

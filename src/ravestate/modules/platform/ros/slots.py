@@ -28,11 +28,11 @@ DEEP = 1000
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """What a slot is bound to.
+    """The topic, service or action of a slot.
 
     Attributes:
         version: 1 for ROS 1, 2 for ROS 2.
-        kind: What the slot is.
+        kind: The kind of the slot.
         name: The name of the topic, service or action, as the designer wrote it.
         type: The name of its type, as the designer wrote it.
         options: The arguments of the `Node` method that opens it.
