@@ -462,3 +462,21 @@ def test_a_detached_clause_keeps_the_spike_that_another_clause_of_its_rule_runs_
         ((0.0, ("emit", "s0", 1)),),
     )
     assert moments(world, "r0") == [0.0, 0.5]
+
+
+def test_an_added_rule_looks_again_when_a_spike_that_is_older_than_the_rule_ripens() -> None:
+    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s, holds the first s0, which is old enough, and looks at
+    # the second one as soon as that is old enough too, at 1.5 s.
+    looking = RuleOf(when=((Want("s0", min_age=1.0, detached=True), Want("s1", min_age=0.5)),))
+    world = World(
+        S3,
+        rules=(RuleOf(when=on("s0"), acts=(Act(seconds=4.0),)),),
+        inputs=(
+            (0.0, ("emit", "s0", 1)),
+            (0.5, ("emit", "s0", 2)),
+            (0.25, ("add", looking)),
+            (0.375, ("emit", "s1", 0)),
+        ),
+    )
+    [call] = [line for line in Play(world).play().heard if "< Run(" in line and "<rule m:r1>" in line]
+    assert call.startswith("1.625 s") and "'m:s0': 2" in call

@@ -198,6 +198,11 @@ class Engine(Agenda):
             for watch in watches.values():
                 watch.clause = clauses[watch.clause.index]
         self._asking.update(self.waiting)
+        for plan in plans[len(known) :]:
+            for need in (need for clause in plan.clauses for need in clause.needs if need.detached):
+                for spike in self.live.get(need.signal.index, ()):
+                    if spike.born + need.min_age > self.now:  # a spike sets these times at its birth for older rules
+                        self._deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
 
     def on_finish(self, event: events.Finish) -> None:
         if event.kind not in OUTCOMES:
