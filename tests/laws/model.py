@@ -171,12 +171,13 @@ class Model:
         return False
 
     def start_free(self) -> bool:
-        free = [act for act in self.acts if act.state == READY and not self.asks(act)]
-        free.sort(key=lambda act: (max(spike.id for spike in act.held.values()), act.clause.index, act.id))
-        for act in free:
-            if act.state == READY and self.guarded(act):
-                self.start(act)
-        return bool(free)
+        found = False
+        while free := [act for act in self.acts if act.state == READY and not self.asks(act)]:
+            found = True
+            first = min(free, key=lambda act: (max(s.id for s in act.held.values()), act.clause.index, act.id))
+            if self.guarded(first):
+                self.start(first)
+        return found
 
     def consent_round(self) -> bool:
         """L15: ask for those that are ready, older causes first, then the best."""

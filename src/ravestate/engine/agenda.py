@@ -48,6 +48,9 @@ class Agenda(Slots):
 
     def look(self) -> None:
         """Make all alternatives visible to an observer: each becomes an activation that waits for the best clause."""
+        for half, spikes in list(self.halves.items()):
+            for first in list(spikes):
+                self.unfold_half(first, half)
         for best in list(self.alternatives):
             spike = best.spikes[0]
             assert spike is not None  # the activation is ready, or runs
@@ -68,11 +71,17 @@ class Agenda(Slots):
 
     def _start_free(self) -> None:
         """Start the ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
-        free = sorted(self._free, key=_newest) if len(self._free) > 1 else self._free
-        self._free = []
-        for activation in free:
+        queue: list[tuple[tuple[int, int, int], Activation]] = []
+        while self._free or queue:
+            for activation in self._free:  # a start may take a spike away from others, and these may take another one
+                heapq.heappush(queue, (_newest(activation), activation))
+            self._free.clear()
+            order, activation = heapq.heappop(queue)
             clause = activation.clause
             if activation.state is not READY or (clause.guards and not self._guarded(activation)):
+                continue
+            if order != _newest(activation):
+                self._free.append(activation)
                 continue
             if self._loops.runs > MANY and self._loops.defer(activation):
                 continue
@@ -226,7 +235,7 @@ class Agenda(Slots):
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""
         for spike in rival.firm_spikes():
-            spike.refuse(rival.clause.rule.index)
+            self._refuse_for_good(spike, rival.clause.rule)
         self._end(rival, "eliminated")
 
     def _start(self, activation: Activation) -> None:

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
 from ravestate.engine.horizon import FIRM, NO, Horizon
-from ravestate.policy.model import Clause, RulePlan
+from ravestate.policy.model import Clause, Half, RulePlan
 
 if TYPE_CHECKING:
     from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
+    from ravestate.engine.spike import Spike
 
 
 class Refusal:
@@ -87,6 +88,27 @@ def ask(
                 refusal.blockers[holder] = None
         if not group.taken.keys().isdisjoint(slots):
             continue
+        for half, spike in _rival_halves(engine, group, slots):
+            if clause.rule.cooldown:
+                engine.unfold_half(spike, half)
+                continue
+            best = _best(engine, half, spike, clause)
+            if best is None or not standing.refuses(best.clause, clause):
+                continue
+            if horizon is None:
+                horizon = _horizon(engine, activation, without)
+            strength, roots = horizon.judge(best.clause, best, group)
+            if (
+                horizon.judge(best.clause, None, group)[0] != NO
+                or horizon.open_bits(best.clause, group)
+                or (strength != NO and (strength != FIRM or best.clause.rule.index in engine.active))
+            ):
+                engine.unfold_half(spike, half)  # its rivals must be pressed, or compared, one by one
+                horizon.renew()
+            elif strength == FIRM:
+                refusal.blockers.update(dict.fromkeys(roots))
+                refusal.firm.append(roots)
+                refusal.names[best.clause.rule.name] = None
         for rival, members in _rivals(engine, activation, group):
             if clause.rule.cooldown or rival.rule.cooldown:
                 refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
@@ -125,6 +147,22 @@ def ask(
         refusal.hopes = horizon.hopes
         refusal.recheck = min(refusal.recheck, horizon.recheck)
     return refusal
+
+
+def _rival_halves(engine: Engine, group: Group, slots: frozenset[int]) -> list[tuple[Half, Spike]]:
+    """Return the halves that hold spikes of the group for clauses that write one of the slots, with these spikes."""
+    return [(h, spike) for spike in group.entries for h in engine.halves_of(spike) if not h.slotset.isdisjoint(slots)]
+
+
+def _best(engine: Engine, half: Half, spike: Spike, clause: Clause) -> Activation | None:
+    """Return the activation that the best other clause would have for an entry; it stands for all (`Half`)."""
+    for need in half.best:
+        if need.clause is not clause and engine.keeps(need, spike):
+            best = Activation(0, need.clause)
+            best.spikes[need.index] = spike
+            best.missing &= ~need.bit
+            return best
+    return None
 
 
 def _horizon(engine: Engine, activation: Activation, without: Collection[Activation]) -> Horizon:

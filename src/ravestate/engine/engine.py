@@ -305,6 +305,10 @@ class Engine(Agenda):
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
                         self._lose(other, self._of_group(other, group), "consumed", run)
+                for spike in list(group.entries):
+                    for half in self.halves_of(spike):
+                        if not half.slotset.isdisjoint(rule.slotset):
+                            self._drop(spike, half)
                 self._dirty[group] = None
 
     def _relinquish(self, run: Activation, spikes: tuple[Spike, ...]) -> None:

@@ -91,20 +91,31 @@ class Horizon:
                 if not same:
                     there.pop(activation.clause.rule.index, None)
 
-    def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
-        """Return a clause's activations that hold no spike of the group, but lack a spike that the group may cause."""
+    def renew(self) -> None:
+        """Forget what was derived before activations were created."""
+        self._known.clear()
+        self._by_rule.clear()
+
+    def open_bits(self, clause: Clause, group: Group) -> int:
+        """Return the bits of the needs for which a clause's activations in other groups may get a spike of the group."""
         if clause.apart:
-            return []  # any spike that it lacks must come from the group that it stands on
-        active = self.engine.active.get(clause.rule.index)
+            return 0  # any spike that it lacks must come from the group that it stands on
         reach = self._rules(group).keys()
         ancestors = self.engine.policy.causes.ancestors
-        open_bits = 0
+        bits = 0
         for need in clause.needs:
             if not need.detached and not reach.isdisjoint(ancestors(need.signal.index)):
-                open_bits |= need.bit
+                bits |= need.bit
+        return bits
+
+    def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
+        """Return a clause's activations that hold no spike of the group, but lack a spike that the group may cause."""
+        open_bits = self.open_bits(clause, group)
         if not open_bits:
             return []
         self.hopes[RULE, clause.rule.index] = None
+        self.engine.unfold_clause(clause)
+        active = self.engine.active.get(clause.rule.index)
         return [
             one
             for one in active or ()

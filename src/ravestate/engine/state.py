@@ -7,6 +7,7 @@ by the need that they lack. So the cost of an event does not grow with the numbe
 from __future__ import annotations
 
 import copy
+from collections import OrderedDict
 from types import MappingProxyType
 from typing import Any
 
@@ -31,7 +32,7 @@ from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
-from ravestate.policy.model import Clause, Need, RulePlan, SlotPlan
+from ravestate.policy.model import Clause, Half, Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
@@ -55,6 +56,9 @@ class State:
         """Number of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but none for this need."""
+        self.halves: dict[Half, OrderedDict[Spike, int]] = {}
+        """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
+        before theirs (``halves.py``)."""
         self.gated: dict[Activation, None] = {}
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.waiting: dict[Activation, None] = {}
