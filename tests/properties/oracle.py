@@ -118,7 +118,7 @@ def waits_for_a_reason(play: Play) -> None:
         assert waiter.state is State.WAITING
         assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
         assert ask(engine, waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
-    assert stalemate(engine, engine.waiting) is None, "activations wait for each other alone"
+    assert not stalemate(engine, engine.waiting), "activations wait for each other alone"
 
 
 def joined(play: Play) -> None:

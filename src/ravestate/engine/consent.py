@@ -9,7 +9,7 @@ A rival that may never become ready is under pressure: it has its patience, once
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
@@ -40,7 +40,7 @@ class Refusal:
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
-        self.hopes: Iterable[tuple[int, int]] = ()
+        self.hopes: Mapping[tuple[int, int], int] = {}
         self.names: dict[str, None] = {}
         self.blockers: dict[Activation, None] = {}
         self.firm: list[tuple[Activation, ...]] = []
@@ -73,6 +73,7 @@ def ask(
         commit: Whether rivals come under pressure, and give up when their patience is over.
     """
     refusal = Refusal()
+    eliminated = False
     clause = activation.clause
     rule = clause.rule
     slots = rule.slotset
@@ -139,9 +140,12 @@ def ask(
                     if commit and member is not None:
                         horizon.forget(member)
                         engine.eliminate(member)
+                        eliminated = True
                     continue
                 apart += member is not None and member not in group.members
                 refusal.names[rival.rule.name] = None
+    if eliminated and refusal:
+        return ask(engine, activation, without)  # rivals judged before may have hung on the eliminated one
     if horizon is not None:
         refusal.interests.update(horizon.visited)
         refusal.hopes = horizon.hopes
@@ -216,8 +220,8 @@ def _place(rival: tuple[Clause, list[Activation]]) -> int:
     return rival[0].index
 
 
-def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
-    """Return the best of the activations that wait for nothing but each other, if there are any.
+def stalemate(engine: Engine, refused: Iterable[Activation], known: Collection[Activation] = ()) -> set[Activation]:
+    """Return activations that wait for nothing but each other.
 
     Two ready rules may each wait for a rival that the other might bring about. They would wait for ever, so the one
     with the greater effective utility goes first, or else the one declared first.
@@ -225,6 +229,7 @@ def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | Non
     Args:
         engine: The engine.
         refused: The activations that were refused since the last search: at least one is in any new stalemate.
+        known: The activations that earlier searches found.
     """
     stuck: set[Activation] = set()
     reached = list(refused)
@@ -239,8 +244,9 @@ def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | Non
             break
         stuck -= freed
     while stuck:
-        freed = {one for one in stuck if ask(engine, one, stuck, commit=False)}
+        without = stuck.union(known)
+        freed = {one for one in stuck if ask(engine, one, without, commit=False)}
         if not freed:
             break
         stuck -= freed
-    return min(stuck, key=engine.order, default=None)
+    return stuck

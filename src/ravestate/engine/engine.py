@@ -66,6 +66,8 @@ class Engine(Agenda):
             if now != now:
                 raise EngineError("the time is not a number of seconds: it is NaN")
         elif now > self.now:
+            self._refused.update(self._stuck)  # with time, their reasons to wait may change
+            self._stuck.clear()
             if self._deadlines.earliest <= now:
                 self.advance(now)
             self.now = now
@@ -106,7 +108,7 @@ class Engine(Agenda):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
-            elif self._queue or self._asking or self._dirty or self._stirred or self._refused:
+            elif self._queue or self._asking or self._dirty or self._stirred or self._refused or self._stuck:
                 self._consent_round()
             elif self._settle_flags():
                 pass

@@ -164,7 +164,7 @@ class Holdings(Entries):
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
         else:
-            self._free.append(activation)
+            self._free.add(activation)
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
         """Take the spike of a need from an activation; `by` is the run that is the reason, or None."""
@@ -289,12 +289,13 @@ class Holdings(Entries):
         """Make an activation stop waiting, so that changes in its groups do not make it ask again."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
+        self._stuck.pop(activation, None)
         for hope in activation.hopes:
             hoping = self.hoping.get(hope)
             if hoping is not None:
                 hoping.pop(activation, None)
                 if not hoping:
-                    del self.hoping[hope]
+                    del self.hoping[hope], self._hope_counts[hope]
         activation.hopes = ()
         for group in activation.interests:
             group.root().forget(activation)
