@@ -518,3 +518,30 @@ def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_
     )
     calls = [line for line in Play(world).play().heard if "< Run(" in line and "<rule m:r2>" in line]
     assert ["'m:s1': 1" in call for call in calls] == [False, True]
+
+
+def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> None:
+    # L15: r1 waits for r3, which either of two activations of r2 may help; both wait for r0, which r1 may help.
+    world = World(
+        (*S3, SignalOf()),
+        (SlotOf(), SlotOf(), SlotOf()),
+        (
+            RuleOf(when=on("s2"), writes=("v2",)),
+            RuleOf(when=((Want("s0", min_age=0.75),),), writes=("v1",), emits=("s2",)),
+            RuleOf(
+                when=on("s0", "s3"),
+                writes=("v2",),
+                emits=("s2",),
+                acts=(Act(((0.0, ("emit", "s2", 1)), (1.5, ("write", "v2", 0)))),),
+            ),
+            RuleOf(
+                when=on("s2"),
+                writes=("v1",),
+                emits=("s0",),
+                acts=(Act(((1.375, ("emit", "s0", 0)),)),),
+                detached=True,
+            ),
+        ),
+        ((0.0, ("emit", "s0", 2)), (0.0, ("emit", "s3", 1)), (0.0, ("emit", "s3", 0))),
+    )
+    assert moments(world, "r2") == [0.75, 2.875]

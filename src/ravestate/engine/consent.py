@@ -231,22 +231,25 @@ def stalemate(engine: Engine, refused: Iterable[Activation], known: Collection[A
         refused: The activations that were refused since the last search: at least one is in any new stalemate.
         known: The activations that earlier searches found.
     """
-    stuck: set[Activation] = set()
+    seen: dict[Activation, None] = {}
     reached = list(refused)
-    while reached:
-        one = reached.pop()
-        if one not in stuck and one in engine.waiting and one.firm and not one.bounded:
-            stuck.add(one)
-            reached += [root for roots in one.firm for root in roots]
-    while stuck:
-        freed = {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}
-        if not freed:
-            break
-        stuck -= freed
-    while stuck:
-        without = stuck.union(known)
-        freed = {one for one in stuck if ask(engine, one, without, commit=False)}
-        if not freed:
-            break
-        stuck -= freed
-    return stuck
+    while True:
+        while reached:
+            one = reached.pop()
+            if one not in seen and one in engine.waiting and one.firm and not one.bounded:
+                seen[one] = None
+                reached += [root for roots in one.firm for root in roots]
+        stuck = set(seen)
+        while freed := {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}:
+            stuck -= freed
+        while stuck:
+            without = stuck.union(known)
+            answers = [(one, ask(engine, one, without, commit=False)) for one in stuck]
+            freed = [(one, refusal) for one, refusal in answers if refusal]
+            if not freed:
+                break
+            stuck -= {one for one, _ in freed}
+            for _, refusal in freed:  # it waits for others as well, and these may wait for it
+                reached += [root for roots in refusal.firm for root in roots if root not in seen]
+        if not any(root in engine.waiting and root.firm and not root.bounded for root in reached):
+            return stuck
