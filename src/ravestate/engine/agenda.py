@@ -102,23 +102,23 @@ class Agenda(Slots):
         """
         queue = self._queue
         self.standing.now = self.now
-        left, queue[:] = list(queue), []
-        for *_, activation in left:  # their places may have changed since the last round
-            if activation.state in ASKABLE:
-                heapq.heappush(queue, (*self._turn(activation), activation))
-        for activation in self._asking:
-            heapq.heappush(queue, (*self._turn(activation), activation))
-        self._asking.clear()
+        asking = self._asking
+        self._asking = {}
         if self._dirty or self._stirred:
-            again: dict[Activation, None] = {}
             for group in self._dirty:
-                again.update(group.interested)
+                asking.update(group.interested)
             self._dirty.clear()
             for hope in self._stirred:
-                again.update(self.hoping.get(hope, {}))
+                asking.update(self.hoping.get(hope, {}))
             self._stirred.clear()
-            for activation in again:
-                heapq.heappush(queue, (*self._turn(activation), activation))
+        if queue:  # the places of those left may have changed since the last round
+            asking.update((entry[4], None) for entry in queue if entry[4].state in ASKABLE)
+            queue.clear()
+        if len(asking) == 1:
+            queue += [(0, 0.0, 0, 0, activation) for activation in asking]
+        else:
+            queue += [(*self._turn(activation), activation) for activation in asking]
+            heapq.heapify(queue)
         written: set[int] = set()
         later: list[tuple[int, float, int, int, Activation]] = []
         while queue:
@@ -140,7 +140,10 @@ class Agenda(Slots):
                 written.update(rule.slots)
         for entry in later:
             heapq.heappush(queue, entry)
-        if not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
+        idle = not (
+            queue or self._asking or self._dirty or self._stirred or self._acts or self._free.new or self._free.line
+        )
+        if idle and (self._refused or self._stuck):
             self._break_stalemate()
 
     def _break_stalemate(self) -> None:

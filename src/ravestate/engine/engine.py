@@ -66,8 +66,9 @@ class Engine(Agenda):
             if now != now:
                 raise EngineError("the time is not a number of seconds: it is NaN")
         elif now > self.now:
-            self._refused.update(self._stuck)  # with time, their reasons to wait may change
-            self._stuck.clear()
+            if self._stuck:
+                self._refused.update(self._stuck)  # with time, their reasons to wait may change
+                self._stuck.clear()
             if self._deadlines.earliest <= now:
                 self.advance(now)
             self.now = now
@@ -106,7 +107,7 @@ class Engine(Agenda):
                 self._birth(error, failure, (), self._new_group(), None, lineage)
             elif self._busy and not self.values.get(self._activity.index):
                 self._set_flag(self._activity, True)
-            elif self._free:
+            elif self._free.new or self._free.line:
                 self._start_free()
             elif self._queue or self._asking or self._dirty or self._stirred or self._refused or self._stuck:
                 self._consent_round()
@@ -307,7 +308,7 @@ class Engine(Agenda):
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
                         self._lose(other, self._of_group(other, group), "consumed", run)
-                for spike in list(group.entries):
+                for spike in list(group.entries) if group.entries else ():
                     for half in self.halves_of(spike):
                         if not half.slotset.isdisjoint(rule.slotset):
                             self._drop(spike, half)

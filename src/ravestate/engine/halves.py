@@ -66,10 +66,11 @@ class Halves(ConflictSets):
     def _offer_to_halves(self, signal: SignalPlan, spike: Spike) -> None:
         """Offer a new spike to the halves of its signal."""
         group = spike.group.root()
-        if self.tracer is not None or self._loops.full:
+        single = self.tracer is not None or self._loops.full
+        if single:
             self.unfold_all()
         for half in signal.halves:
-            if self.tracer is not None or self._loops.full or not self.retired.isdisjoint(half.places):
+            if single or (self.retired and not self.retired.isdisjoint(half.places)):
                 for need in half.needs:
                     self._offer(need, spike)
                 continue

@@ -164,7 +164,7 @@ class Holdings(Entries):
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
         else:
-            self._free.add(activation)
+            self._free.new.append(activation)
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
         """Take the spike of a need from an activation; `by` is the run that is the reason, or None."""
@@ -289,7 +289,8 @@ class Holdings(Entries):
         """Make an activation stop waiting, so that changes in its groups do not make it ask again."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
-        self._stuck.pop(activation, None)
+        if self._stuck:
+            self._stuck.pop(activation, None)
         for hope in activation.hopes:
             hoping = self.hoping.get(hope)
             if hoping is not None:
