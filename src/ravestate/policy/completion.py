@@ -30,7 +30,7 @@ class Completion:
         alternatives: Place → the signal's alternatives, each a tuple of places.
         bare: Place → whether a pathway may hold the signal without its causes.
         information: Place → the self-information of the signal (L9), in units (`UNIT`).
-        components: Groups of places that lead to each other without passing a bare signal; causes before effects.
+        components: Groups of places that lead to each other without passing a bare signal. Groups of causes come first.
         cycle: Place → the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 
