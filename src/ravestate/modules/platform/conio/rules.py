@@ -54,7 +54,7 @@ async def listen(ctx: rs.RuleContext) -> None:
                 if line.strip():
                     ctx[rawio.input] = line
                 if not console.interactive:
-                    await ctx.quiet()  # all lines may arrive at once, and each needs its own answer
+                    await ctx.quiet()  # wait for the answer to this line: through a pipe, all lines may arrive at once
             if console.ending == "end of input":
                 await ctx.quiet()  # a user who ends the input still gets the last answer
             else:
