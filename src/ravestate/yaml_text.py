@@ -80,7 +80,7 @@ class _Bounded(Composer):
 
 class _Values(SafeConstructor):
     def construct_number(self, node: yaml.ScalarNode) -> Any:
-        """Return the number in a node. Refuse a long number: it may be in base 60 (``59:59:...``), which takes minutes."""
+        """Return the number in a node. Refuse a long number: in base 60 (``59:59:...``), it takes minutes to read."""
         if len(node.value) > DIGITS:
             raise yaml.constructor.ConstructorError(
                 None, None, f"a number of more than {DIGITS} digits", node.start_mark

@@ -302,7 +302,7 @@ export interface Settled {
   error?: string;
 }
 
-/** A signal: its module, slot and payload, whether it is an input, the rules that wait for it, and those that raise it. */
+/** A signal: its module, slot and payload, whether it is an input, and the rules that wait for it or raise it. */
 export interface SignalView {
   name: string;
   module: string;

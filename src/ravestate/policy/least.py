@@ -3,8 +3,8 @@
 A pathway is a set that holds an alternative of each of its signals (`Completion`). The search begins with the
 clause's own signals. Each step takes the highest signal that lacks an alternative, and tries each of its alternatives.
 If two sets agree in all signals that may still matter, all further steps are the same for both. So the search follows
-only the cheaper set, and independent choices do not multiply. If the causes form a chain, a ring or a tree, one or two
-steps lead from the least pathway of a cause to that of its effect.
+only the cheaper set, and independent choices do not multiply. The search for a signal starts at the least pathways of
+its causes. If the causes form a chain, a ring or a tree, the search takes one or two steps.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
 step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens only

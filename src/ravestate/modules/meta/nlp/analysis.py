@@ -32,7 +32,7 @@ INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_b
 """The acts for which nlp has a signal, with the signal's name."""
 
 MATCHERS = ("acts", "feelings")
-"""The files of examples whose classes an analysis names."""
+"""The files of examples. An analysis names their classes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,20 +81,20 @@ def analyse(
     users: Iterable[str] = (),
     designed: Matcher | None = None,
 ) -> Analysis:
-    """Analyse `text`. Blocks for a few milliseconds.
+    """Analyse `text`. This blocks for a few milliseconds.
 
     Args:
-        text: Any text; the analysis covers the beginning of a long one.
+        text: Any text; the analysis covers only the beginning of a long text.
         pipeline: The pipeline; the first call loads it in about a second.
         agent_names: The agent's names. A text with one of them is about the agent. Case is ignored.
-        users: The names of the users present. The normal form gives their names and the agent's names capitals.
-        designed: The matcher of the designer's intents. The first utterance waits until it has learnt the examples.
+        users: The names of the users present. In the normal form, these names and the agent's names have capitals.
+        designed: The matcher of the designer's intents. The first call waits until the matcher has learnt its examples.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
     """
     if designed is not None:
-        with contextlib.suppress(PlatformError):  # without the sentence model, it knows the examples word for word
+        with contextlib.suppress(PlatformError):  # without the sentence model, it recognises only its examples verbatim
             designed.load()
     names = tuple(agent_names)
     normal = pipeline.normalise(text, (*names, *users))
@@ -125,7 +125,7 @@ def analyse(
 
 
 def _intents(matcher: Matcher, sentences: Iterable[str]) -> dict[str, Match]:
-    """Return the designer's intents of the sentences, each with the best of its sentences."""
+    """Return the designer's intents that the sentences match, each with the sentence that matches best."""
     found = [match for match in matcher.match_all(tuple(sentences)) if match is not None and ":" in match.name]
     return {match.name: match for match in sorted(found, key=lambda match: match.score)}
 

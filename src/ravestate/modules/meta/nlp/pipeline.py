@@ -61,7 +61,7 @@ class Pipeline:
         return self._nlp is not None
 
     def load(self) -> None:
-        """Load the pipeline, unless it is loaded. Takes about a second.
+        """Load the pipeline, unless it is loaded already. Loading takes about a second.
 
         Raises:
             PlatformError: spaCy or the pipeline is missing, or it cannot be loaded.
@@ -106,7 +106,7 @@ class Pipeline:
     def _read(self, orders: list[_Order]) -> None:
         """Parse texts in a batch; if that fails, one by one."""
         try:
-            with self._nlp.memory_zone():  # otherwise spaCy keeps each new word for ever
+            with self._nlp.memory_zone():  # outside a memory zone, spaCy keeps each new word for ever
                 # Preprocessing keeps all positions. The small pipelines parse short sentences better without the last stop.
                 texts = [preprocess(_without_stop(order.normal.text)) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]

@@ -29,7 +29,7 @@ _EXAMPLES: dict[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type of nodes: its supertype, and the kinds of its own properties; `Types` has the inherited properties."""
+    """A type of nodes: its supertype, and the kinds of its own properties. `Types` also knows inherited properties."""
 
     name: str
     parent: str | None = None
