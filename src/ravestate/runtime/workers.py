@@ -3,8 +3,8 @@
 All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons: a
 function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
 
-At its end, the process still waits a while for running functions. A thread may be inside a C++ library, loading a model
-for instance; if the interpreter ends the thread there, the whole process may crash.
+At its end, the process still waits a while for running functions. A thread may be inside a C++ library, for instance to
+load a model. If the interpreter ended such a thread, the whole process might crash.
 """
 
 from __future__ import annotations
@@ -164,7 +164,7 @@ class JobQueue:
 
         The caller must hold the lock of the pool's `change`.
         """
-        if job not in self._begun:  # the job was abandoned, and its place has gone to another
+        if job not in self._begun:  # the job was abandoned, and another job has its place already
             return []
         self._begun.remove(job)
         following = [self._waiting.popleft()] if self._waiting else []

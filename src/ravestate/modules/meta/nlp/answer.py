@@ -38,7 +38,7 @@ class YesNo:
 
 
 _SCORES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
-"""The classes of examples as scores."""
+"""Class of examples → its score, from 2 (surely yes) to -2 (surely no)."""
 _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
@@ -82,7 +82,7 @@ def yesno_of(text: str) -> YesNo:
 
 
 def _score(text: str) -> int | None:
-    """Return the score of the first part that is more than a filler, and of the parts after it in the same sentence."""
+    """Return the score of the first sentence of a text that has more than fillers."""
     found: int | None = None
     hedged = False
     for part, marks in _parts(text):
@@ -115,7 +115,7 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _score_of_part(part: str, asks: bool) -> int | None:
-    """Return the score of a part. A question counts if it is a weak answer, or resembles an example that asks."""
+    """Return the score of a part. A question has a score only if it resembles a weak answer or an example that asks."""
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:

@@ -203,7 +203,7 @@ class Clause:
 
     @cached_property
     def own(self) -> list[Word]:
-        """The words of this clause, without those of clauses inside it."""
+        """The words of this clause, without the words of clauses inside it."""
         found = list(self.verbs)
         for word in found:  # the list grows in the loop
             found += [child for child in self.tree.children(word) if child.index not in self._clauses]
@@ -211,7 +211,7 @@ class Clause:
 
     @cached_property
     def _is_relative(self) -> bool:
-        """Whether this is a relative clause. *Tom, where do you live* has none: it is a question."""
+        """Whether this is a relative clause. *where do you live* in *Tom, where do you live* is not: it is a question."""
         deps = [word.dep for word in self.tree.children(self.verb, "aux", *SUBJECTS)]
         return self.verb.dep == "relcl" and not (deps[:1] == ["aux"] and set(deps) & set(SUBJECTS))
 

@@ -33,8 +33,8 @@ _RULE = "learn_intents"
 def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path) -> rs.Signal[Match]:
     """Declare a signal for utterances that resemble `examples`; its payload is the `Match`.
 
-    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with sentences of no
-    class. Only the signal of the best match is raised. Two or three examples are enough for a start.
+    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with sentences that
+    belong to no class. Only the signal of the best match is raised. Two or three examples are enough for a start.
 
     Args:
         module: The module of the signal, which must require ``nlp``.
@@ -151,13 +151,13 @@ def _declared(module: rs.Module) -> dict[str, tuple[str, ...]]:
 
     declared: dict[str, tuple[str, ...]] = {}
     cast("Any", publish).declared = declared
-    # The rules of all modules write the same slot. They are detached, so that they do not exclude each other (L10).
+    # The rules of all modules write the same slot. Without detachment, they would exclude each other (L10).
     module.rule(when=rs.startup.detached(), writes=names.intents, detached=True, background=True, name=_RULE)(publish)
     return declared
 
 
 def _sentences(examples: Sequence[str] | str | Path, name: str, folder: Path, where: str) -> tuple[str, ...]:
-    """Return the examples, read from a file if they are in one."""
+    """Return the examples as a tuple. If `examples` is a path, read them from that file."""
     found: Any = examples
     source = where
     if isinstance(examples, (str, Path)):

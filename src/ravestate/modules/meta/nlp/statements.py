@@ -68,7 +68,7 @@ def statements_of(
 
 
 class _Assertion:
-    """The flags that all triples of one clause share: whether it is true, past, imagined, wanted, or reported."""
+    """The flags that all triples of one clause share: whether the clause is past, imagined, wanted, reported or asked."""
 
     def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
         self._tree = clause.tree
@@ -79,7 +79,7 @@ class _Assertion:
         dep = clause.verb.dep
         shares = dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not clause.own_subjects)
         self._sharing = self._above if shares else None
-        """The clause above, if this clause shares its flags."""
+        """The clause above, if this clause shares the flags of that clause; else None."""
 
     def statement(self, triple: Triple, subject: Phrase, object: Phrase) -> Statement:
         """Return the statement of a triple of this clause."""

@@ -155,7 +155,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ merging and forgetting
 
     def merge(self, keep: Node, duplicate: Node, /) -> Node:
-        """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks; return `keep`.
+        """Merge two nodes: give `keep` the duplicate's relations and any missing properties. Return `keep`.
 
         Raises:
             RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype.
@@ -186,7 +186,7 @@ class Graph:
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))
 
     def only_about(self, node: Node, /) -> list[Node]:
-        """Return the nodes that `forget` would remove, `node` first; an empty list if memory does not have it."""
+        """Return the nodes that `forget` would remove, `node` first; an empty list if memory does not have `node`."""
         start = self.get(node.id)
         if start is None:
             return []

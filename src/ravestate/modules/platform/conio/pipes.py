@@ -114,7 +114,7 @@ class Pipes:
                 except (OSError, ValueError):
                     block = b""
                 ended = not block
-                if skipping:  # the tail of a line that was too long
+                if skipping:  # leave out the rest of a line that was too long
                     _, line_end, block = block.partition(b"\n")
                     skipping = not line_end
                 rest += block
