@@ -181,7 +181,7 @@ class Recorder:
         self._take(record)  # this call may begin the next gap
 
     def _rest(self) -> None:
-        """Allow more records for the time that has passed. If this allows none, stop listening for a moment."""
+        """Compute how many records the recorder may take now. If it may take none, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()

@@ -113,7 +113,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
 
 
 def places(order: Sequence[Sequence[int]]) -> list[int]:
-    """Return vertex → its place within its layer, given the vertices of each layer."""
+    """Return each vertex's place within its layer, given the vertices of each layer."""
     found = [0] * sum(map(len, order))
     for layer in order:
         for place, vertex in enumerate(layer):

@@ -78,7 +78,7 @@ class Causes:
 
     @cached_property
     def _closures(self) -> list[int]:
-        """Return component → the closure that the component's signals share."""
+        """Return the closure of each component. All signals of a component have the same closure."""
         of = self.components.of
         found: list[int] = []
         for number, members in enumerate(self.components.members):  # causes before their effects

@@ -88,7 +88,7 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 
 
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
-    """Return signal → the number of rules with the signal on one of their pathways."""
+    """Return, for each signal, the number of rules that have the signal on a pathway."""
     of, members = causes.components.of, causes.components.members
     completed = [0] * len(members)  # component → the rules that it leads to without detachment, as a set
     looked_at = [0] * len(signals)

@@ -14,7 +14,7 @@ from ravestate.errors import RuleError
 
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
-    """Return the event that reports the end of a run, given its result or, if `raised`, its exception."""
+    """Return the event that reports the end of a run. `outcome` is the run's result or, if `raised`, its exception."""
     if outcome is None:
         return Finish(run, "done")
     if isinstance(outcome, Resign):

@@ -211,7 +211,7 @@ class Clause:
 
     @cached_property
     def _is_relative(self) -> bool:
-        """Whether this is a relative clause. *where do you live* in *Tom, where do you live* is not: it is a question."""
+        """Whether this is a relative clause. In *Tom, where do you live*, *where do you live* is a question instead."""
         deps = [word.dep for word in self.tree.children(self.verb, "aux", *SUBJECTS)]
         return self.verb.dep == "relcl" and not (deps[:1] == ["aux"] and set(deps) & set(SUBJECTS))
 

@@ -72,7 +72,7 @@ class Types:
         return self._relations
 
     def properties(self, type: str) -> Mapping[str, Kind]:
-        """Return name → kind for all properties of a type, inherited properties first."""
+        """Return all properties of a type as a map from names to kinds, inherited properties first."""
         self._check(type)
         return self._properties[type]
 
