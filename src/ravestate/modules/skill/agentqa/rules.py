@@ -29,12 +29,12 @@ CERTAIN = 0.7
 STATED = 0.85
 """The same for a statement. It is higher, because statements may resemble a question: *I don't know what to say*."""
 TURNS = 6
-"""The number of the user's utterances before the agent invites them to ask about it."""
+"""The number of utterances that a user makes before the agent invites questions about itself."""
 
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
 async def be_born(ctx: rs.RuleContext) -> None:
-    """Read the agent's life, and publish its name."""
+    """Read the file about the agent, its life, and publish the agent's name."""
     settings: Settings = ctx.settings
     told = read_life(settings.life)
     ctx[interloc.agent] = told.name
@@ -56,7 +56,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)
 async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Update memory to match the file."""
+    """Save the facts of the agent's life in memory."""
     told, memory = ctx.payload(life.changed), ctx[ontology.memory]
     if told is None or memory is None:
         return rs.Resign("there is no memory, or no life")
@@ -118,7 +118,7 @@ async def heed_act(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("there is no life, or `heed` has noticed the remark")
     found = act_in(seen, told)
     if found is None:
-        return rs.Resign("it is not such a remark")
+        return rs.Resign("the utterance is not a remark that the agent responds to, such as an insult")
     ctx.emit(remarked, found)
     return None
 
@@ -132,7 +132,7 @@ async def heed_act(ctx: rs.RuleContext) -> rs.Resign | None:
 async def respond(ctx: rs.RuleContext) -> None:
     """Answer the remark."""
     told, remark = ctx[life], ctx.payload(remarked)
-    assert told is not None  # `heed` has run only if there is a life
+    assert told is not None  # without a life, no rule emits `remarked`
     phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is not None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
@@ -153,7 +153,7 @@ async def keep_quiet(ctx: rs.RuleContext) -> None:
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer the question."""
     match, told = ctx.payload(asked), ctx[life]
-    assert told is not None  # `understand` has run only if there is a life
+    assert told is not None  # without a life, no rule emits `asked`
     facts = await known(ctx, told, ctx[ontology.memory])
     phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is None:
@@ -169,7 +169,8 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     reads=(prompted, turns, idle.unanswered),
     writes=(verbaliser.intent, rawio.output, prompted),  # the output, so that no other rule speaks at the same time
     weight=0.9,
-    detached=True,  # starts a causal group of its own: in the group of `bored`, no rule could put the intent into words
+    # A causal group of its own: in the group of `bored`, this rule takes `rawio.output`, which the verbaliser needs.
+    detached=True,
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """After a long silence, invite the user to ask about the agent. Do so only once."""
@@ -184,13 +185,14 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _returns(seen: Analysis) -> bool:
-    """Return whether the user returns a question, perhaps after an answer: *sailing, and you*."""
+    """Return whether the user asks the agent's own question back: *and you?*, or *sailing, and you?*."""
     last = seen.sentences[-1].rpartition(", ")[2] if seen.sentences else ""
     return seen.act("return_question") is not None or "return_question" in acts([last])
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases. Braces left in a phrase belong to a fact, so they are escaped."""
+    """Return an intent with finished phrases. Its braces are escaped, because they belong to facts: all
+    placeholders have been filled."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

@@ -24,7 +24,7 @@ LONGEST = 100
 """The number of the user's statements that a conversation remembers."""
 
 CORRECTABLE = 2
-"""The number of utterances during which "no, Bremen" corrects the last fact."""
+"""The number of utterances after a fact in which the user can correct it briefly, as with "no, Bremen"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Question:
     since: float
     """Seconds from the beginning of the context to the question."""
     turns: int = 0
-    """How many times the user has spoken since the question without an answer to it."""
+    """How many times the user has spoken since the question without answering it."""
     heard: bool = False
     spoken_over: bool = False
     """Whether the agent has said something else since the question. If so, a mere "no" may answer the later words."""
@@ -59,15 +59,16 @@ class Talk:
     told: frozenset[str] = frozenset()
     """Topics about which the user told something in this conversation."""
     last: str = ""
-    """The topic that the agent has learnt or mentioned most recently. "No, Bremen" corrects its values, `latest`."""
+    """The topic that the agent has learnt or mentioned most recently."""
     latest: tuple[str, ...] = ()
+    """The values of the topic `last`. The user can correct them briefly, as with "no, Bremen"."""
     age: int = 0
     """The number of utterances since the agent learnt or mentioned `last`."""
     met: bool = False
     """Whether the agent has asked memory about the user."""
     remembered: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     once: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """All values that the user told in this conversation, including values that no longer hold."""
+    """All values that this conversation saved or removed, including values that no longer hold."""
     returns: bool = False
     """Whether the user has talked to the agent before, as far as memory knows."""
     newcomer: bool = False
@@ -116,7 +117,7 @@ class Talk:
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self) -> Talk:
-        """Count an utterance of the agent: its question, an answer to the user, or something else."""
+        """Note that the agent has spoken. Its first utterance is the question; the next one may speak over the question."""
         question = self.question
         if question is None or (question.heard and question.turns):
             return self
@@ -131,7 +132,7 @@ class Talk:
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """Note the `topics` that the user told about. "No, Bremen" would correct the values `latest` of `last`."""
+        """Note the `topics` that the user told about, and the values of the topic `last`, which a correction would change."""
         answered = self.question is not None and self.question.topic in topics
         told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
         return told.mentioning(last, latest)
@@ -146,14 +147,14 @@ class Talk:
         return talk.keeping(gone).learning(gone.keys(), "", ())
 
     def keeping(self, values: Mapping[str, tuple[str, ...]]) -> Talk:
-        """Note values that this conversation may have saved in memory."""
+        """Note values that this conversation has saved or removed, whether or not memory has finished."""
         return replace(
             self, once={**self.once, **{topic: self.once.get(topic, ()) + values[topic] for topic in values}}
         )
 
     @property
     def ever(self) -> Mapping[str, tuple[str, ...]]:
-        """All values that memory had before, or that this conversation may have saved."""
+        """All values that memory held before this conversation, and all values that this conversation saved or removed."""
         topics = {**self.remembered, **self.once}
         return {topic: self.remembered.get(topic, ()) + self.once.get(topic, ()) for topic in topics}
 
