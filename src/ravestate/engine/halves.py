@@ -63,16 +63,16 @@ class Halves(ConflictSets):
         self.lacking.setdefault(clause.needs[1 - need.index], {})[activation] = None
         return activation
 
-    def _offer_to_halves(self, signal: SignalPlan, spike: Spike) -> None:
-        """Offer a new spike to the halves of its signal."""
+    def _offer_to_halves(self, signal: SignalPlan, spike: Spike) -> list[Need]:
+        """Offer a new spike to the halves of its signal; return the needs to which it must be offered one by one."""
+        others: list[Need] = []
         group = spike.group.root()
         single = self.tracer is not None or self._loops.full
         if single:
             self.unfold_all()
         for half in signal.halves:
             if single or (self.retired and not self.retired.isdisjoint(half.places)):
-                for need in half.needs:
-                    self._offer(need, spike)
+                others += half.needs
                 continue
             first = half.needs[0]
             rule = first.clause.rule
@@ -95,6 +95,7 @@ class Halves(ConflictSets):
                 self._inherit_pressure(spike, half, group)
         if group.interested:
             self._dirty[group] = None
+        return others
 
     def _pair(self, need: Need, spike: Spike, group: Group) -> bool:
         """Make the activations that a new spike completes; return whether the spike needs no entry for the clause."""

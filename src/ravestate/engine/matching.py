@@ -125,7 +125,8 @@ class Matching(Halves):
         for need in signal.others:
             self._offer(need, spike)
         if signal.halves:
-            self._offer_to_halves(signal, spike)
+            for need in self._offer_to_halves(signal, spike):
+                self._offer(need, spike)
         if signal.contests:
             self._offer_to_sets(signal, spike)
         if not (spike.holders or spike.entries):
