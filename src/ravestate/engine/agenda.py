@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
+from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, RUNNING, WAITING, Activation
 from ravestate.engine.consent import Refusal, ask, stalemate
 from ravestate.engine.deadlines import PATIENCE, RECHECK, TIMEOUT
 from ravestate.engine.effects import Run
@@ -252,6 +252,27 @@ class Agenda(Slots):
             lacks = tuple(n.signal.name for n in rival.needs if n.bit & missing)
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
         return until
+
+    def is_pressed(self, time: float, owner: tuple[Group, int | Activation]) -> bool:
+        """Return whether the patience of a rival still matters."""
+        group, rival = owner[0].root(), owner[1]
+        if isinstance(rival, int):
+            return bool(group.interested)
+        return rival.state < RUNNING and rival.pressed.get(group) == time
+
+    def on_patience(self, time: float, owner: tuple[Group, int | Activation]) -> None:
+        """Let the activations that wait in a group judge a rival again, whose patience is over (L16)."""
+        self._dirty[owner[0].root()] = None
+
+    def on_recheck(self, time: float, activation: Activation) -> None:
+        """Let an activation ask again, because the order of recovering utilities has changed (L15)."""
+        activation.recheck = NEVER
+        if activation.state == WAITING:
+            self._asking[activation] = None
+
+    def on_timeout(self, time: float, run: Activation) -> None:
+        """Cancel a run that has had its time (L18)."""
+        self._cancel(run, "timeout")
 
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""

@@ -92,3 +92,8 @@ class Entries(State):
                 del self.live[signal.index]
         if spike.group.root().interested:
             self._dirty[spike.group.root()] = None
+
+    def on_forget(self, time: float, spike: Spike) -> None:
+        """Remove a spike that is too old for every detached need, if nothing holds it."""
+        if not (spike.holders or spike.entries):
+            self._forget(spike)

@@ -141,7 +141,7 @@ class Holdings(Entries):
             if spike is not None and need.max_age != NEVER:
                 self._let_expire(spike, spike.born + need.max_age)
 
-    def _expire(self, spike: Spike, time: float) -> None:
+    def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in list(spike.holders):
             if holder.state is GATHERING:
@@ -150,6 +150,11 @@ class Holdings(Entries):
         for half in self.halves_of(spike):
             if spike.born + half.max_age <= time:
                 self._drop(spike, half)
+
+    def on_ripen(self, time: float, activation: Activation) -> None:
+        """Judge an activation again whose spikes are old enough now (L14)."""
+        activation.ripens = NEVER
+        self._update(activation)
 
     def _complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it: a writer asks for consent, and any other activation starts without it.

@@ -185,6 +185,18 @@ class Matching(Halves):
                 if held is not None and held.id < spike.id:
                     self._swap(activation, need, spike)
 
+    def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
+        """Show a spike to a detached need for which it is old enough now (L19)."""
+        need, spike = looking
+        need = self.policy.clause_plans[need.clause.index].needs[need.index]  # a rule may have been added since
+        if self._fits(need, spike):
+            self._show(need, spike)
+
+    def on_watch(self, time: float, watch: Watch) -> None:
+        """Judge an `until` condition whose spikes are old enough now (L21)."""
+        watch.due = NEVER
+        self._judge(watch)
+
     def _watch(self, spike: Spike) -> None:
         """Offer a new spike to the `until` conditions of runs (L21)."""
         for need in spike.signal.watchers:
