@@ -38,6 +38,16 @@ BATCH = 100
 class Agenda(Slots):
     """The layer of the engine that decides which ready activations start."""
 
+    __slots__ = (
+        "_activity",
+        "_breakers",
+        "_pressure",
+        "_queue",
+        "patience",
+        "ran",
+        "standing",
+    )
+
     def __init__(self, policy: Policy, patience: float) -> None:
         super().__init__(policy)
         self.patience = patience

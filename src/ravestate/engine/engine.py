@@ -49,6 +49,11 @@ class Engine(Agenda):
         []
     """
 
+    __slots__ = (
+        "__weakref__",
+        "report_ends",
+    )
+
     def __init__(self, policy: Policy, *, patience: float = DEFAULT_PATIENCE, report_ends: bool = False) -> None:
         super().__init__(policy, patience)
         self._deadlines = Deadlines(self, DEADLINES)

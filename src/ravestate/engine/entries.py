@@ -15,6 +15,8 @@ from ravestate.policy.model import Half, Need, RulePlan
 class Entries(State):
     """The layer of the engine that keeps the table of the halves."""
 
+    __slots__ = ()
+
     def _enter(self, spike: Spike, half: Half, before: int) -> None:
         """Let a half hold a spike; `before` is the activation number just before theirs."""
         held = self.halves.get(half)

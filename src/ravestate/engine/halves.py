@@ -25,6 +25,8 @@ from ravestate.policy.model import Clause, Half, Need, SignalPlan
 class Halves(ConflictSets):
     """The layer of the engine that offers spikes to halves, and makes their activations."""
 
+    __slots__ = ()
+
     def unfold_all(self) -> None:
         """Create the activations of all alternatives and entries."""
         super().unfold_all()

@@ -27,6 +27,8 @@ from ravestate.policy.model import Clause, Need, SignalPlan
 class Holdings(Entries):
     """The layer of the engine that gives spikes to activations and takes them away."""
 
+    __slots__ = ()
+
     def _look(self, activation: Activation, needs: Iterable[Need]) -> None:
         """For each detached need without a spike, take the newest live spike that fits, old enough if possible."""
         for need in needs:

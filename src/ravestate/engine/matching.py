@@ -20,6 +20,8 @@ from ravestate.policy.model import Need, SignalPlan
 class Matching(Halves):
     """The layer of the engine that creates spikes, groups them, and offers them to activations."""
 
+    __slots__ = ()
+
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
         """Return the parents of the spikes that a run raises; none for a detached rule, or for code outside (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on

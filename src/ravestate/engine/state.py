@@ -33,7 +33,44 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 class State:
     """The slots, live spikes and activations of an engine, and the work that is still to be done."""
 
-    _deadlines: Deadlines
+    __slots__ = (
+        "_activations",
+        "_acts",
+        "_asking",
+        "_blamed",
+        "_busy",
+        "_deadlines",
+        "_dirty",
+        "_errors",
+        "_free",
+        "_groups",
+        "_hope_counts",
+        "_loops",
+        "_out",
+        "_refused",
+        "_spikes",
+        "_stirred",
+        "_stuck",
+        "_unseen",
+        "_watched_by",
+        "_watches",
+        "active",
+        "alternatives",
+        "dropped",
+        "gated",
+        "halves",
+        "hoping",
+        "lacking",
+        "live",
+        "now",
+        "policy",
+        "retired",
+        "running",
+        "tracer",
+        "values",
+        "waiting",
+        "watched",
+    )
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
@@ -84,6 +121,7 @@ class State:
         self._errors: list[tuple[RuleFailure, Lineage | None]] = []
         self._loops = Loops()
         self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
+        self._deadlines: Deadlines
         self._busy: int = 0  # how many activations count for `core:activity`
         self._activations: int = 0  # the number of the newest activation
         self._spikes = 0
