@@ -545,3 +545,26 @@ def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> N
         ((0.0, ("emit", "s0", 2)), (0.0, ("emit", "s3", 1)), (0.0, ("emit", "s3", 0))),
     )
     assert moments(world, "r2") == [0.75, 2.875]
+
+
+def test_clauses_whose_utilities_differ_in_the_last_digits_are_equals() -> None:
+    # L9, L15: r1's utility is rounded, then doubled by its weight; r6 needs two signals of that utility. The first declared
+    # goes first, as for any equals.
+    world = World(
+        (SignalOf(input=True), *S3),
+        (SlotOf(), SlotOf(), SlotOf("flag", always=True)),
+        (
+            RuleOf(when=on("s1")),
+            RuleOf(when=on("s0"), writes=("v1",), weight=2.0),
+            RuleOf(when=on("s3"), emits=("s0",), acts=(Act(((0.0, ("emit", "s0", 0)),)),)),
+            RuleOf(when=on("s0"), emits=("s3",)),
+            RuleOf(when=on("s2")),
+            RuleOf(when=on("v2:false"), emits=("s3",), acts=(Act(((0.0, ("emit", "s3", 1)),)),)),
+            RuleOf(when=on("s0", "s3"), writes=("v1",)),
+        ),
+        ((0.0, ("write", "v2", False)),),
+    )
+    play = Play(world).play()
+    first, second = (play.engine.policy.rule_plan(f"m:r{n}").clauses[0] for n in (1, 6))
+    assert first.base == second.base
+    assert "r6" not in runs(play)
