@@ -1,4 +1,4 @@
-"""A life in YAML files that users may edit. The module's own ``life.yaml`` shows the format."""
+"""Read the agent's life, its facts and topics, from YAML files. The module's own ``life.yaml`` shows the format."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     import yaml
 
 COUNTED = ("age", "mood", "time", "date", "memory")
-"""Parameters of phrases that come from the clock or from slots."""
+"""Parameters of phrases whose values come from the clock or from slots, not from the file."""
 KNOWN = ("name", "born", *COUNTED)
 """Parameters that any phrase may have."""
 NAMED = ("it", "that")
-"""Parameters of phrases for a question that names a value."""
+"""Parameters of the phrases under ``named``: answers to a question that names a value of a fact."""
 
 _PARTS = ("facts", "topics", "others")
 _ADDED = ("questions", "remarks", "acts")
@@ -37,7 +37,7 @@ _TOLD = ("phrases", "otherwise", "unnamed")
 
 
 def read_life(own: Path | None = None) -> Life:
-    """Read the agent's life: the module's file, changed by the user's `own`.
+    """Read the agent's life from the module's file, with the changes in the user's file `own`.
 
     A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions
     and remarks to the module's topic, and replaces its phrases; ``~`` removes the topic. All other topics are new.
@@ -62,7 +62,7 @@ def _parsed(name: str, text: str, base: Life | None) -> Life:
 
 
 class _Reader:
-    """A reader of a file. Its messages about mistakes give the file's name."""
+    """A reader of one file. Its messages about mistakes name the file."""
 
     def __init__(self, file: str) -> None:
         self._file = file
@@ -130,7 +130,7 @@ class _Reader:
         return topic
 
     def _phrases(self, node: yaml.Node, more: tuple[str, ...] = ()) -> tuple[str, ...]:
-        """Return the phrases of a node, whose parameters are facts."""
+        """Return the phrases of a node. Each parameter of a phrase must be a fact or one of `more`."""
         known = (*self._known, *more)
         for item in _items(node):
             try:
