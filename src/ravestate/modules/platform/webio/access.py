@@ -55,7 +55,7 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request with these headers may not reach the board; None if it may. Only the agent's own page may."""
+        """Return why a request may not reach the board; None if it may. Only the agent's own page may."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (

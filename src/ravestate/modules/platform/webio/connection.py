@@ -199,7 +199,7 @@ class Connection:
             await woken.wait()
 
     async def _write_sound(self, session: Session) -> None:
-        """Send the agent's sound if this window has the line. If the window has just lost the line, tell the client so."""
+        """Send the agent's sound if this window has the line. If it has just lost the line, tell the client so."""
         if self._taken is not None:
             why, self._taken = self._taken, None
             await self._send(protocol.Taken(why))

@@ -18,7 +18,7 @@ BLOCK = rawio.IN_RATE // 50 * SAMPLE
 """The bytes of a block of the visitor's sound: 20 ms."""
 
 MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
-"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. Beyond that, the oldest sound is dropped."""
+"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. The oldest excess is dropped."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
 """The silence that the agent hears when the microphone goes off, so that the visitor's utterance ends: 2 s."""
@@ -61,9 +61,9 @@ def hears(policy: Policy) -> bool:
 class PageLine:
     """A `rawio.Line` whose microphone and loudspeaker are in at most one window of the visitor at a time.
 
-    The agent's sound consists of streams. A new stream begins when sound is dropped, and when a window gets the line. The
-    window reports how much of the present stream it has played. While no window has the line, sound counts as played at
-    once, because the visitor reads the words.
+    The agent's sound consists of streams. A new stream begins when sound is dropped, and when a window gets the line.
+    The window reports how much of the present stream it has played. While no window has the line, sound counts as
+    played at once, because the visitor reads the words.
 
     Args:
         on_left: Called when no window has the line any more.
@@ -138,7 +138,7 @@ class PageLine:
 
     @property
     def played(self) -> float:
-        """The seconds of sound that the loudspeaker has played. Between two reports of the window, this is an estimate."""
+        """The seconds of sound that the loudspeaker has played; an estimate between two reports of the window."""
         since = 0.0
         if self._moved is not None:
             since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
@@ -190,7 +190,7 @@ class PageLine:
         self._arrived.set()
 
     def fetch(self, window: Window) -> memoryview | None:
-        """Return the next sound for a window, at most `CHUNK` bytes; None while `AHEAD` samples of its sound are not played."""
+        """Return the next sound for a window, at most `CHUNK` bytes; None while it has not played `AHEAD` samples."""
         if self.window is not window or not self._waiting or self._sent - self._reported >= AHEAD:
             return None
         first = self._waiting.popleft()

@@ -32,7 +32,7 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
 
 
 class Pages:
-    """An ASGI application that serves the files of a folder. It reads them once; ``index.html`` stands for its folder."""
+    """An ASGI application that serves the files of a folder, read once, and ``index.html`` for the folder itself."""
 
     def __init__(self, folder: Path) -> None:
         self._files: dict[str, tuple[bytes, bytes | None, str, str]] = {}

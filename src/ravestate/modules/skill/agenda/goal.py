@@ -60,9 +60,9 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    When the agent is bored, and has not just pursued another goal, it says the words of this goal. The goal is over when
-    `done` or `refused` happens, or after the last try. The user has priority: their words interrupt a pursuit, and end
-    the opportunity.
+    When the agent is bored, and has not just pursued another goal, it says the words of this goal. The goal is over
+    when `done` or `refused` happens, or after the last try. The user has priority: their words interrupt a pursuit, and
+    end the opportunity.
 
     The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
@@ -182,7 +182,7 @@ async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
 
 
 def _condition(event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None) -> Condition:
-    """Return the condition that ends a goal: `event`, or an input that fits `words` but not `unless`. It consumes nothing."""
+    """Return a condition that consumes nothing: `event`, or an input that fits `words` but not `unless`."""
     if words is None:
         assert not isinstance(event, str)  # if `event` is a text, `words` is its pattern
         return watching(event)

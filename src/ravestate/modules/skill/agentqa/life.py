@@ -1,4 +1,4 @@
-"""An agent's life: the facts about the agent, and the topics that people may ask it about. `read_life` reads it from files."""
+"""An agent's life: facts about the agent, and topics that people may ask it about. `read_life` reads a life."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Topic:
     otherwise: tuple[str, ...] = ()
     """Answers to use if each phrase needs an unknown fact. If `otherwise` is empty, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """Pairs of a fact and the answers to a question that names one of its values. In the answers, ``{it}`` is that value,
-    and ``{that}`` is the second text if the value is a pair."""
+    """Pairs of a fact and the answers to a question that names one of its values. In the answers, ``{it}`` is that
+    value, and ``{that}`` is the second text if the value is a pair."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()

@@ -53,7 +53,7 @@ class Miss:
 class Router:
     """A classifier that finds the topic of a question about the agent. Thread-safe.
 
-    It is a `Matcher` over a life's example questions. Before `load`, it recognises only questions that equal an example.
+    It is a `Matcher` over a life's example questions. Before `load`, it recognises only exact examples.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:

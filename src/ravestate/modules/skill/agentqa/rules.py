@@ -103,7 +103,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone. So a user in distress gets an answer even if the sentence models are missing."""
+    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing."""
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)

@@ -24,7 +24,7 @@ from .stems import Stems
 RETRIEVED = 16
 """The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The sizes of the batches in which these passages are read. A batch is read only if earlier ones have no good answer."""
+"""The sizes of the batches in which these passages are read. A good answer ends the reading after its batch."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """Best scores that end the reading: `VERY_GOOD` after the first passage, `GOOD` after later passages, and `HOPELESS` or
 less after the first few passages."""
@@ -35,8 +35,8 @@ SHORT = 24
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON, COMMON_KIND = 20_000, 2_000
-"""The search skips a word that is in more passages than this, unless all words are so common. `COMMON_KIND` is for words
-of `Question.kinds`."""
+"""The search skips a word that is in more passages than this, unless all words are so common. `COMMON_KIND` is for
+words of `Question.kinds`."""
 NAMES, KINDS = 0.4, 0.7
 """The share of words to assume if a follow-up has only names: `KINDS` for a passage with a word of `Question.kinds`,
 `NAMES` for other passages."""
@@ -170,7 +170,7 @@ class Answerer:
             return self._index
 
     def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
-        """Return the passages that meet the question's qualifiers, each with its share of the question's words, best first."""
+        """Return the passages that meet the qualifiers, each with its share of the question's words, best first."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
         groups = (*asked, question.kinds[:WORDS], *question.needs)

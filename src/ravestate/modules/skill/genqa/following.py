@@ -1,4 +1,4 @@
-"""The answer to an utterance in a conversation. If the utterance has several readings, the best supported answer counts."""
+"""The answer to an utterance in a conversation. An utterance may have several readings; the best answer counts."""
 
 from __future__ import annotations
 

@@ -175,7 +175,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
 
 def focused(question: str, answer: str) -> str:
-    """Return the parts of an answer in a new order: parts with most words of the question come first. Names do not count.
+    """Return the parts of an answer, those with most words of the question first. Names do not count.
 
     Example:
         >>> focused("How high is it?", "The bridge is 512 metres long and 63 metres high.")

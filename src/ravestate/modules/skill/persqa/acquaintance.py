@@ -63,7 +63,7 @@ class Acquaintance:
         return replace(self, talk=replace(self.talk, doubt=topics[0] if topics else ""))
 
     def settled(self, graph: ontology.Graph, answer: tuple[str, ...]) -> Acquaintance:
-        """Return the user as the person in memory whose name and facts fit `answer`, or as a new person if nobody fits."""
+        """Return the user as the person in memory who has this name and fits `answer`, or else as a new person."""
         assert self.who is not None
         for person in records.namesakes(graph, self.who[NAME]):
             values = records.known(graph, person).get(self.talk.doubt, ())

@@ -89,7 +89,7 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
 def correction(
     text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False
 ) -> list[Fact]:
-    """Return the facts in a correction: *Bremen, not Hannover*, or *no, Bremen* when the agent has understood *Hannover*.
+    """Return the facts in a correction: *Bremen, not Hannover*, or just *no, Bremen*.
 
     Args:
         text: The utterance, with its short forms written out.

@@ -228,7 +228,7 @@ class Reader:
         yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
 
     def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
-        """Yield the topics that the table has for a verb with a preposition, and with an object if any: *have a job at*."""
+        """Yield the topics that the table has for *live in* (verb, preposition) or *have a job at* (with an object)."""
         predicate, object = _predicate(said), said.object
         child = any(phrase.preposition == "as" and phrase.head in WORDS["young"] for phrase in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):

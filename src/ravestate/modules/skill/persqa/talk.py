@@ -117,7 +117,7 @@ class Talk:
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self) -> Talk:
-        """Note that the agent has spoken: first the question itself, and the second time something else."""
+        """Note that the agent has spoken. The first time, this is the question itself; the second time, something else."""
         question = self.question
         if question is None or (question.heard and question.turns):
             return self
@@ -132,7 +132,7 @@ class Talk:
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """Note the topics that the user told about. The user may then correct `latest`, the values of the topic `last`."""
+        """Note the topics that the user told about. They may then correct `latest`, the values of the topic `last`."""
         answered = self.question is not None and self.question.topic in topics
         told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
         return told.mentioning(last, latest)

@@ -161,7 +161,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 
 
 def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
-    """Return whether a statement has all these words. A relative's name stands for the relative: *Rosa* for *sister*."""
+    """Return whether a statement has all these words. *Rosa* counts as *sister* if the user's sister is Rosa."""
     had = _stems(f"{one.text} {one.verb} {one.subject}")
     return all(_stems(" ".join((word, *known.get(NOUNS.get(word, ""), ())))) & had for word in words)
 

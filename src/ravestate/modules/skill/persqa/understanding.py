@@ -196,7 +196,7 @@ class _Hearing:
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
-        """Return the user's answer to the question that tests who they are. If they refuse, the meaning has no facts."""
+        """Return the answer to the question that tests who the user is. If they refuse, the meaning has no facts."""
         seen, topic = self.seen, self.talk.doubt
         told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
         if not told and seen.question is None:
