@@ -77,8 +77,8 @@ class MatrixCarrier:
             answer = await client.download(file)
         return bytes(_checked(answer).body)
 
-    async def show_work(self, chat: str) -> None:
-        """Show in the room that the agent is writing."""
+    async def show_work(self, chat: str, words: str) -> None:
+        """Show in the room that the agent is writing. Matrix has no way to show the words so far."""
         with _delivery():
             await self._client.room_typing(chat, True, timeout=WRITING)
 
