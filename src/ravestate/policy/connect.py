@@ -31,7 +31,10 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 
 
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
-    """Set the kin of each need: the needs of its clause whose pathways share a signal with its own (coherence, L12)."""
+    """Set the kin of each need: the needs of its clause that must hold spikes of the same causal group (L12).
+
+    Needs are kin if their pathways share a signal.
+    """
     for rule in rules:
         for clause in rule.clauses:
             families: list[tuple[int, int]] = []  # the roots and the needs of each group of kin, as bits
@@ -57,9 +60,9 @@ def find_contests(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the contests of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
-    Only the first clause can get consent, unless it resigns or fails. Until then the engine makes no activation of
-    the others (``engine/conflict_sets.py``). So none of their effects may help a rule that writes a slot: else other
-    activations would wait for what they may yet cause (L16).
+    Only the first clause can get consent, unless it resigns or fails. Until it has done so, the engine makes no
+    activation of the other clauses (``engine/conflict_sets.py``). A clause takes no part if its effects may help a rule
+    that writes a slot. Other activations may have to wait for such effects (L16), so this clause needs an activation.
     """
     helpful = causes.leading_to_slots()
     for signal in signals:

@@ -142,7 +142,7 @@ class Clause:
     simple: bool = False
     """Whether a spike makes the clause ready at once: it has a single need, without `min_age`, and no guard."""
     apart: bool = False
-    """Whether an activation of the clause holds spikes of one group only: its firm needs are all kin."""
+    """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
     reflexive: bool = False
     """Whether the clause hears a built-in flag. If so, its activations change no built-in flag (L22)."""
     cyclic: bool = False

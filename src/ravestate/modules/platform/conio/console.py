@@ -73,7 +73,7 @@ class Console:
         """Make a console; it reads and writes nothing yet.
 
         Args:
-            screen: The input and output; by default, a terminal or pipes, whichever the streams are.
+            screen: The input and output. The default depends on the streams: a terminal or pipes.
             prompt: The text before the line that the user types.
             history: The file that keeps typed lines; with None, they are kept for this session only.
             on_key: A function to call when the user presses a key; only a terminal notices keys.
@@ -107,7 +107,7 @@ class Console:
         return self
 
     async def __anext__(self) -> str:
-        """Return the next line, without its line end. After a cancellation, the next call gets the line."""
+        """Return the next line, without its line end. If this call is cancelled, the next call returns the line."""
         if self.ending is None:
             try:
                 return printable(await self._screen.read())
@@ -122,8 +122,8 @@ class Console:
     def utter(self, text: str) -> None:
         """Print `text` and a line end.
 
-        If `text` begins with the streamed pieces, only the rest is printed, after them. If it does not, the streamed
-        line ends first, and later pieces continue on a new line.
+        If `text` begins with the streamed pieces, only the rest is printed, after the pieces. If `text` begins in
+        another way, the streamed line ends first, and later pieces continue on a new line.
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
@@ -134,7 +134,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def grow(self, piece: str) -> None:
-        """Print `piece` after the earlier pieces of its text: at once on a terminal, and elsewhere with its whole line."""
+        """Print `piece` after the earlier pieces of its text. Anywhere but on a terminal, print whole lines only."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece

@@ -27,14 +27,13 @@ USER = "conio"  # the key of the user at the console in ``interloc.users``
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Write each typed line to ``rawio.input``; end the agent after the last line."""
-    await asyncio.to_thread(prepare)
+    await asyncio.to_thread(prepare)  # in a thread, because this takes long while other threads load models
     history = history_file() if ctx.settings.history else None
 
     def tell() -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # `prepare` runs in a thread, because it takes long while other threads load models.
         plain = Pipes(sys.stdin, sys.stdout) if ctx.settings.plain else None
         console = await asyncio.to_thread(
             Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell
@@ -54,7 +53,7 @@ async def listen(ctx: rs.RuleContext) -> None:
                 if line.strip():
                     ctx[rawio.input] = line
                 if not console.interactive:
-                    await ctx.quiet()  # all lines may arrive at once, and each needs its own answer
+                    await ctx.quiet()  # wait for the answer to this line: through a pipe, all lines may arrive at once
             if console.ending == "end of input":
                 await ctx.quiet()  # a user who ends the input still gets the last answer
             else:
