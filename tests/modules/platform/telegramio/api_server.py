@@ -443,6 +443,14 @@ class Broken(Response):
         await send({"type": "http.response.body", "body": b'{"ok"', "more_body": False})
 
 
+class Announced(uvicorn.Server):
+    """A server that prints a line once it listens."""
+
+    async def startup(self, sockets: Any = None) -> None:
+        await super().startup(sockets)
+        print("ready", flush=True)
+
+
 async def form(request: Request) -> dict[str, Any]:
     """The arguments of a call, from a form of either kind."""
     body = await request.body()
@@ -488,10 +496,5 @@ def application(file: str) -> Starlette:
 
 
 if __name__ == "__main__":
-    uvicorn.run(
-        application(sys.argv[2]),
-        host="127.0.0.1",
-        port=int(sys.argv[1]),
-        log_level="error",
-        timeout_graceful_shutdown=1,
-    )
+    app, port = application(sys.argv[2]), int(sys.argv[1])
+    Announced(uvicorn.Config(app, "127.0.0.1", port, log_level="error", timeout_graceful_shutdown=1)).run()

@@ -97,16 +97,6 @@ async def test_the_agent_answers(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_two_hundred_chats_at_once_and_none_crossed(bot: Bot, tmp_path: Path) -> None:
-    async with running(bot, tmp_path):
-        await bot.do(
-            "crowd", messages=[{"chat": chat, "text": f"{n} of {chat}"} for n in range(2) for chat in range(1, 201)]
-        )
-        said = await bot.said(400)
-    assert sorted(said) == sorted(f"{chat}: {n} of {chat}" for n in range(2) for chat in range(1, 201))
-
-
-@live
 async def test_messages_of_a_chat_are_answered_in_order(bot: Bot, tmp_path: Path) -> None:
     for n in range(20):
         await bot.say(7, f"message {n}")
