@@ -26,9 +26,7 @@ from benchmarks.peers import speech
 from benchmarks.peers.speech import BACK_CHANNELS, COMPLETE, INTERRUPTIONS, OPEN, PEOPLE, STORIES, plain, spoken, track
 from ravestate.modules import rawio, voiceio
 from ravestate.modules.platform.voiceio import sound
-from ravestate.modules.platform.voiceio.models import smart_turn
 from ravestate.modules.platform.voiceio.playout import PlayOut
-from ravestate.modules.platform.voiceio.turn import Melody, wanted_silence
 
 OWN, WHOLE = 0.020, {"tiny.en": 0.9, "base": 1.5}
 """The greatest seconds of our own share, and of the whole wait with each model."""
@@ -59,13 +57,12 @@ def ask(bench: Bench) -> Iterable[Figure]:
             target=f"< {limit:g} s", reach=lambda x, limit=limit: x < limit,
         )  # fmt: skip
     bench.progress("end of turn")
-    cuts, missed, count = ends_of_turns("tiny.en", bench.several(30, 8))
-    yield measured(
-        "voice", f"false cuts of {count} pauses", [cuts], unit="core", target="<= 10%", reach=lambda x: x <= 0.1
-    )
-    yield measured(
-        "voice", f"missed ends of {count} sentences", [missed], unit="core", target="<= 10%", reach=lambda x: x <= 0.1
-    )
+    for model in WHOLE:
+        cuts, missed, count = ends_of_turns(model, bench.several(30, 8))
+        for name, share in ((f"false cuts of {count} pauses", cuts), (f"missed ends of {count} sentences", missed)):
+            yield measured(
+                "voice", f"{model}: {name}", [share], unit="core", target="<= 10%", reach=lambda x: x <= 0.1
+            )
     bench.progress("interruptions")
     delays, exact, near = interruptions(bench.several(20, 4))
     worst = statistics.quantiles(delays, n=20, method="inclusive")[-1]
@@ -212,20 +209,35 @@ def _time(thing: Any, name: str, times: dict[str, list[tuple[float, float]]]) ->
 # ---------------------------------------------------------------------------------------- turns
 
 
-def ends_of_turns(model: str, many: int) -> tuple[float, float, int]:
-    """Return the shares of false cuts and of missed ends, and the number of sentences of each kind."""
-    file = smart_turn()
-    assert file is not None
-    melody, settings, ears = Melody(file), voiceio.Settings(), speech.recogniser(model)
-    quiet = sound.silence(settings.pause, rawio.IN_RATE)
+PAUSE, APART = 1.0, 2.5
+"""The seconds of a pause within a sentence, and of the silence behind a sentence."""
 
-    def wanted(text: str) -> float:
-        pcm = sound.silence(0.3, rawio.IN_RATE) + spoken(text) + quiet
-        return wanted_silence(ears.recognise(pcm).text, melody.complete(pcm), settings)
 
-    cuts = [wanted(begin) < 1.0 for begin, _ in OPEN[:many]]
-    missed = [wanted(text) > 1.0 for text in COMPLETE[:many]]
-    return statistics.fmean(cuts), statistics.fmean(missed), min(many, len(OPEN))
+def ends_of_turns(model: str, many: int, open_: Any = OPEN, complete: Any = COMPLETE) -> tuple[float, float, int]:
+    """Return the shares of false cuts and of missed ends, and the number of sentences of each kind.
+
+    A false cut is a turn that ends in the pause of a sentence. A missed end is a turn that ends as late as each turn does.
+    """
+    broken = [(spoken(begin), spoken(rest)) for begin, rest in open_[:many]]
+    whole = [spoken(text) for text in complete[:many]]
+    parts: list[tuple[float, bytes]] = []
+    pauses: list[tuple[float, float]] = []
+    ends: list[float] = []
+    now = 0.5
+    for begin, rest in broken:
+        pause = now + sound.seconds(begin, rawio.IN_RATE)
+        pauses.append((pause, pause + PAUSE))
+        parts += [(now, begin), (pause + PAUSE, rest)]
+        now = pause + PAUSE + sound.seconds(rest, rawio.IN_RATE) + APART
+    for one in whole:
+        parts.append((now, one))
+        ends.append(now + sound.seconds(one, rawio.IN_RATE))
+        now = ends[-1] + APART
+    found = speech.decisions(track(parts, now), model=model)
+    slow = voiceio.Settings().longest_pause - 0.1
+    cuts = [any(begin < one.time < end + 0.2 for one in found) for begin, end in pauses]
+    missed = [not any(end - 0.3 < one.time < end + slow for one in found) for end in ends]
+    return statistics.fmean(cuts), statistics.fmean(missed), len(broken)
 
 
 # ------------------------------------------------------------------------------- interruptions

@@ -48,7 +48,7 @@ class Conversation:
         hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
         complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
         found = await hearing
-        return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings)
+        return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
         """Return what a turn is: ``utterance``, ``back_channel`` or ``false_alarm``, and the words or the reason."""
