@@ -3,10 +3,11 @@
 - Words: the share of wrong words in recordings of people (LibriVox, from Debian's pocketsphinx-testdata).
 - Wait: the time from the end of the user's speech to the first sound of the answer, on the clock of this machine. It has
   four parts: the pause that the settings demand, recognition, synthesis, and the rest, which is our own share.
-- End of turn: complete sentences, and beginnings of sentences that go on after a pause of a second. A false cut takes such
-  a pause for the end; a missed end waits for the longest pause behind a complete sentence.
+- End of turn: complete sentences, and beginnings of sentences that go on after a pause of a second, as a recording. A
+  false cut takes such a pause for the end; a missed end waits for the longest pause behind a complete sentence.
 - Interruptions, back-channels and the echo: on the time line of a recording, in virtual time.
-- Heard: the words that the agent believes were heard of an interrupted story, against the words in the loudspeaker's file.
+- Heard: the words that the agent believes were heard of an interrupted story, against the words of which at least half are
+  in the loudspeaker's file.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import ravestate as rs
 from benchmarks.bench import Bench
 from benchmarks.figures import Figure, measured
 from benchmarks.peers import speech
+from benchmarks.peers.heard import heard_words, noted
 from benchmarks.peers.speech import BACK_CHANNELS, COMPLETE, INTERRUPTIONS, OPEN, PEOPLE, STORIES, plain, spoken, track
 from ravestate.modules import rawio, voiceio
 from ravestate.modules.platform.voiceio import sound
@@ -69,10 +71,10 @@ def ask(bench: Bench) -> Iterable[Figure]:
     yield measured(
         "voice", f"onset to silence, 95 % of {len(delays)}", [worst], target="<= 300 ms", reach=lambda x: x <= 0.3
     )
-    yield measured("voice", "heard text right to the word", [exact], unit="core")
     yield measured(
-        "voice", "heard text right within a word", [near], unit="core", target=">= 90%", reach=lambda x: x >= 0.9
+        "voice", "heard text right to the word", [exact], unit="core", target=">= 90%", reach=lambda x: x >= 0.9
     )
+    yield measured("voice", "heard text right within a word", [near], unit="core")
     bench.progress("back-channels")
     stopped, count = back_channels(bench.several(3, 1))
     yield measured(
@@ -109,6 +111,8 @@ def word_error_rate(model: str) -> float:
 
 class LiveLine:
     """A line on the clock of this machine: a track is the microphone, and the first sound of each answer is timed."""
+
+    cancels_echo = True
 
     def __init__(self, pcm: bytes) -> None:
         self._pcm = pcm
@@ -247,36 +251,26 @@ def interruptions(many: int) -> tuple[list[float], float, float]:
     """Return the seconds from each onset to silence, and the shares of heard texts that are exact, or right within a word."""
     delays: list[float] = []
     off: list[int] = []
-    gap = 9.0
     for first in range(0, many, len(INTERRUPTIONS)):
         texts = INTERRUPTIONS[: many - first]
         name = "piper" if first % 20 == 0 else "espeak:en-us"
-        onsets = [3.5 + gap * (number + 0.37 * (number % 3)) for number in range(1, len(texts) + 1)]
+        onsets = [3.5 + 9.0 * number + 0.37 * (number % 3) for number in range(1, len(texts) + 1)]
         parts = [(0.5, spoken("Please tell me a story."))]
         parts += [(at, spoken(text, name)) for at, text in zip(onsets, texts, strict=True)]
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, noted() as sentences:
             out = Path(folder) / "out.wav"
             said = speech.conversation(track(parts, onsets[-1] + 6.0), out)
-            played = sound.decode(out, rawio.IN_RATE)
-        stories = [one for one in said if one.speaker == "agent" and one.cut]
+            played = sound.decode(out, rawio.OUT_RATE)
+        stories = [one for one in said if one.speaker == "agent"]
         for onset in onsets:
-            cut = [one for one in stories if one.start < onset and abs(one.end - onset) < 2.0]
-            spoke = any(one.speaker == "agent" and one.start < onset < one.end + 2.0 for one in said)
-            if cut or spoke:  # else nothing was there to interrupt
-                delays.append(min((one.end for one in cut), default=onset + 2.0) - onset)
-            off += [
-                _words_off(one.text, played[2 * round(one.start * 16000) : 2 * round((one.end + 0.1) * 16000)])
-                for one in cut[:1]
-            ]
+            under_way = [one for one in stories if one.start < onset < one.end]
+            delays += [min(one.end - onset, 2.0) for one in under_way]  # else nothing was there to interrupt
+            for one in under_way:
+                begin, end = (2 * round(time * rawio.OUT_RATE) for time in (one.start - 0.05, one.end + 0.1))
+                story = next(text for text in STORIES if text.startswith(one.text[:20]))
+                true = heard_words(story, sentences, played[begin:end])
+                off.append(abs(len(true.split()) - len(one.text.split())))
     return delays, statistics.fmean(x == 0 for x in off), statistics.fmean(x <= 1 for x in off)
-
-
-def _words_off(heard: str, pcm: bytes) -> int:
-    """Return by how many words the heard text differs from the words in the sound, as the better recogniser hears them."""
-    words = plain(speech.recogniser("base").recognise(pcm + bytes(16000)).text)
-    (story,) = (plain(text) for text in STORIES if text.startswith(heard[:20]))
-    count = min(range(len(story) + 1), key=lambda k: speech.word_errors(story[:k], words))
-    return abs(count - len(plain(heard)))
 
 
 def back_channels(rounds: int) -> tuple[float, int]:

@@ -103,9 +103,9 @@ class Recogniser:
         found = _cleaned(answer["text"], answer["confidence"], answer["no_speech"])
         return replace(found, last=answer.get("last", {})) if found.text else found
 
-    def close(self) -> None:
-        """Let go of the model; its last user ends the process."""
-        model_process.drop(self._process)
+    def close(self, *, linger: bool = False) -> None:
+        """Let go of the model; its last user ends the process, after a while if it may `linger`."""
+        model_process.drop(self._process, linger=linger)
 
 
 def _cores() -> int:
