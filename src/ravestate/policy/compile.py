@@ -14,7 +14,7 @@ from ravestate.declare.wording import few
 from ravestate.errors import DeclarationError, DeclarationErrors
 from ravestate.policy.causes import Causes
 from ravestate.policy.completion import UNIT, Completion
-from ravestate.policy.connect import connect, find_contests, find_kin
+from ravestate.policy.connect import connect, find_contests, find_halves, find_kin
 from ravestate.policy.least import Least
 from ravestate.policy.model import RulePlan, SignalPlan
 from ravestate.policy.names import Names
@@ -75,6 +75,7 @@ def build(
     find_kin(numbered.plans, causes)
     completion = _assign_utilities(names.signals, numbered.plans, causes)
     find_contests(names.signals, causes)
+    find_halves(names.signals, causes)
     return Policy(
         modules=tuple(modules),
         declared=tuple(rules),

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
+from .fields import ProtocolError
 from .names import ORIGIN
-from .protocol import ProtocolError
 
 if TYPE_CHECKING:
     from .names import Settings

@@ -9,7 +9,9 @@ from collections.abc import Awaitable, Callable
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from .protocol import CLOSING_CODES, Error, ProtocolError, serialise
+from .fields import CLOSING_CODES, ProtocolError
+from .frames import Error
+from .protocol import serialise
 
 LONGEST = 128 * 1024
 """The maximum number of bytes in a frame. A text may have 10,000 characters, each up to twelve bytes in JSON."""

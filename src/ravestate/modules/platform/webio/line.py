@@ -69,6 +69,9 @@ class PageLine:
         on_left: Called when no window has the line any more.
     """
 
+    cancels_echo = True
+    """Whether the visitor's sound comes without the loudspeaker's echo: browsers remove it."""
+
     def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
         self.window: Window | None = None
         """The window that has the line; None if no window has it."""

@@ -20,9 +20,10 @@ from ravestate.modules._text import printable, without_controls
 from ravestate.modules.platform.chats import people
 from ravestate.modules.platform.chats.leaving import agent_left
 
+from .fields import LONGEST_NAME, name_of
+from .frames import Heard, Message
 from .line import PageLine, Window
 from .names import page
-from .protocol import LONGEST_NAME, Heard, Message, name_of
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context

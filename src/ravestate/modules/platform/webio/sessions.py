@@ -6,8 +6,8 @@ import asyncio
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from .fields import ProtocolError
 from .line import hears
-from .protocol import ProtocolError
 from .session import Ending, Onlooker, Session
 
 if TYPE_CHECKING:
