@@ -117,7 +117,7 @@ class Talk:
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self) -> Talk:
-        """Note that the agent has spoken. The first time, this is the question itself; the second time, something else."""
+        """Note that the agent has spoken. The first time, this is the question itself; after that, something else."""
         question = self.question
         if question is None or (question.heard and question.turns):
             return self
