@@ -126,7 +126,7 @@ def as_question(heard: str | Parse) -> Question:
         >>> as_question("Hello! Can you tell me what the capital of Peru is?").words
         ('capital', 'Peru')
         >>> as_question("What is your name?").declined
-        'it is about the two who talk'
+        'it is about the user or the agent'
     """
     if isinstance(heard, str):
         if len(heard) > LONGEST:
@@ -142,7 +142,7 @@ def as_question(heard: str | Parse) -> Question:
         reason = "it is about the moment, which documents do not know"
     named = {part for word in said if is_name(heard, word) for part in _parts(word)}
     if not reason and words and heard.kind in _ABOUT_DEEDS and named.issuperset(words):
-        reason = "it asks nothing about a name"
+        reason = "it has only a name, and asks nothing about it"
     if not reason and not words:
         reason = "it has no word to look for"
     if any(word.low in THE_TWO for word in said):
@@ -176,7 +176,7 @@ def _declined(heard: Parse, said: Sequence[Word]) -> str:
     root = next((word for word in said if word.dep == "ROOT" or word.head == word.index), None)
     modal = next((word for word in said if word.tag == "MD" and word.dep in ("aux", "ROOT")), None)
     if any(word.low in THE_TWO and not _is_anybody(heard, word) for word in said):
-        return "it is about the two who talk"
+        return "it is about the user or the agent"
     if modal is not None and modal.lemma in ("will", "shall"):
         return "it is about the future, which documents do not know"
     if modal is not None and modal.low == "should" and heard.kind is QuestionWord.YES_NO:

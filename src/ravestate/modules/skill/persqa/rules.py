@@ -41,7 +41,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     now = ctx[talk]
     if now.quiet:
-        return rs.Resign("the user has taken leave")
+        return rs.Resign("the user has said goodbye")
     if now.asked is not None and (age := ctx.now - now.asked) < settings.gap:
         return rs.Resign(f"a question was asked {age:.0f} s ago; persqa.gap is {settings.gap:g} s")
     if now.question is not None and not now.question.turns:

@@ -104,7 +104,7 @@ def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
         mend = {
             401: "put a token of your account there into HF_TOKEN",
             403: "put a token of your account there into HF_TOKEN",
-            404: "it has the file no more; take another model (ravestate model list)",
+            404: "it no longer has the file; take another model (ravestate model list)",
         }.get(
             status, "wait, and repeat the command" if status in (408, 429) or status >= 500 else "is HF_ENDPOINT right?"
         )
