@@ -168,11 +168,8 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=idle.bored.min_age(Settings.prompt_after).max_age(None),
     reads=(prompted, turns, idle.unanswered),
-    writes=(
-        verbaliser.intent,
-        rawio.output,
-        prompted,
-    ),  # takes the output, so that no other rule speaks at the same time
+    # Takes the output as well, so that no other rule speaks at the same time.
+    writes=(verbaliser.intent, rawio.output, prompted),
     weight=0.9,
     # Starts a causal group of its own: in the group of `bored`, this rule takes `rawio.output`, so the verbaliser could
     # not write it.

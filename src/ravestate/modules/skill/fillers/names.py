@@ -14,7 +14,7 @@ class Settings(rs.Settings):
     """How long the agent waits before a filler."""
 
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
-    """Seconds from the user's words until the answer counts as slow. The agent has said nothing in this time."""
+    """If the agent says nothing for this many seconds after the user's words, the answer counts as slow."""
     answer_within: Annotated[float, Field(gt=0)] = 20.0
     """Seconds from a filler until the agent says that the answer takes longer."""
 
@@ -25,7 +25,7 @@ filled: rs.Slot[float | None] = module.slot("filled", None)
 """The time of the last filler, in seconds since the context began."""
 
 waiting = module.flag("waiting")
-"""Whether the user has said something and has heard no answer yet. Only then does the agent say a filler."""
+"""Whether the user has said something and has heard no answer yet. The agent says a filler only while this is true."""
 
 promised = module.flag("promised")
 """Whether the agent still owes an answer after a filler."""

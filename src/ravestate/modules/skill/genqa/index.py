@@ -253,9 +253,8 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[
-                    0
-                ]:  # no other process has made the tables
+                # Another process may have made the tables meanwhile.
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 

@@ -239,7 +239,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
-    """Return whether a word is a superlative. The *most* in *most people* is none."""
+    """Return whether a word is a superlative. The *most* in *most people* is not one."""
     before = tree.before(word)
     quantity = (
         word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")

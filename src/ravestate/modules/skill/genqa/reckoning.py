@@ -53,7 +53,7 @@ class Unanswerable(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number with a unit: the unit's name in pint, or "" if there is no unit."""
+    """A number with a unit. `unit` is the name in pint, or "" if there is no unit."""
 
     value: float
     unit: str

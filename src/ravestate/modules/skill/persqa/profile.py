@@ -47,9 +47,8 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
             continue
         before = now.pop(topic, ())
         left = without(before, values) if values else ()
-        if left or (
-            not values and TOPICS[topic].kind not in ("place", "organisation")
-        ):  # the user may have another one
+        # A user who leaves a place or an organisation may have another one, so note no empty value.
+        if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):
             now[topic] = left
         if topic == "occupation" and not left:
             topics.append("employer")

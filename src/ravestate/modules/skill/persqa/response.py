@@ -195,9 +195,8 @@ async def _written(
     except RavestateError as error:
         user = _with(user, trouble=str(error))
     if again:
-        return replace(
-            user, who=ontology.Node("Person", {NAME: name})
-        )  # memory failed, so the name is for this conversation only
+        # Memory failed, so the name is for this conversation only.
+        return replace(user, who=ontology.Node("Person", {NAME: name}))
     with contextlib.suppress(RavestateError):  # reading may work where writing fails
         return await _at_once(memory, user.recall)
     return user

@@ -99,4 +99,4 @@ class PendingBackend:
                 yield piece
 
     async def close(self) -> None:
-        """Do nothing. The chosen backend must be closed by itself."""
+        """Do nothing: this does not close the chosen backend."""
