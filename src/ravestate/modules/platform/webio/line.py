@@ -18,7 +18,7 @@ BLOCK = rawio.IN_RATE // 50 * SAMPLE
 """The bytes of a block of the visitor's sound: 20 ms."""
 
 MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
-"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. The oldest excess is dropped."""
+"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. If there is more, the oldest is dropped."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
 """The silence that the agent hears when the microphone goes off, so that the visitor's utterance ends: 2 s."""
@@ -154,7 +154,7 @@ class PageLine:
         await self._drained.wait()
 
     def close(self) -> None:
-        """Close the line. If a window has the line, it loses it."""
+        """Close the line, and take it away from its window."""
         self.closed = True
         self._arrived.set()
         self._lose("the agent does not listen any more")

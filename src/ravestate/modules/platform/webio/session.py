@@ -163,9 +163,8 @@ class Session:
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
         self._put: deque[str] = deque()  # words that `show_input` will see, and that the history has already
-        self._heard_part: str | None = (
-            None  # the part that the visitor heard of a growing utterance, if its speech was cut
-        )
+        # The part that the visitor heard of a growing utterance whose speech was cut.
+        self._heard_part: str | None = None
         self._hanging_up: asyncio.TimerHandle | None = None
         self._working = False
         self._following: asyncio.Task[None] | None = None
