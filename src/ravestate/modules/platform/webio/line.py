@@ -18,7 +18,7 @@ BLOCK = rawio.IN_RATE // 50 * SAMPLE
 """The bytes of a block of the visitor's sound: 20 ms."""
 
 MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
-"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. If there is more, the oldest is dropped."""
+"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. The oldest bytes are dropped."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
 """The silence that the agent hears when the microphone goes off, so that the visitor's utterance ends: 2 s."""
