@@ -17,7 +17,7 @@ from ravestate.board.why_not import why_not
 from ravestate.board.wire import data_of
 from ravestate.errors import RavestateError
 from ravestate.modules.platform.webio.channel import Bucket, Channel
-from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.modules.platform.webio.fields import ProtocolError
 from ravestate.runtime.run import until_first_ends
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from ravestate.board.rendering import Rendered
 from ravestate.board.wire import VERSION, TraceRecord
 from ravestate.engine.explain import ActivationState
 from ravestate.engine.reasons import LossReason, Verdict
-from ravestate.modules.platform.webio.protocol import CLOSING_CODES
+from ravestate.modules.platform.webio.fields import CLOSING_CODES
 
 __all__ = [
     "CLIENT", "CLOSING_CODES", "LOSSES", "SERVER", "VERDICTS", "VERSION", "Alive", "Answer", "Changed", "ClientFrame", "Clock",

@@ -28,7 +28,7 @@ from ravestate.board.why_not import Opens
 from ravestate.board.wire import VALUE
 from ravestate.engine.trace import Record, Set
 from ravestate.errors import RavestateError, UndeclaredError, nearest
-from ravestate.modules.platform.webio.protocol import ProtocolError, heard_text
+from ravestate.modules.platform.webio.fields import ProtocolError, heard_text
 from ravestate.policy.policy import Policy
 
 if TYPE_CHECKING:

@@ -44,7 +44,7 @@ class Screen(Protocol):
 
 
 class Console:
-    """An async iterator of the lines that the user types; meanwhile, `write` and `stream` print texts.
+    """An async iterator of the lines that the user types; meanwhile, `utter` and `grow` print texts.
 
     If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
     If not, the console reads and writes plain lines. Control characters, and bytes that are not text, are removed in
@@ -56,7 +56,7 @@ class Console:
         ```python
         async with Console() as console:
             async for line in console:
-                console.write(f"You said {line!r}.")
+                console.utter(f"You said {line!r}.")
         ```
     """
 
@@ -100,7 +100,7 @@ class Console:
         return self
 
     async def __aexit__(self, *error: object) -> None:
-        self.end()
+        self.fall_silent()
         await self._screen.__aexit__(*error)
 
     def __aiter__(self) -> AsyncIterator[str]:
@@ -119,7 +119,7 @@ class Console:
                 self.ending = "closed"
         raise StopAsyncIteration
 
-    def write(self, text: str) -> None:
+    def utter(self, text: str) -> None:
         """Print `text` and a line end.
 
         If `text` begins with the streamed pieces, only the rest is printed, after the pieces. If `text` begins in
@@ -127,13 +127,13 @@ class Console:
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
-            self.stream(text[len(self._streamed) :])
-            self.end()
+            self.grow(text[len(self._streamed) :])
+            self.fall_silent()
         else:
             self._end_line()
             self._safely(lambda: self._screen.show(text))
 
-    def stream(self, piece: str) -> None:
+    def grow(self, piece: str) -> None:
         """Print `piece` after the earlier pieces of its text. Anywhere but on a terminal, print whole lines only."""
         piece = without_controls(piece)
         if piece:
@@ -141,8 +141,8 @@ class Console:
             self._line_is_open = True
             self._safely(lambda: self._screen.stream(piece))
 
-    def end(self) -> None:
-        """End the text whose pieces were streamed; if there is none, do nothing."""
+    def fall_silent(self) -> None:
+        """End the text whose pieces were printed; if there is none, do nothing."""
         self._streamed = ""
         self._end_line()
 

@@ -1,4 +1,4 @@
-"""The rules of the console: they read lines, print utterances, and print the pieces of growing utterances."""
+"""The rules of the console: they read lines, and print the agent's words."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         await stack.enter_async_context(console)
         ctx[screen] = console
         if is_terminal(sys.stdin, sys.stdout):
-            console.write("Ctrl-D ends the conversation.")
+            console.utter("Ctrl-D ends the conversation.")
         ctx[interloc.users].add(USER, ctx.settings.name)
         try:
             async for line in console:
@@ -65,22 +65,4 @@ async def listen(ctx: rs.RuleContext) -> None:
             ctx.stop(console.failure)
 
 
-@module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
-async def show(ctx: rs.RuleContext) -> None:
-    """Print each utterance of the agent."""
-    if console := ctx[screen]:
-        console.write(ctx.payload(rawio.output.changed))
-
-
-@module.rule(when=rawio.piece.max_age(None).detached(), reads=screen, background=True)
-async def show_piece(ctx: rs.RuleContext) -> None:
-    """Print each piece of an utterance that is still growing."""
-    if console := ctx[screen]:
-        console.stream(ctx.payload(rawio.piece))
-
-
-@module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=screen, background=True)
-async def end_line(ctx: rs.RuleContext) -> None:
-    """End the line of pieces, even if they have not become a whole utterance."""
-    if console := ctx[screen]:
-        console.end()
+rawio.carry(module, screen)

@@ -58,7 +58,7 @@ class Settings(rs.Settings):
     """The probability of speech above which a sound counts as speech."""
     pause: Annotated[float, Field(ge=0.1)] = 0.2
     """Seconds of silence after which the turn may be over."""
-    doubtful_pause: Seconds = 1.0
+    doubtful_pause: Seconds = 1.2
     """Seconds of silence that end a turn if the words or the melody sound unfinished."""
     longest_pause: Seconds = 1.4
     """Seconds of silence that end every turn."""
