@@ -95,10 +95,35 @@ def test_busy_threads_take_no_virtual_time(loop: VirtualLoop) -> None:
 def test_waiting_for_threads_has_a_limit_and_happens_once(loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
     loop.busy = lambda: ["m:one", "m:two"]
-    with pytest.raises(TimeoutError, match=r"m:one and m:two kept virtual time waiting for 0\.001 real seconds"):
+    with pytest.raises(TimeoutError, match=r"m:one and m:two kept virtual time waiting for over 0\.001 real seconds"):
         loop.run_to(1)
     loop.run_to(1)
     assert loop.time() == 1.0
+
+
+def test_a_function_that_computes_may_take_longer_than_one_that_waits(
+    loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A slow machine must not change the result."""
+    monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
+    busy, readings = ["m:learn"], 0
+
+    def used() -> float:
+        """Read the clock of the processor. At the sixth reading, the function has ended."""
+        nonlocal readings
+        readings += 1
+        if readings == 6:
+            loop.call_soon_threadsafe(busy.clear)
+        return float(readings)
+
+    monkeypatch.setattr(virtual_loop, "process_time", used)
+    loop.busy = lambda: busy
+    loop.run_to(1)
+    assert loop.time() == 1.0 and readings >= 6
+
+    busy.append("m:endless")
+    with pytest.raises(TimeoutError, match="m:endless kept virtual time waiting"):
+        loop.run_to(2)
 
 
 def test_functions_of_asyncio_to_thread_take_no_virtual_time(

@@ -31,6 +31,9 @@ from ravestate.policy.policy import Policy
 
 ASKABLE = (READY, WAITING)
 
+BATCH = 100
+"""The number of activations without consent that start before the events of their runs are received."""
+
 
 class Agenda(Slots):
     """The layer of the engine that decides which ready activations start."""
@@ -40,6 +43,8 @@ class Agenda(Slots):
         self.patience = patience
         # The activations that ask in this instant, the best first.
         self._queue: list[tuple[int, float, int, int, Activation]] = []
+        # The activations that wait for nothing but each other, the best first.
+        self._breakers: list[tuple[tuple[float, int, int], Activation]] = []
         self.ran: dict[int, float] = {}
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.standing = Standing(self.ran)
@@ -48,6 +53,9 @@ class Agenda(Slots):
 
     def look(self) -> None:
         """Make all alternatives visible to an observer: each becomes an activation that waits for the best clause."""
+        for half, spikes in list(self.halves.items()):
+            for first in list(spikes):
+                self.unfold_half(first, half)
         for best in list(self.alternatives):
             spike = best.spikes[0]
             assert spike is not None  # the activation is ready, or runs
@@ -67,16 +75,15 @@ class Agenda(Slots):
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
-        """Start the ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
-        free = sorted(self._free, key=_newest) if len(self._free) > 1 else self._free
-        self._free = []
-        for activation in free:
-            clause = activation.clause
-            if activation.state is not READY or (clause.guards and not self._guarded(activation)):
+        """Start ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
+        started = 0
+        while started < BATCH and (activation := self._free.pop()) is not None:
+            if activation.clause.guards and not self._guarded(activation):
                 continue
             if self._loops.runs > MANY and self._loops.defer(activation):
                 continue
             self._start(activation)
+            started += 1
 
     def _guarded(self, activation: Activation) -> bool:
         """Return whether the activation's predicates on slots are true; if not, the activation is no longer ready."""
@@ -95,6 +102,10 @@ class Agenda(Slots):
         """
         queue = self._queue
         self.standing.now = self.now
+        left, queue[:] = list(queue), []
+        for *_, activation in left:  # their places may have changed since the last round
+            if activation.state in ASKABLE:
+                heapq.heappush(queue, (*self._turn(activation), activation))
         for activation in self._asking:
             heapq.heappush(queue, (*self._turn(activation), activation))
         self._asking.clear()
@@ -119,9 +130,6 @@ class Agenda(Slots):
             if self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation):
                 continue
             rule = clause.rule
-            if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
-                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, so its utility is lower
-                continue
             if written and not rule.readable.isdisjoint(written):
                 if self._is_taken(activation):
                     later.append(entry)  # by the next round it waits, or has lost its spike
@@ -132,12 +140,30 @@ class Agenda(Slots):
                 written.update(rule.slots)
         for entry in later:
             heapq.heappush(queue, entry)
-        if self._refused and not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
-            best = stalemate(self, self.waiting)
-            if best is None:
-                self._refused.clear()
-            else:
-                self._start(best)
+        if not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
+            self._break_stalemate()
+
+    def _break_stalemate(self) -> None:
+        """Start the best of the activations that wait for nothing but each other, if there are any."""
+        found = stalemate(self, self._refused, self._stuck)
+        self._refused.clear()
+        for activation in found:
+            if activation not in self._stuck:
+                self._stuck[activation] = None
+                heapq.heappush(self._breakers, (self.order(activation), activation))
+        while self._breakers:
+            order, best = heapq.heappop(self._breakers)
+            if best not in self._stuck:
+                continue  # it has asked again since
+            if order != self.order(best):
+                heapq.heappush(self._breakers, (self.order(best), best))  # its rule has run meanwhile
+                continue
+            for group in best.firm_groups():
+                for other in group.interested:  # what these wait for depends on the group, and so on this start
+                    self._stuck.pop(other, None)
+                    self._refused[other] = None
+            self._start(best)
+            break
 
     def _is_taken(self, activation: Activation) -> bool:
         """Return whether one of the activation's slots is taken in each of its groups."""
@@ -175,8 +201,9 @@ class Agenda(Slots):
         activation.firm = tuple(refusal.firm)
         activation.bounded = refusal.pressed or refusal.taken
         activation.hopes = tuple(refusal.hopes)
-        for hope in activation.hopes:
+        for hope, most in refusal.hopes.items():
             self.hoping.setdefault(hope, {})[activation] = None
+            self._hope_counts[hope] = max(most, self._hope_counts.get(hope, 0))
         activation.interests = tuple(refusal.interests)
         for group in activation.interests:
             group.concern(activation)
@@ -226,7 +253,7 @@ class Agenda(Slots):
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""
         for spike in rival.firm_spikes():
-            spike.refuse(rival.clause.rule.index)
+            self._refuse_for_good(spike, rival.clause.rule)
         self._end(rival, "eliminated")
 
     def _start(self, activation: Activation) -> None:
@@ -288,12 +315,6 @@ class Agenda(Slots):
             self._set_flag(self._activity, activity)
             return True
         return False
-
-
-def _newest(activation: Activation) -> tuple[int, int, int]:
-    """Return the sort key of an activation that needs no consent: its newest spike, then the order of declaration."""
-    newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
-    return (newest, activation.clause.index, activation.id)
 
 
 def _endless(rules: Sequence[RulePlan]) -> str:

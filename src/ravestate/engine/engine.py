@@ -66,6 +66,8 @@ class Engine(Agenda):
             if now != now:
                 raise EngineError("the time is not a number of seconds: it is NaN")
         elif now > self.now:
+            self._refused.update(self._stuck)  # with time, their reasons to wait may change
+            self._stuck.clear()
             if self._deadlines.earliest <= now:
                 self.advance(now)
             self.now = now
@@ -106,7 +108,7 @@ class Engine(Agenda):
                 self._set_flag(self._activity, True)
             elif self._free:
                 self._start_free()
-            elif self._queue or self._asking or self._dirty or self._stirred or self._refused:
+            elif self._queue or self._asking or self._dirty or self._stirred or self._refused or self._stuck:
                 self._consent_round()
             elif self._settle_flags():
                 pass
@@ -198,6 +200,11 @@ class Engine(Agenda):
             for watch in watches.values():
                 watch.clause = clauses[watch.clause.index]
         self._asking.update(self.waiting)
+        for plan in plans[len(known) :]:
+            for need in (need for clause in plan.clauses for need in clause.needs if need.detached):
+                for spike in self.live.get(need.signal.index, ()):
+                    if spike.born + need.min_age > self.now:  # a spike sets these times at its birth for older rules
+                        self._deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
 
     def on_finish(self, event: events.Finish) -> None:
         if event.kind not in OUTCOMES:
@@ -300,6 +307,10 @@ class Engine(Agenda):
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
                         self._lose(other, self._of_group(other, group), "consumed", run)
+                for spike in list(group.entries):
+                    for half in self.halves_of(spike):
+                        if not half.slotset.isdisjoint(rule.slotset):
+                            self._drop(spike, half)
                 self._dirty[group] = None
 
     def _relinquish(self, run: Activation, spikes: tuple[Spike, ...]) -> None:

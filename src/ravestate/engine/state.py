@@ -7,6 +7,7 @@ by the need that they lack. So the cost of an event does not grow with the numbe
 from __future__ import annotations
 
 import copy
+from collections import OrderedDict
 from types import MappingProxyType
 from typing import Any
 
@@ -25,13 +26,14 @@ from ravestate.engine.deadlines import (
     Entry,
 )
 from ravestate.engine.effects import Effect, Failed
+from ravestate.engine.free import Free
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import OUTSIDE, RULE
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
-from ravestate.policy.model import Clause, Need, RulePlan, SlotPlan
+from ravestate.policy.model import Clause, Half, Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
@@ -55,6 +57,9 @@ class State:
         """Number of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but none for this need."""
+        self.halves: dict[Half, OrderedDict[Spike, int]] = {}
+        """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
+        before theirs (``halves.py``)."""
         self.gated: dict[Activation, None] = {}
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.waiting: dict[Activation, None] = {}
@@ -64,6 +69,7 @@ class State:
         them have had an activation; the activation number just before theirs."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
         """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
+        self._hope_counts: dict[tuple[int, int], int] = {}  # the same keys → the greatest count in `Horizon.hopes`
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.retired: set[int] = set()
@@ -74,9 +80,10 @@ class State:
         """The names of the signals whose spikes are reported as effects, as the keys of a table."""
         self._out: list[Effect] = []
         self._acts = False  # whether one of these effects starts or cancels a run
-        self._free: list[Activation] = []  # ready activations that need no consent
+        self._free = Free()
         self._asking: dict[Activation, None] = {}  # ready or waiting activations that are about to ask for consent
         self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
+        self._stuck: dict[Activation, None] = {}  # activations found in a stalemate since they were refused
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred: dict[tuple[int, int], None] = {}  # the keys of `hoping` that have changed
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
@@ -107,11 +114,14 @@ class State:
 
     def stir_rule(self, rule: RulePlan) -> None:
         """Note that an activation of a rule has come, changed or gone: activations in other groups may depend on it."""
+        others = len(self.active.get(rule.index, ())) - 1
         for kind, number in self.hoping:
             if (
                 number == rule.index
                 if kind == RULE
-                else kind == OUTSIDE and rule.index in self.policy.causes.wide_ancestors(number)
+                else kind == OUTSIDE
+                and others <= self._hope_counts[kind, number]
+                and rule.index in self.policy.causes.wide_ancestors(number)
             ):
                 self._stirred[kind, number] = None
 

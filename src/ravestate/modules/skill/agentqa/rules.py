@@ -27,14 +27,15 @@ from .telling import telling, without_question
 CERTAIN = 0.7
 """The agent accepts a topic without further evidence if its confidence in the topic is at least this high."""
 STATED = 0.85
-"""The same for a statement. It is higher, because statements may resemble a question: *I don't know what to say*."""
+"""The same threshold for a statement. It is higher, because a statement may resemble a question: *I don't know what to
+say*."""
 TURNS = 6
-"""The number of the user's utterances before the agent invites them to ask about it."""
+"""The number of utterances that a user makes before the agent invites questions about itself."""
 
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
 async def be_born(ctx: rs.RuleContext) -> None:
-    """Read the agent's life, and publish its name."""
+    """Read the agent's life from the files, and publish the agent's name."""
     settings: Settings = ctx.settings
     told = read_life(settings.life)
     ctx[interloc.agent] = told.name
@@ -56,7 +57,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=life.changed.detached(), reads=ontology.memory, background=True)
 async def remember(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Update memory to match the file."""
+    """Save the facts of the agent's life in memory."""
     told, memory = ctx.payload(life.changed), ctx[ontology.memory]
     if told is None or memory is None:
         return rs.Resign("there is no memory, or no life")
@@ -102,7 +103,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone. A user in distress thus gets an answer even without the sentence models."""
+    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing."""
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
@@ -118,7 +119,7 @@ async def heed_act(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("there is no life, or `heed` has noticed the remark")
     found = act_in(seen, told)
     if found is None:
-        return rs.Resign("it is not such a remark")
+        return rs.Resign("the utterance is not a remark that the agent responds to, such as an insult")
     ctx.emit(remarked, found)
     return None
 
@@ -132,7 +133,7 @@ async def heed_act(ctx: rs.RuleContext) -> rs.Resign | None:
 async def respond(ctx: rs.RuleContext) -> None:
     """Answer the remark."""
     told, remark = ctx[life], ctx.payload(remarked)
-    assert told is not None  # `heed` has run only if there is a life
+    assert told is not None  # without a life, no rule emits `remarked`
     phrases = telling(told.topics[remark.topic], remark.text, told.facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is not None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
@@ -153,7 +154,7 @@ async def keep_quiet(ctx: rs.RuleContext) -> None:
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer the question."""
     match, told = ctx.payload(asked), ctx[life]
-    assert told is not None  # `understand` has run only if there is a life
+    assert told is not None  # without a life, no rule emits `asked`
     facts = await known(ctx, told, ctx[ontology.memory])
     phrases = telling(told.topics[match.topic], match.question, facts, mood=ctx[mood], now=ctx[clock]())
     if phrases is None:
@@ -167,9 +168,12 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=idle.bored.min_age(Settings.prompt_after).max_age(None),
     reads=(prompted, turns, idle.unanswered),
-    writes=(verbaliser.intent, rawio.output, prompted),  # the output, so that no other rule speaks at the same time
+    # Takes the output as well, so that no other rule speaks at the same time.
+    writes=(verbaliser.intent, rawio.output, prompted),
     weight=0.9,
-    detached=True,  # starts a causal group of its own: in the group of `bored`, no rule could put the intent into words
+    # Starts a causal group of its own: in the group of `bored`, this rule takes `rawio.output`, so the verbaliser could
+    # not write it.
+    detached=True,
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """After a long silence, invite the user to ask about the agent. Do so only once."""
@@ -184,19 +188,20 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _returns(seen: Analysis) -> bool:
-    """Return whether the user returns a question, perhaps after an answer: *sailing, and you*."""
+    """Return whether the user asks the agent's own question back: *and you?*, or *sailing, and you?*."""
     last = seen.sentences[-1].rpartition(", ")[2] if seen.sentences else ""
     return seen.act("return_question") is not None or "return_question" in acts([last])
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases. Braces left in a phrase belong to a fact, so they are escaped."""
+    """Return an intent with phrases whose placeholders have been filled. Any braces that are left belong to facts,
+    so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 
 
 async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
-    """Return the agent's facts from memory; without a memory, from the file."""
+    """Return the agent's facts from memory. If there is no memory, return them from the file."""
     if memory is None:
         return told.facts
     try:

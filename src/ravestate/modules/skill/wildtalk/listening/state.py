@@ -45,7 +45,7 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class Overheard:
-    """The traces of an utterance: the being that it mentions, and its tone. They stay if another module answers."""
+    """The traces of an utterance: the being that it mentions, and its tone. The state keeps them even if another module answers."""
 
     text: str
     being: Being | None = None
