@@ -31,13 +31,6 @@ APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DON
 export HYPOTHESIS_PROFILE ?= ci
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
-# An environment that was made in another folder is of no use in this one.
-ifneq ($(wildcard .venv/.done),)
-ifneq ($(shell cat .venv/.done/place 2>/dev/null),$(CURDIR))
-$(shell rm -rf .venv)
-endif
-endif
-
 .PHONY: help
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -146,6 +139,11 @@ clean: ## remove the environment and everything built
 
 # ------------------------------------------------------------------------------------- the environment
 # One stamp for each thing installed; a stamp is renewed when what it was made from changes.
+
+# An environment that was made in another folder is of no use in this one, so it is made anew.
+ifneq ($(shell cat $(DONE)/place 2> /dev/null),$(CURDIR))
+.PHONY: $(DONE)/python
+endif
 
 $(DONE)/python:
 	@tools/environment '$(PYTHON)'

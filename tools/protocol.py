@@ -32,16 +32,16 @@ Schema = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Source:
-    """The part of a Python module that a TypeScript file holds.
+    """The part of Python modules that a TypeScript file holds.
 
     Attributes:
-        module: The module's dotted name.
-        types: The name of each exported type, and the attribute of the module that has its `TypeAdapter`.
+        modules: The modules' dotted names. The first one has the types, and each may have constants.
+        types: The name of each exported type, and the attribute of the first module that has its `TypeAdapter`.
         constants: Attributes that are exported as they are; JSON must be able to hold them.
         checked: A type among `types`: ``FIELDS`` lists its frames' required fields, for a check at run time.
     """
 
-    module: str
+    modules: tuple[str, ...]
     types: Mapping[str, str]
     constants: tuple[str, ...] = ()
     checked: str = ""
@@ -49,13 +49,13 @@ class Source:
 
 FILES = {
     "frontend/src/lib/protocol.ts": Source(
-        "ravestate.modules.platform.webio.protocol",
+        ("ravestate.modules.platform.webio.frames", "ravestate.modules.platform.webio.fields"),
         types={"ClientFrame": "CLIENT", "ServerFrame": "SERVER"},
         constants=("VERSION", "LONGEST_TEXT", "CLOSING_CODES"),
         checked="ServerFrame",
     ),
     "frontend/src/board/protocol.ts": Source(
-        "ravestate.board.protocol",
+        ("ravestate.board.protocol",),
         types={"ClientFrame": "CLIENT", "ServerFrame": "SERVER"},
         constants=("VERSION", "CLOSING_CODES", "LOSSES", "VERDICTS"),
     ),
@@ -64,15 +64,17 @@ FILES = {
 
 def typescript(source: Source) -> str:
     """Return the TypeScript of a source."""
-    module = importlib.import_module(source.module)
+    modules = [importlib.import_module(name) for name in source.modules]
+    module = modules[0]
     adapters: dict[str, TypeAdapter[Any]] = {name: getattr(module, at) for name, at in source.types.items()}
     found, whole = TypeAdapter.json_schemas([(name, "validation", made) for name, made in adapters.items()])
     records: Mapping[str, Schema] = whole.get("$defs", {})
     order = sorted(records, key=lambda name: _line_of(module, name))
-    parts = [f"// Written by tools/protocol.py from {source.module}: change that file, and run the tool."]
-    documented = dict(_constants(inspect.getsource(module)))
+    parts = [f"// Written by tools/protocol.py from {source.modules[0]}: change that file, and run the tool."]
+    documented = {name: text for each in modules for name, text in _constants(inspect.getsource(each))}
+    values = {name: value for each in modules for name, value in vars(each).items()}
     parts += [
-        f"{_comment(documented.get(name, ''))}export const {name} = {_literal(getattr(module, name))};"
+        f"{_comment(documented.get(name, ''))}export const {name} = {_literal(values[name])};"
         for name in source.constants
     ]
     parts += [_interface(name, records[name]) for name in order]

@@ -6,6 +6,7 @@ import contextlib
 import sys
 import tempfile
 from collections.abc import AsyncIterator, Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -187,6 +188,44 @@ def conversation(pcm: bytes, output: Path | None = None, record: Any = None, **s
         file = Path(folder) / "in.wav"
         sound.write_wav(file, pcm, rawio.IN_RATE)
         return talk(file, output, narrator(), settings={"voiceio": given}, record=record)
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """A moment at which the agent took the user's turn for over.
+
+    Attributes:
+        time: The moment: seconds on the track's time line.
+        end: The end of the speech in the turn.
+        text: The words, or the reason for which it is no utterance.
+    """
+
+    time: float
+    end: float
+    text: str
+
+
+def decisions(pcm: bytes, **settings: Any) -> list[Decision]:
+    """Return the ends of turns that a silent agent finds in a microphone's track. Recognition takes no time."""
+    found: list[Decision] = []
+    listener = rs.Module("listener", requires=[voiceio])
+
+    @listener.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        said = ctx.payload(voiceio.utterance)
+        found.append(Decision(ctx.now, said.end, said.text))
+
+    @listener.rule(when=voiceio.false_alarm.max_age(None).detached(), background=True)
+    async def note_false(ctx: rs.RuleContext) -> None:
+        found.append(Decision(ctx.now, ctx.now, ctx.payload(voiceio.false_alarm)))
+
+    del note, note_false
+    given = {"model": "tiny.en", "voice": "espeak", "captions": 0, "filler_after": 0, **settings}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "in.wav"
+        sound.write_wav(file, pcm, rawio.IN_RATE)
+        talk(file, None, listener, settings={"voiceio": given})
+    return found
 
 
 def word_errors(wanted: Sequence[str], found: Sequence[str]) -> int:

@@ -10,7 +10,7 @@ RavestateError
 │   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
 │   └── RunEnded                      a rule acted after its run was over
 ├── EngineError(RuntimeError)         an event that does not fit the engine's state
-└── PlatformError(RuntimeError)       a device, a server or a file failed, or a package is missing
+└── PlatformError(RuntimeError)       a failure of a device, a server or a file, or a missing package
 ```
 
 Messages give the refused value, the place in the code, the nearest valid name, and the line to write instead.
@@ -81,7 +81,7 @@ class PlatformError(RavestateError, RuntimeError):
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """Return the hint "; did you mean ...?" for a name that is not among `names`, or an empty text if none is near."""
+    """Return the hint "; did you mean ...?" for a name that is not among `names`. Without a near name, return ""."""
     import difflib  # imported here because only an error needs it
 
     known = list(names)
@@ -96,7 +96,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
     best = max(known, key=likeness, default="")
     if known and likeness(best) >= ALIKE:
         return f"; did you mean {best!r}?"
-    if ":" in name:  # the right name in the wrong module
+    if ":" in name:  # the user may have written the right name with the wrong module
         last = name.rsplit(":", 1)[-1]
         for other in known:
             if other.rsplit(":", 1)[-1] == last:

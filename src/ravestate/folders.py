@@ -9,11 +9,12 @@ from typing import Literal
 
 
 def user_folder(kind: Literal["data", "state", "cache"]) -> Path:
-    """Return the path of Ravestate's folder for this user's files of one kind; it may not exist yet.
+    """Return the path of Ravestate's folder for this user's files of one kind. The folder may not exist yet.
 
     Args:
-        kind: ``data`` for files that must not be lost, ``state`` for files that need only outlast a session, ``cache``
-            for files that can be made again. Windows has one folder for all kinds; macOS has one for the first two.
+        kind: ``data`` for files that must not be lost; ``state`` for files that are useful in the next session;
+            ``cache`` for files that can be made again. On Windows, all kinds share a folder. On macOS, ``data`` and
+            ``state`` share one.
     """
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")

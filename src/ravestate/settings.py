@@ -22,10 +22,10 @@ TEXT = (str, pydantic.SecretStr)
 
 
 class _SettingsMeta(ModelMetaclass):
-    """A metaclass that makes ``MySettings.field`` a reference to the setting, to be used as an age or a weight."""
+    """A metaclass that makes ``MySettings.field`` a reference to the setting, for ages and weights in rules."""
 
     def __getattr__(cls, item: str) -> Any:
-        # Until the class is complete, pydantic itself asks it for attributes.
+        # Pydantic itself reads attributes of the class before the class is complete.
         if cls.__dict__.get("__pydantic_complete__") and item in cls.__pydantic_fields__:  # type: ignore[attr-defined]  # pydantic's own
             return SettingRef(item, cls)
         try:
@@ -65,12 +65,13 @@ def load_settings(
     given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Return module's name → the module's settings: values of `given` first, then the environment's, then the defaults.
+    """Return a map from each module's name to its settings.
 
-    For a module, `given` has the values of fields, or an instance of the module's settings class.
+    Values of `given` outrank the environment's values, and these outrank the defaults. For each module, `given` has
+    values of fields, or an instance of the module's settings class.
 
     Raises:
-        DeclarationErrors: There are unknown modules, unknown fields or values of a wrong type; one error for each.
+        DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has an error for each.
     """
     given = given or {}
     variables = os.environ if environment is None else environment
@@ -122,10 +123,10 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 
 
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
-    """Return the value of a `field` that a text from the environment or from ``--set`` stands for.
+    """Convert a text from the environment or from ``--set`` to a value for `field`.
 
     A text field takes the text itself; any other field takes the result of `parse`. If `parse` raises a ValueError, the
-    text stays as it is.
+    result is the text.
     """
     annotation = cast("Any", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}

@@ -32,7 +32,7 @@ def load_yaml(text: str, name: str) -> Any:
     If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError` with its line.
     """
     try:
-        with contextlib.suppress(yaml.YAMLError):  # the other loader says better what is wrong
+        with contextlib.suppress(yaml.YAMLError):  # the slower loader below has better error messages
             return yaml.load(text, _loader)
         return yaml.load(text, _SafeLoader)
     except yaml.YAMLError as error:
@@ -44,7 +44,7 @@ def load_yaml(text: str, name: str) -> Any:
 def compose_yaml(text: str, name: str) -> yaml.Node | None:
     """Return the root node of a YAML text; `None` if it is empty. Nodes know their lines, and every scalar is text.
 
-    Faults are those of `load_yaml`.
+    It raises the same errors as `load_yaml`.
     """
     try:
         return yaml.compose(text, Loader=_TextLoader)
@@ -58,7 +58,7 @@ class _Bounded(Composer):
     depth = count = 0
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        event = cast("Any", self).peek_event()  # a method of the parser, which the loader inherits
+        event = cast("Any", self).peek_event()  # the loader inherits this method from its parser
         sizes: dict[object, int] = self.__dict__.setdefault("sizes", {})  # anchor → the size of its finished node
         before = self.count
         self.depth += 1
@@ -80,7 +80,7 @@ class _Bounded(Composer):
 
 class _Values(SafeConstructor):
     def construct_number(self, node: yaml.ScalarNode) -> Any:
-        """Return the number in a node. Refuse a long one: to the base 60 (``59:59:...``), it would take minutes."""
+        """Return the number in a node. Refuse a long number: in base 60 (``59:59:...``), it takes minutes to read."""
         if len(node.value) > DIGITS:
             raise yaml.constructor.ConstructorError(
                 None, None, f"a number of more than {DIGITS} digits", node.start_mark
@@ -102,7 +102,7 @@ if yaml.__with_libyaml__:
     _Events: Any = cast("Any", yaml.cyaml).CParser
 
     class _FastLoader(_Bounded, _Values, _Events, Resolver):
-        """The loader with the parser of libyaml, which takes a seventh of the time."""
+        """A loader with the parser of libyaml. It takes a seventh of the time that the other loader takes."""
 
         def __init__(self, stream: str) -> None:
             _Events.__init__(self, stream)

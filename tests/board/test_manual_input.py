@@ -14,7 +14,9 @@ from modules.platform.webio.visit import Visit, parrot
 from ravestate.board.manual_input import check_payload, check_value
 from ravestate.board.protocol import Emit
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.webio.protocol import LONGEST_TEXT, SERVER, Message, parse
+from ravestate.modules.platform.webio.fields import LONGEST_TEXT
+from ravestate.modules.platform.webio.frames import SERVER, Message
+from ravestate.modules.platform.webio.protocol import parse
 
 
 class Colour(enum.StrEnum):

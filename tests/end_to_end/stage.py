@@ -14,7 +14,7 @@ import threading
 from collections.abc import AsyncGenerator, Callable, Coroutine, Iterator
 from typing import Any
 
-from playwright.async_api import Browser, Page, Playwright, async_playwright
+from playwright.async_api import Browser, Page, Playwright, async_playwright, expect
 
 from ravestate.modules import webio
 from ravestate.modules.platform.webio.server import Server
@@ -22,8 +22,10 @@ from ravestate.runtime.agent import Agent
 
 __all__ = ["PHONE", "Host", "Stage", "on_stage"]
 
-LIMIT = 60
+LIMIT = 180
 """Seconds after which a test that waits for what never comes is ended."""
+
+expect.set_options(timeout=30_000)  # milliseconds: a slow machine must not fail
 
 PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
 FLAGS = [

@@ -83,13 +83,12 @@ async def test_a_spoken_conversation(stage: Stage, tmp_path: Path) -> None:
 @on_stage
 async def test_an_interruption_by_voice_and_one_by_the_button(stage: Stage, tmp_path: Path) -> None:
     async with (
-        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0, -1.4, 1.0)) as browser,
+        calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0, -2.5, 1.0)) as browser,
         stage.serve(ears, saga, title="Elske") as served,
         stage.open(served.address, browser=browser) as page,
     ):
         await turn_on(page)
         first = page.locator(".line.agent").nth(0)
-        await expect(first).to_have_text(f"Elske: {SAGA}")
         await expect(first).to_contain_text("(interrupted)")
         cut = str(await first.text_content()).split("Elske:")[1].split("(")[0].strip()
         assert cut

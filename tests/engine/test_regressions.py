@@ -462,3 +462,109 @@ def test_a_detached_clause_keeps_the_spike_that_another_clause_of_its_rule_runs_
         ((0.0, ("emit", "s0", 1)),),
     )
     assert moments(world, "r0") == [0.0, 0.5]
+
+
+def test_an_added_rule_looks_again_when_a_spike_that_is_older_than_the_rule_ripens() -> None:
+    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s and holds the first s0, which is old enough. It looks at
+    # the second one as soon as that is old enough too, at 1.5 s.
+    looking = RuleOf(when=((Want("s0", min_age=1.0, detached=True), Want("s1", min_age=0.5)),))
+    world = World(
+        S3,
+        rules=(RuleOf(when=on("s0"), acts=(Act(seconds=4.0),)),),
+        inputs=(
+            (0.0, ("emit", "s0", 1)),
+            (0.5, ("emit", "s0", 2)),
+            (0.25, ("add", looking)),
+            (0.375, ("emit", "s1", 0)),
+        ),
+    )
+    [call] = [line for line in Play(world).play().heard if "< Run(" in line and "<rule m:r1>" in line]
+    assert call.startswith("1.625 s") and "'m:s0': 2" in call
+
+
+def test_a_rule_asks_again_when_a_rival_gives_up_on_which_another_rival_hangs() -> None:
+    # L15, L16: r1 asks. r0 might get s1 from r2; r2 lacks the input v1 and has no patience, so it gives up at once.
+    world = World(
+        S3,
+        (SlotOf(), SlotOf(), SlotOf()),
+        (
+            RuleOf(when=on("s1"), writes=("v1",)),
+            RuleOf(when=on("s0"), writes=("v0", "v1")),
+            RuleOf(when=on("s0", "v2:changed"), writes=("v0",), emits=("s1",), patience=0.0),
+        ),
+        ((0.0, ("emit", "s0", 2)),),
+    )
+    assert moments(world, "r1") == [0.0]
+
+
+def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_cause() -> None:
+    # L12, L15: at 1.25 s the first activation of r2 runs and writes v0. The second one loses its spikes, and takes the
+    # later s1 of 0 s and the new write. It kept its place as if it still had its old cause. The s1 of 0.75 s comes from
+    # the s0, which is older than that later s1. So the activation with this s1 goes first.
+    world = World(
+        S3,
+        V1,
+        (
+            RuleOf(when=on("s1"), emits=("s1",), acts=(Act(((0.0, ("emit", "s1", 0)),)),)),
+            RuleOf(when=on("s0"), emits=("s1",), acts=(Act(((0.75, ("emit", "s1", 1)),)),)),
+            RuleOf(
+                when=((Want("s0", min_age=1.25, detached=True), Want("s1"), Want("v0:changed")),),
+                writes=("v0",),
+                acts=(Act(((0.0, ("write", "v0", 0)),)),),
+                detached=True,
+            ),
+        ),
+        ((0.0, ("emit", "s1", 0)), (0.0, ("emit", "s0", 1)), (0.0, ("write", "v0", 2)), (0.0, ("emit", "s1", 0))),
+    )
+    calls = [line for line in Play(world).play().heard if "< Run(" in line and "<rule m:r2>" in line]
+    assert ["'m:s1': 1" in call for call in calls] == [False, True]
+
+
+def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> None:
+    # L15: r1 waits for r3, which either of two activations of r2 may help; both wait for r0, which r1 may help.
+    world = World(
+        (*S3, SignalOf()),
+        (SlotOf(), SlotOf(), SlotOf()),
+        (
+            RuleOf(when=on("s2"), writes=("v2",)),
+            RuleOf(when=((Want("s0", min_age=0.75),),), writes=("v1",), emits=("s2",)),
+            RuleOf(
+                when=on("s0", "s3"),
+                writes=("v2",),
+                emits=("s2",),
+                acts=(Act(((0.0, ("emit", "s2", 1)), (1.5, ("write", "v2", 0)))),),
+            ),
+            RuleOf(
+                when=on("s2"),
+                writes=("v1",),
+                emits=("s0",),
+                acts=(Act(((1.375, ("emit", "s0", 0)),)),),
+                detached=True,
+            ),
+        ),
+        ((0.0, ("emit", "s0", 2)), (0.0, ("emit", "s3", 1)), (0.0, ("emit", "s3", 0))),
+    )
+    assert moments(world, "r2") == [0.75, 2.875]
+
+
+def test_clauses_whose_utilities_differ_in_the_last_digits_are_equals() -> None:
+    # L9, L15: r1's utility is rounded, then doubled by its weight; r6 needs two signals of that utility. The first declared
+    # goes first, as for any equals.
+    world = World(
+        (SignalOf(input=True), *S3),
+        (SlotOf(), SlotOf(), SlotOf("flag", always=True)),
+        (
+            RuleOf(when=on("s1")),
+            RuleOf(when=on("s0"), writes=("v1",), weight=2.0),
+            RuleOf(when=on("s3"), emits=("s0",), acts=(Act(((0.0, ("emit", "s0", 0)),)),)),
+            RuleOf(when=on("s0"), emits=("s3",)),
+            RuleOf(when=on("s2")),
+            RuleOf(when=on("v2:false"), emits=("s3",), acts=(Act(((0.0, ("emit", "s3", 1)),)),)),
+            RuleOf(when=on("s0", "s3"), writes=("v1",)),
+        ),
+        ((0.0, ("write", "v2", False)),),
+    )
+    play = Play(world).play()
+    first, second = (play.engine.policy.rule_plan(f"m:r{n}").clauses[0] for n in (1, 6))
+    assert first.base == second.base
+    assert "r6" not in runs(play)

@@ -20,6 +20,9 @@ from ravestate.engine import events
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
+BATCH = 100
+"""Rules without consent that start before the events of their runs arrive."""
+
 
 class Model:
     """The laws, step by step. It has the four verbs of an engine."""
@@ -171,12 +174,14 @@ class Model:
         return False
 
     def start_free(self) -> bool:
-        free = [act for act in self.acts if act.state == READY and not self.asks(act)]
-        free.sort(key=lambda act: (max(spike.id for spike in act.held.values()), act.clause.index, act.id))
-        for act in free:
-            if act.state == READY and self.guarded(act):
-                self.start(act)
-        return bool(free)
+        found, started = False, 0
+        while started < BATCH and (free := [act for act in self.acts if act.state == READY and not self.asks(act)]):
+            found = True
+            first = min(free, key=lambda act: (max(s.id for s in act.held.values()), act.clause.index, act.id))
+            if self.guarded(first):
+                self.start(first)
+                started += 1
+        return found
 
     def consent_round(self) -> bool:
         """L15: ask for those that are ready, older causes first, then the best."""
@@ -469,7 +474,7 @@ class Model:
 
     def lose(self, act: Act, needs: Iterable[Any]) -> None:
         """Give spikes up, and take the oldest ones that fit instead (L12); end when nothing is left."""
-        needs = [need for need in needs if need.index in act.held]
+        needs = sorted((need for need in needs if need.index in act.held), key=lambda need: need.index)
         if not needs:
             return
         clause = act.clause

@@ -118,7 +118,7 @@ def waits_for_a_reason(play: Play) -> None:
         assert waiter.state is State.WAITING
         assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
         assert ask(engine, waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
-    assert stalemate(engine, engine.waiting) is None, "activations wait for each other alone"
+    assert not stalemate(engine, engine.waiting), "activations wait for each other alone"
 
 
 def joined(play: Play) -> None:
@@ -200,11 +200,18 @@ def consistent(engine: Any) -> None:
         for spike in spikes:
             assert known.issuperset(spike.holders), f"{spike} is held by {list(spike.holders)}"
             signal = spike.signal
-            assert spike.holders or (signal.retain >= 0 and spike.born + signal.retain >= engine.now), (
-                f"{spike} is kept without a holder"
-            )
+            assert (
+                spike.holders or spike.entries or (signal.retain >= 0 and spike.born + signal.retain >= engine.now)
+            ), f"{spike} is kept without a holder"
         assert len(spikes) <= engine.policy.signal_plans[index].limit
-    assert engine._busy == sum(not (a.clause.rule.background or a.clause.reflexive) for a in activations)
+    entries = sum(len(spikes) * half.busy for half, spikes in engine.halves.items())
+    assert engine._busy == entries + sum(not (a.clause.rule.background or a.clause.reflexive) for a in activations)
+    for half, spikes in engine.halves.items():
+        assert spikes, f"an empty table of {half} is kept"
+        for spike in spikes:
+            assert half in engine.halves_of(spike), f"{spike} does not know of {half}"
+            assert any(engine.keeps(need, spike) for need in half.needs), f"{half} holds {spike} for nothing"
+            assert spike in engine.live.get(spike.signal.index, ()), f"{half} holds dead {spike}"
 
 
 def bounded(play: Play) -> None:
@@ -242,13 +249,15 @@ def empty(play: Play) -> None:
         "gated",
         "waiting",
         "alternatives",
-        "_free",
+        "halves",
         "_asking",
         "_dirty",
     ):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
     for name in ("_watches", "_errors", "_out"):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
+    assert not engine._free.new
+    assert not engine._free.line
     assert engine.next_deadline() is None
     assert len(engine._deadlines) == 0
     assert engine._busy == 0

@@ -14,6 +14,7 @@ class Maker:
 
     def __init__(self, seed: int) -> None:
         self.dice = random.Random(seed)
+        self.plain = seed // 100 % 4 == 3  # conditions without ages or predicates
         self.grid = self.dice.random() < 0.4  # many things at one time, or all at different times
         self.signals: list[str] = []
         self.heard: list[str] = []
@@ -96,6 +97,8 @@ class Maker:
 
     def want(self, heard: list[str]) -> Want:
         signal = self.dice.choice(heard)
+        if self.plain:
+            return Want(signal, max_age=self.dice.choice([5.0, 1.0, None]))
         if self.chance(0.5):
             return Want(signal)
         low = self.seconds(2.0) if self.chance(0.5) else 0.0
@@ -111,7 +114,9 @@ class Maker:
     def condition(self, heard: list[str]) -> tuple[Any, ...]:
         clauses: list[tuple[Any, ...]] = []
         for _ in range(2 if self.chance(0.2) else 1):
-            parts: list[Any] = [self.want(heard) for _ in range(self.dice.choice([1, 1, 1, 2, 2, 3]))]
+            parts: list[Any] = [
+                self.want(heard) for _ in range(self.dice.choice([1, 2, 2] if self.plain else [1, 1, 1, 2, 2, 3]))
+            ]
             if self.chance(0.12):
                 parts.append(
                     Gate(f"v{self.dice.randrange(len(self.slots))}", self.dice.choice(["odd", "odd", "never"]))

@@ -54,7 +54,7 @@ def test_a_source_may_be_any_module_of_models(monkeypatch: pytest.MonkeyPatch, t
     assert isinstance(sketch, ModuleType)
     sketch.FRAMES = pydantic.TypeAdapter(Annotated[Shape | Gone, pydantic.Field(discriminator="type")])
     made = protocol.typescript(
-        protocol.Source("sketch", types={"Frame": "FRAMES"}, constants=("LIMIT",), checked="Frame")
+        protocol.Source(("sketch",), types={"Frame": "FRAMES"}, constants=("LIMIT",), checked="Frame")
     )
     assert "/** The most shapes. */\nexport const LIMIT = 5;" in made
     assert '/**\n * A shape.\n *\n * It has corners.\n */\nexport interface Shape {\n  type: "shape";\n' in made

@@ -102,11 +102,11 @@ export interface ClauseView {
   condition: string;
   constraints: ConstraintView[];
   gates: GateView[];
-  /** The addends of the pathway with the least utility, which decides the clause's utility. */
+  /** The addends of the pathway with the least utility. This pathway decides the clause's utility. */
   terms: Term[];
   /** The number of the clause's pathways. */
   pathways: number;
-  /** The number of the clause's predicates, which add ln 2 each. */
+  /** The number of the clause's predicates. Each predicate adds ln 2. */
   predicates: number;
   /** The sum of all addends (L9). */
   utility: number;
@@ -252,9 +252,11 @@ export interface Pressed {
 /** A rule that may raise a missing signal, and the outcome of its run in this causal group. */
 export interface Raiser {
   rule: string;
+  /** The outcome of the rule's run, or `running`, or `not run`. */
   outcome: string;
-  /** The time of the outcome (seconds); None if there is none. */
+  /** The time of the outcome (seconds); None without an outcome. */
   time: number | null;
+  /** The same as a sentence. */
   words: string;
 }
 
@@ -300,7 +302,7 @@ export interface Settled {
   error?: string;
 }
 
-/** A signal: its module, slot and payload, whether it is an input, and the rules that hear and raise it. */
+/** A signal: its module, slot and payload, whether it is an input, and the rules that wait for it or raise it. */
 export interface SignalView {
   name: string;
   module: string;
@@ -332,7 +334,11 @@ export interface Started {
   spikes: number[];
 }
 
-/** One addend of a utility: −ln(rules / |Λ|) nats; `rules` is how many rules have the signal on a pathway (L9). */
+/**
+ * One addend of a utility: −ln(rules / |Λ|) nats (L9).
+ *
+ * `rules` is the number of rules that have the signal on a pathway, and |Λ| is the number of all rules.
+ */
 export interface Term {
   signal: string;
   rules: number;
@@ -402,7 +408,7 @@ export interface ActivationState {
 /**
  * The first frame: it names the conversation or the recording to show.
  *
- * Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the newest conversation. It begins a conversation if there is none.
+ * Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the newest conversation. If there is no conversation, the server begins one.
  */
 export interface Hello {
   type: "hello";
@@ -545,7 +551,7 @@ export interface Records {
   type: "records";
   /** The records. */
   records: TraceRecord[];
-  /** How many records just before these are left out. */
+  /** How many records the server left out just before these. */
   missed: number;
   /** How many records the server has not sent yet. */
   behind: number;
@@ -577,7 +583,7 @@ export interface Conversation {
   said: string | null;
 }
 
-/** The newest conversations, oldest first; `more` is how many others there are. */
+/** The newest conversations, oldest first; `more` is the number of conversations that the list leaves out. */
 export interface Conversations {
   type: "conversations";
   conversations: Conversation[];

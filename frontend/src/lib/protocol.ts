@@ -1,4 +1,4 @@
-// Written by tools/protocol.py from ravestate.modules.platform.webio.protocol: change that file, and run the tool.
+// Written by tools/protocol.py from ravestate.modules.platform.webio.frames: change that file, and run the tool.
 
 /** The version of the protocol. A new frame or field keeps this number; any other change increases it. */
 export const VERSION = 1;

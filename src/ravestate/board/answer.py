@@ -13,8 +13,9 @@ class Raiser:
     """A rule that may raise a missing signal, and the outcome of its run in this causal group.
 
     Attributes:
-        outcome, words: The outcome of the rule's run, ``running``, or ``not run``; `words` says the same as text.
-        time: The time of the outcome (seconds); None if there is none.
+        outcome: The outcome of the rule's run, or ``running``, or ``not run``.
+        words: The same as a sentence.
+        time: The time of the outcome (seconds); None without an outcome.
     """
 
     rule: str
@@ -43,15 +44,15 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class WhyNot:
-    """How far a rule came towards a run for an input, and why it came no further.
+    """How close a rule came to a run for an input, and what stopped it.
 
     Attributes:
         rule, spike, signal, time: The rule and the spike in question; the time is the spike's birth (seconds).
-        verdict: How far the rule came at best.
+        verdict: The last step that the rule reached; of several attempts, the best one counts.
         words: The reason for the verdict, in a sentence or two.
         at: The time at which the verdict was decided (seconds); None while it is undecided.
         clause: The number of the clause that took a spike; None if no clause did.
-        missing: The signals that the rule lacked; empty if it lacked none, or if another reason decided.
+        missing: The signals that the rule lacked; empty if it lacked none, or if the verdict has another reason.
         moments: The rule's history for this cause. Beyond 200 moments, the middle is left out and one moment says so.
         whole: Whether the trace reaches back to before the spike; if it does not, the answer may be incomplete.
     """

@@ -53,14 +53,14 @@ def routes(
 ) -> list[BaseRoute]:
     """Return the routes below ``/board``, for ``webio.app(agent, routes(), inside=INSIDE)``.
 
-    The board is for the agent's developers: anybody with access to the page can inspect every conversation and act on
-    it. Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
+    The board is for the agent's developers: anybody with access to the page can inspect and change every conversation.
+    Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
     starts when a board opens. If there is a `recording`, the board shows it to pages that name no conversation.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)
     receiving = asyncio.Semaphore(AT_ONCE)
-    reading = asyncio.Lock()  # one recording at a time: reading a file takes many times its size in memory
+    reading = asyncio.Lock()  # one recording at a time: reading a file needs many times the file's size in memory
 
     async def inspect(socket: WebSocket) -> None:
         state = socket.app.state
@@ -87,7 +87,7 @@ def routes(
         except TimeoutError:
             return PlainTextResponse(f"the upload took more than {LONGEST:g} s", 408)
         except ClientDisconnect:
-            return Response(status_code=400)  # the client is gone, and never reads the answer
+            return Response(status_code=400)  # the client has disconnected, so it never reads this answer
         try:
             async with reading:
                 recording = await asyncio.to_thread(read_apart, bytes(data))
@@ -102,7 +102,7 @@ def routes(
         return RedirectResponse(INSIDE, 307)
 
     return [
-        *([] if recording is None else [Route("/", look)]),  # beside a recording there is no chat page
+        *([] if recording is None else [Route("/", look)]),  # a server for a recording has no chat page
         Route("/board", redirect),
         Mount(
             "/board",

@@ -40,7 +40,10 @@ class GateView:
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One addend of a utility: −ln(rules / |Λ|) nats; `rules` is how many rules have the signal on a pathway (L9)."""
+    """One addend of a utility: −ln(rules / |Λ|) nats (L9).
+
+    `rules` is the number of rules that have the signal on a pathway, and |Λ| is the number of all rules.
+    """
 
     signal: str
     rules: int
@@ -53,9 +56,9 @@ class ClauseView:
 
     Attributes:
         condition: The clause as text.
-        terms: The addends of the pathway with the least utility, which decides the clause's utility.
+        terms: The addends of the pathway with the least utility. This pathway decides the clause's utility.
         pathways: The number of the clause's pathways.
-        predicates: The number of the clause's predicates, which add ln 2 each.
+        predicates: The number of the clause's predicates. Each predicate adds ln 2.
         utility: The sum of all addends (L9).
         base: Utility × weight: the effective utility without a cooldown.
     """
@@ -95,7 +98,7 @@ class RuleView:
 
 @dataclass(frozen=True, slots=True)
 class SignalView:
-    """A signal: its module, slot and payload, whether it is an input, and the rules that hear and raise it."""
+    """A signal: its module, slot and payload, whether it is an input, and the rules that wait for it or raise it."""
 
     name: str
     module: str
@@ -139,7 +142,7 @@ class Description:
 
 
 def describe(policy: Policy) -> Description:
-    """Return the description of a policy. A hundred rules take milliseconds, so describe each policy once."""
+    """Return the description of a policy. A description of a hundred rules takes milliseconds, so make it only once."""
     readers: _Users = {}
     writers: _Users = {}
     for name, rule in policy.rules.items():

@@ -1,6 +1,6 @@
 """An index of a trace for one causal group: the group's spikes, and each rule's attempts to run on them.
 
-The board builds the index anew for each question about a spike, from the records alone.
+The board builds a new index for each question about a spike. It needs nothing but the records of the trace.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the signals that the attempt lacks, or lacked when it ended. Times are in seconds. `complete` is the time
-    when it had all its spikes, if ever. Without a run, `started` is None; before the end of the run, `settled` is None.
+    `lacks` has the missing signals; after the attempt's end, the signals that were missing then. `complete` is the time
+    when the attempt had all its spikes (seconds), or None. `started` is None until the run starts. `settled` is None
+    until the run ends.
     """
 
     id: int
@@ -48,7 +49,7 @@ class Attempt:
 
     @property
     def end(self) -> float | None:
-        """The time at which the attempt ended (seconds); None before."""
+        """The time at which the attempt ended (seconds); None if it has not ended."""
         if self.settled is not None:
             return self.settled.time
         return self.gave_up[-1].time if self.over and self.gave_up else None
@@ -67,7 +68,10 @@ class Attempt:
         self.gave_up.clear()
 
     def lose(self, record: t.GaveUp) -> None:
-        """Note a spike that the activation gave up. `lacks` stays as it was before the first loss of this instant."""
+        """Note a spike that the activation gave up.
+
+        If the activation gives up several spikes in one instant, `lacks` stays as it was before the first of them.
+        """
         if not self.gave_up or self.gave_up[-1].time != record.time:
             self.lacks = self._missing
             self.gave_up.clear()
@@ -140,8 +144,8 @@ class History:
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run that answered the cause of the group; None if no run of the given rules did.
 
-        `hears` has the rules to consider, and the signals that each clause of them consumes. A detached constraint
-        consumes none (L19).
+        `hears` maps the name of each rule to consider to the signals that its clauses consume, clause by clause. A
+        detached constraint consumes no signal (L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
@@ -150,7 +154,10 @@ class History:
         return next((a for a in self._answers if a.rule in hears and is_taken(a, hears[a.rule][a.clause])), None)
 
     def before(self, run: int) -> str:
-        """Return the rule that raised the input of a run in this group; empty if no rule did, or the trace lacks it."""
+        """Return the name of the rule that raised a run's input in this group.
+
+        The name is empty if no rule raised the input, or if the trace does not show the rule.
+        """
         attempt = self._runs.get(run)
         if attempt is None or attempt.started is None:
             return ""
@@ -232,7 +239,7 @@ class Rivals:
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
         self._description = description
-        self._first: dict[str, Attempt | None] = {}  # losing rule → the run that answered first
+        self._first: dict[str, Attempt | None] = {}  # rule that came too late → the run that answered first
 
     def waited(self, rule: RuleView, attempt: Attempt) -> str:
         """Return a phrase with the rules that the attempt last waited for; empty if it did not wait."""
@@ -255,7 +262,7 @@ class Rivals:
         return join(parts)
 
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
-        """Return, in brackets, by how much the utility of the rule `name` is ahead; empty if it is not ahead."""
+        """Return the lead of the rule `name` in utility as text in brackets; empty if that rule is not ahead."""
         other = self._description.rule(name)
         if other is None or name == rule.name:
             return ""
@@ -266,7 +273,10 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the answering rule, and a path: the rule that raised its input, if any, and then the answering rule."""
+        """Return the name of the rule that answered, and the path to it.
+
+        The path begins with the rule that raised the answering rule's input, if a rule did.
+        """
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by
@@ -274,10 +284,11 @@ class Rivals:
     def pressure(self, rule: RuleView, end: float) -> str:
         """Return a phrase that says when the patience of `rule` ran out, and which rule had waited for it.
 
-        The last such wait that ended by `end` (seconds) counts.
+        If rules waited several times, the phrase is about the last wait that ended at or before `end` (seconds).
         """
         pressed = self._history.pressed.get(rule.name, [])
-        times = bisect_right(pressed, end, key=lambda one: one.until)  # sorted, since a rule's patience never changes
+        # `pressed` is sorted by `until`, because a rule's patience never changes.
+        times = bisect_right(pressed, end, key=lambda one: one.until)
         ended = f"this rule's patience ran out at {seconds(end)}"
         if not times:
             return ended

@@ -17,7 +17,7 @@ from ravestate.board.why_not import why_not
 from ravestate.board.wire import data_of
 from ravestate.errors import RavestateError
 from ravestate.modules.platform.webio.channel import Bucket, Channel
-from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.modules.platform.webio.fields import ProtocolError
 from ravestate.runtime.run import until_first_ends
 
 if TYPE_CHECKING:
@@ -32,10 +32,11 @@ from ravestate.draw.graph import Diagram
 from ravestate.draw.layout import lay_out
 from ravestate.draw.text import label_size, node_size
 
-FRAME = 0.05  # the least number of seconds between two frames of records
+FRAME = 0.05  # the minimum number of seconds between two frames of records
 
 SHARE = 0.015
-"""The share of the event loop's time that one inspector may use. So a long pause follows a slow frame."""
+"""The share of the event loop's time that one inspector may use. To keep to it, the inspector waits longer after a slow
+frame."""
 
 OF_SPARE = 0.5  # the share of the process's idle time that one inspector may use in addition
 MOST = 800  # the maximum number of records in a frame; a longer frame would delay the agent
@@ -78,7 +79,7 @@ class Inspector:
         self._title = title
 
     def wake(self) -> None:
-        """Ignore a change in the conversation: the records contain it."""
+        """Do nothing when the conversation changes: the records show the change."""
 
     async def run(self) -> None:
         """Serve the page until either side closes."""
@@ -189,7 +190,7 @@ class Inspector:
         self._channel.reply(protocol.serialise(frame))
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send answers to the page, and new records at most about twenty times a second."""
+        """Send answers to the page at once, and send new records about twenty times a second at most."""
         idle = IdleShare()
         sent: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None
@@ -246,7 +247,7 @@ class Inspector:
         return session.agent if self._title is None else self._title
 
     def _conversations(self, own: Session) -> protocol.Conversations:
-        """Return the list of the newest conversations and the one that the page shows."""
+        """Return the list of the newest conversations. The conversation that the page shows is always in it."""
         running = list(self._sessions)
         listed = running[-LIST:]
         if own in running[:-LIST]:
@@ -263,7 +264,7 @@ class Inspector:
 
 
 def drawing(diagram: Diagram, unfolded: Sequence[str]) -> protocol.Drawing:
-    """Return the laid-out diagram, in which only the modules `unfolded` show their rules. 500 nodes take about 1 s."""
+    """Return the diagram with its layout. Only the modules `unfolded` show their rules. 500 nodes need about 1 s."""
     folded = fold(diagram, frozenset(unfolded))
     sizes = {node.id: node_size(node) for node in folded.nodes}
     layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])

@@ -81,7 +81,7 @@ def _is_expressible(takes: Any) -> bool:
 def _checkable(kind: Any) -> Any:
     """Return the type or types for an `isinstance` check of a value, or None if no such check is possible.
 
-    For ``list[int]``, the check accepts any list, whatever its items.
+    For ``list[int]``, the check accepts any list and ignores its items.
     """
     takes = checkable(kind)
     if takes is not None:

@@ -19,7 +19,7 @@ from ravestate.board.rendering import Rendered
 from ravestate.board.wire import VERSION, TraceRecord
 from ravestate.engine.explain import ActivationState
 from ravestate.engine.reasons import LossReason, Verdict
-from ravestate.modules.platform.webio.protocol import CLOSING_CODES
+from ravestate.modules.platform.webio.fields import CLOSING_CODES
 
 __all__ = [
     "CLIENT", "CLOSING_CODES", "LOSSES", "SERVER", "VERDICTS", "VERSION", "Alive", "Answer", "Changed", "ClientFrame", "Clock",
@@ -50,7 +50,7 @@ class Hello(_Frame):
     """The first frame: it names the conversation or the recording to show.
 
     Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the
-    newest conversation. It begins a conversation if there is none.
+    newest conversation. If there is no conversation, the server begins one.
 
     Attributes:
         v: The version of the protocol.
@@ -184,7 +184,7 @@ class Records:
 
     Attributes:
         records: The records.
-        missed: How many records just before these are left out.
+        missed: How many records the server left out just before these.
         behind: How many records the server has not sent yet.
     """
 
@@ -231,7 +231,7 @@ class Conversation:
 
 @dataclass(frozen=True)
 class Conversations:
-    """The newest conversations, oldest first; `more` is how many others there are."""
+    """The newest conversations, oldest first; `more` is the number of conversations that the list leaves out."""
 
     conversations: list[Conversation]
     more: int
@@ -373,13 +373,13 @@ def parse(text: str | bytes) -> ClientFrame:
 def serialise(frame: ServerFrame) -> str:
     """Return a frame as JSON text, without the fields that have their default values.
 
-    The text is ASCII, because values may hold lone surrogates, which no other encoding carries.
+    The text is ASCII, because values may hold lone surrogates, which UTF-8 cannot encode.
     """
     return json.dumps(frame, separators=(",", ":"), default=_changed)
 
 
 def fields_of(record: Any) -> dict[str, Any]:
-    """Return field's name → value for a dataclass instance; the values are not copied."""
+    """Return a map from a dataclass instance's field names to its values. The values are not copied."""
     return {field.name: getattr(record, field.name) for field in dataclasses.fields(record)}
 
 

@@ -1,13 +1,14 @@
-"""Recorders: they keep the records of contexts for inspectors, with bounded memory and cost.
+"""Recorders keep the records of contexts for inspectors, with bounded memory and cost.
 
-Inspectors have no queues. Records are numbered, and each inspector reads the ones that it lacks. A slow inspector
-misses the records that are gone, and delays nothing else.
+Inspectors have no queues. Records are numbered, and each inspector reads the records that it lacks. A slow inspector
+misses records that are already deleted, and delays nothing else.
 
 Making records is expensive for a busy agent, so a rate limit applies: a burst, then a steady rate, and more while the
 process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
 how many spikes the recorder missed.
 
-All recorders of an agent share one limit on their records. Beyond it, the longest recorders are cut to the same length.
+All recorders of an agent share one limit on their records. If the total exceeds this limit, the recorders with the most
+records are cut to the same length.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ BURST = 20_000  # the maximum number of records in one burst
 RATE = 2_000  # the records per second that a recorder keeps after a burst, while the process is always busy
 
 SPARE = 60_000
-"""Additional records per second in an idle process; the idle share of the process multiplies this number."""
+"""Additional records per second in an idle process. In a process that is half idle, half of this number applies."""
 
 PAUSE = 0.1  # seconds for which a recorder stops listening after too many records
 
@@ -91,8 +92,8 @@ def _kept_waiting() -> float:
 class Recorder:
     """Keeps the records that a context makes after the recorder was made.
 
-    For the limits, see `KEPT`, `BURST`, `RATE` and `SPARE`. The records are `whole` if the context has not started yet.
-    The callback `grown` runs after every `BATCH` records.
+    For the limits, see `KEPT`, `BURST`, `RATE` and `SPARE`. Set `whole` if the context has not started yet: the records
+    then reach back to its start. The callback `grown` runs after every `BATCH` records.
     """
 
     def __init__(
@@ -112,7 +113,7 @@ class Recorder:
         self._rate = rate
         self._spare = spare
         self._idle_share = IdleShare()
-        self._left = 0  # the records that the recorder may still take; the first record raises this to `burst`
+        self._left = 0  # how many records the recorder may still take; the first record raises this number to `burst`
         self._granted: float | None = None
         self._spike = 0  # the number of the newest spike so far
         self._gap: Gap | None = None
@@ -120,7 +121,7 @@ class Recorder:
         self.records: deque[Record | Gap] = deque(maxlen=kept)
         """The newest records, oldest first."""
         self.last = 0
-        """The number of the newest record, which is the number of all records so far."""
+        """The number of the newest record, which equals the number of all records so far."""
         self.missed = 0
         """How many spikes the recorder missed."""
         self.whole = whole
@@ -180,7 +181,7 @@ class Recorder:
         self._take(record)  # this call may begin the next gap
 
     def _rest(self) -> None:
-        """Renew the allowance of records for the time that has passed; if it is zero, stop listening for a moment."""
+        """Compute how many records the recorder may take now. If it may take none, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
@@ -213,7 +214,8 @@ class Recorders:
     def __init__(self, in_all: int = IN_ALL) -> None:
         self._in_all = in_all
         self._grown = 0
-        self._of: WeakKeyDictionary[Context, ref[Recorder]] = WeakKeyDictionary()  # the context holds its recorder
+        # Weak references are enough: a context keeps its recorder alive.
+        self._of: WeakKeyDictionary[Context, ref[Recorder]] = WeakKeyDictionary()
 
     def of(self, context: Context, *, whole: bool = False) -> Recorder:
         """Return the recorder of a context; the first call makes it. For `whole`, see `Recorder`."""

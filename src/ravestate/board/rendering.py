@@ -127,7 +127,7 @@ def _json(value: object, depth: int) -> Iterator[str]:
 def _repr(value: object, most: int) -> Rendered:
     try:
         text = well_formed(_start(repr_chunks(value), most)[: most + 1])
-    except Exception as error:  # a container changed, or a field failed, while being read
+    except Exception as error:  # a container changed while it was read, or a field raised an error
         return Rendered(f"<{type(value).__name__} whose repr fails: {type(error).__name__}>", False)
     return Rendered(text[:most], False, len(text) > most)
 

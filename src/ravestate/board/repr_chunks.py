@@ -28,11 +28,11 @@ _Items = Iterable[tuple[Iterable[str], object]]  # the items of a container, eac
 
 
 def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
-    """Yield a ``repr`` in chunks: built-in containers, records and texts bit by bit, other values at once.
+    """Yield the ``repr`` of a value: in many chunks for built-in containers and dataclasses, in one for other values.
 
-    Long and deep values are cut, and a value within itself is left out: `around` has the `id` of each container around
-    the value. Containers without brackets of their own read like ``deque([1, 2])`` or ``Counter({'a': 1})``. A subclass
-    of a built-in container shows its items; its own methods are not called.
+    Long and deep values are cut. If a value contains itself, ``...`` stands for the inner value: `around` has the `id`
+    of each container around the value. Containers without brackets of their own read like ``deque([1, 2])`` or
+    ``Counter({'a': 1})``. A subclass of a built-in container shows its items; the subclass's methods are not called.
     """
     made_by: Any = type(value).__repr__
     if made_by in TEXTS:
@@ -57,7 +57,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _parts(value: Any, made_by: Any, around: tuple[int, ...]) -> tuple[str, _Items, str] | None:
-    """Return the parts of the ``repr`` that the method `made_by` makes; None if it has no parts, or unknown ones."""
+    """Return the parts of the ``repr`` that the method `made_by` makes; None if it has no parts, or unknown parts."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:

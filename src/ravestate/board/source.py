@@ -28,7 +28,7 @@ from ravestate.board.why_not import Opens
 from ravestate.board.wire import VALUE
 from ravestate.engine.trace import Record, Set
 from ravestate.errors import RavestateError, UndeclaredError, nearest
-from ravestate.modules.platform.webio.protocol import ProtocolError, heard_text
+from ravestate.modules.platform.webio.fields import ProtocolError, heard_text
 from ravestate.policy.policy import Policy
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ class LiveSource:
             case Say():
                 try:
                     heard = heard_text(command.text)
-                except ProtocolError as error:  # this refuses the command, not the connection
+                except ProtocolError as error:  # refuse this command, but keep the connection
                     raise RavestateError(str(error)) from None
                 self._session.hear(f"board-{secrets.token_hex(8)}", heard)
             case _:
@@ -157,7 +157,7 @@ class LiveSource:
 async def _outside_of_any_task(function: Callable[[], T]) -> T:
     """Call a function on the loop, outside this task, and return its result.
 
-    If the function ran in this task, a cancelled task would also cancel the rules that the function started.
+    If the function ran in this task, cancelling the task would also cancel the rules that the function started.
     """
     loop = asyncio.get_running_loop()
     called: asyncio.Future[T] = loop.create_future()
@@ -166,7 +166,7 @@ async def _outside_of_any_task(function: Callable[[], T]) -> T:
         try:
             result = function()
         except Exception as error:
-            if not called.done():  # if it is done, the caller is gone
+            if not called.done():  # the future is already done if the caller was cancelled
                 called.set_exception(error)
         else:
             if not called.done():

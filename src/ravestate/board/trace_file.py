@@ -30,8 +30,8 @@ from ravestate.policy.policy import Policy
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
-"""The maximum number of commas and opening brackets in a file: more would fill the memory. 64 MB of records have some
-four million."""
+"""The maximum number of commas and opening brackets in a file: a file with more of them would fill the memory. 64 MB of
+records have some four million."""
 
 LONGEST = 120  # the maximum number of seconds that reading a file may take
 
@@ -51,18 +51,18 @@ class Recording:
     whole: bool
 
 
-KEPT = 4  # the maximum number of uploaded recordings that a server keeps: the newest ones
+KEPT = 4  # the maximum number of uploaded recordings that a server keeps; it drops the oldest first
 
 
 class Recordings:
-    """A table of uploaded recordings by their names, which nobody can guess. The `first` recording needs no name."""
+    """The uploaded recordings. Each has a name that nobody can guess. The `first` recording needs no name."""
 
     def __init__(self, first: Recording | None = None) -> None:
         self._first = first
         self._uploaded: OrderedDict[str, Recording] = OrderedDict()
 
     def get(self, name: str | None) -> Recording | None:
-        """Return the recording with this name; if the name is None, the first recording. Return None if it is missing."""
+        """Return the recording with this name, or None if it is missing. For None, return the first recording."""
         return self._first if name is None else self._uploaded.get(name)
 
     def put(self, recording: Recording) -> str:
@@ -131,7 +131,10 @@ def read_trace(text: str | bytes) -> Recording:
 
 
 def read_apart(data: bytes) -> Recording:
-    """Do as `read_trace`, but in a process with a time limit, so that the other threads of this process keep running."""
+    """Read a trace in another process, so that the threads of this process keep running.
+
+    The other process has a time limit. For the result and the errors, see `read_trace`.
+    """
     command = [sys.executable, "-m", __name__]
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:
@@ -158,7 +161,8 @@ def _parsed(text: str) -> Any:
 
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
-    from ravestate.board import trace_file  # run by -m, this module is `__main__`; the pickles need its own name
+    # With -m, the name of this module is `__main__`, but the pickles need its real name. So import it by that name.
+    from ravestate.board import trace_file
 
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())

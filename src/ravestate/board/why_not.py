@@ -1,7 +1,7 @@
 """Why a rule did not fire for an input, derived from the trace (L25).
 
-A question is about a causal group: the spike that a user points at, and every spike with the same cause. The answer says how
-far the rule came at best, and why it came no further.
+A question is about a causal group: the spike that a user points at, and every spike with the same cause. The answer
+says how close the rule came to a run, and what stopped it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ravestate.engine.explain import join, latest, seconds, why_given_up, withou
 from ravestate.engine.reasons import DropReason, LossReason, Outcome, PassReason, Verdict
 from ravestate.engine.trace import GaveUp, Passed, Record, Settled, Waits
 
-DEEPEST = 3  # the maximum number of causes behind each other in an answer
+DEEPEST = 3  # the maximum length of a chain of causes in an answer
 
 MOST = 200
 """The maximum number of moments in an answer. If there are more, the middle is left out."""
@@ -49,7 +49,7 @@ def why_not(
 
 
 Reached = tuple[Verdict, str, float | None]
-"""How far a rule came, the reason as text, and the time of that decision (seconds), or None while it is undecided."""
+"""How far a rule came, the reason as text, and the time at which that was decided (seconds; None if it is not yet)."""
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
 """A `Reached`, and the attempt that came this far; None if there was no attempt."""
@@ -63,7 +63,7 @@ class _Inquiry:
         self.description = description
         self.opens = opens
         self.rivals = Rivals(history, description)
-        self.asked: list[str] = []  # the rules whose explanation is in progress; causes may be circular
+        self.asked: list[str] = []  # the rules whose explanation is in progress; the list ends circular explanations
         self._judged: dict[str, Judgement] = {}
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
@@ -292,7 +292,7 @@ class _Inquiry:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # explain also why these signals were missing
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # also explain why the rule's signals were missing
             for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
                 lacked = self.description.signal(lack)
                 for raiser in () if lacked is None else lacked.raisers:
@@ -313,7 +313,7 @@ class _Inquiry:
                 match record:
                     case Waits():
                         words = words_of(record, others=self.rivals.names(rule, attempt, record))
-                        if words != waited:  # the engine may ask for consent again, for the same reason
+                        if words != waited:  # the engine may refuse an activation again for the same reason
                             yield Moment(record.time, words, record.for_)
                         waited = words
                     case GaveUp(by=by):

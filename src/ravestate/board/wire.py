@@ -31,7 +31,7 @@ RENDERED = {"payload": PAYLOAD, "value": VALUE}
 
 
 def _shape(name: str, kind: type[Any]) -> Any:
-    """Return the type of the data of a record of the class `kind`."""
+    """Return a typed dict: the plain data of records of the class `kind`."""
     hints = get_type_hints(kind)
     fields: dict[str, Any] = {"kind": Literal[name]}
     for field in dataclasses.fields(kind):
@@ -62,7 +62,7 @@ def data_of(record: Record | Gap) -> TraceRecord:
 
 
 def checked_record(data: TraceRecord) -> Record | Gap:
-    """Return the record that `data`, already validated, describes."""
+    """Return the record that `data` describes. The data must be validated before."""
     fields = {f"{name}_" if name == "for" else name: value for name, value in data.items()}
     return KINDS[fields.pop("kind")](**fields)
 

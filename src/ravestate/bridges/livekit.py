@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator
 from contextlib import aclosing
 from typing import Any
 
@@ -65,8 +65,6 @@ class RavestateAgent(Agent):
     async def on_exit(self) -> None:
         """Stop the agent."""
         conversation, self._conversation = self._conversation, None
-        for event, function in self._listeners().items():
-            self.session.off(event, function)
         if self._watching is not None:
             self._watching.cancel()
         if conversation is not None:
@@ -93,8 +91,9 @@ class RavestateAgent(Agent):
         """Return the conversation, which begins with the first call."""
         if self._conversation is None:
             self._conversation = Conversation(self._contexts(), self._say, "livekit")
-            for event, function in self._listeners().items():
-                self.session.on(event, function)
+            self.session.on("conversation_item_added", self._notice)
+            self.session.on("user_state_changed", self._notice)
+            self.session.on("user_input_transcribed", self._notice)
             await self._conversation.begin()
             self._watching = asyncio.create_task(self._watch(self._conversation))
         return self._conversation
@@ -119,25 +118,19 @@ class RavestateAgent(Agent):
             self.session.emit("error", ErrorEvent(error=failure, source=self))
         self.session.shutdown(drain=failure is None)
 
-    def _listeners(self) -> dict[Any, Callable[[Any], None]]:
-        return {
-            "conversation_item_added": self._on_item,
-            "user_state_changed": self._on_user_state,
-            "user_input_transcribed": self._on_transcript,
-        }
-
-    def _on_item(self, event: ConversationItemAddedEvent) -> None:
-        item = event.item
-        if self._conversation is not None and isinstance(item, llm.ChatMessage) and item.role == "assistant":
-            self._conversation.heard(item.text_content or "")  # after an interruption, only the words before it
-
-    def _on_user_state(self, event: UserStateChangedEvent) -> None:
-        if self._conversation is not None and event.new_state == "speaking":
-            self._conversation.notice_speech()
-
-    def _on_transcript(self, event: UserInputTranscribedEvent) -> None:
-        if self._conversation is not None and not event.is_final:
-            self._conversation.notice_speech(event.transcript)
+    def _notice(self, event: ConversationItemAddedEvent | UserStateChangedEvent | UserInputTranscribedEvent) -> None:
+        """Tell the agent what the user has heard, and that they are speaking."""
+        if self._conversation is None:  # the session has gone on to another agent
+            return
+        match event:
+            case ConversationItemAddedEvent(item=llm.ChatMessage(role="assistant") as message):
+                self._conversation.heard(message.text_content or "")  # after an interruption, only the words before it
+            case UserStateChangedEvent(new_state="speaking"):
+                self._conversation.notice_speech()
+            case UserInputTranscribedEvent(is_final=False):
+                self._conversation.notice_speech(event.transcript)
+            case _:
+                pass
 
     def _new_words(self, context: llm.ChatContext) -> str:
         """Return the user's words since the last call."""

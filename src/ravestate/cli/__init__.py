@@ -105,10 +105,11 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=allow_abbrev, **options)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
-        """Parse the arguments. Refuse unknown arguments here: the main parser would show the usage of ``ravestate``."""
+        """Parse the arguments. Refuse unknown arguments, for which the main parser would show its own usage."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
-        if many and unknown and all(not word.startswith("-") for word in unknown):  # they continue an argument
+        # After an option, further words belong to the argument that takes several words.
+        if many and unknown and all(not word.startswith("-") for word in unknown):
             setattr(options, many[0], [*getattr(options, many[0]), *unknown])
             return options, []
         if unknown:

@@ -1,4 +1,4 @@
-"""The arguments of a command that name an agent: modules, an agent file, settings."""
+"""The arguments by which a user names an agent: modules, an agent file, settings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ravestate.modules import BUILT_IN
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that name an agent to a command's parser."""
+    """Add the arguments for an agent to a command's parser."""
     parser.add_argument(
         "modules",
         nargs="*",
@@ -38,9 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
-    """Return the agent that parsed arguments name, together with the modules `first`.
+    """Return the agent that the parsed arguments describe. The modules `first` come before the agent's modules.
 
-    With `announce`, print which Python code the agent files run; commands that only inspect an agent set it.
+    With `announce`, print which Python code the agent files run. Commands that only inspect an agent need this.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.

@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def explain_memory(parser: argparse.ArgumentParser) -> None:
-    """Add to a command's help text where the agent keeps its memory."""
+    """Extend a command's help text: say where the agent keeps its memory."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = (
         "The complete agent keeps its memory of you on this machine:\n"
@@ -74,7 +74,10 @@ def _can_hear() -> bool:
 
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
-    """Remove modules whose packages are not installed, and print how to install them. Modules with settings stay."""
+    """Remove modules whose packages are not installed, and print how to install these packages.
+
+    A module stays if the user has set one of its settings.
+    """
     present = [module.name for module in with_required(agent.modules)]
     needs = {name: PACKAGES[name] for name in present if name in PACKAGES}
     absent = {name for name, packages in needs.items() if not all(map(find_spec, packages))}
@@ -88,7 +91,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
         if module.name in COMPLETE and any(required.name in out for required in module.requires):
             out.add(module.name)
     agent.modules = [module for module in agent.modules if module.name not in out]
-    out -= {module.name for module in with_required(agent.modules)}  # the user's modules need these modules
+    out -= {module.name for module in with_required(agent.modules)}  # keep modules that other modules still need
     for name in out:
         agent.settings.pop(name, None)
     left = (

@@ -40,7 +40,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
     """Add the options that choose a memory.
 
-    With `later`, they stand after an action: an option left out there does not reset one given before the action.
+    With `later`, the options come after an action. If an option is left out there, its value from before the action
+    stays.
     """
     default = argparse.SUPPRESS if later else None
     parser.add_argument(
@@ -153,7 +154,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     target = Path(options.to)
     new = target.with_name(target.name + ".new")
     try:
-        new.unlink(missing_ok=True)  # other users may be able to read an earlier file
+        new.unlink(missing_ok=True)  # make a new file: other users may have the right to read an existing one
         new.touch(mode=0o600)  # the document has personal data
         new.write_text(text, encoding="utf-8")
         new.replace(target)

@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def settings_of(options: argparse.Namespace) -> Settings:
-    """Return the settings of voiceio: those of ``--set``, then the environment's."""
+    """Return the settings of voiceio. Values of ``--set`` outrank those of the environment."""
     from ravestate.modules import voiceio
     from ravestate.settings import load_settings
 

@@ -1,1 +1,1 @@
-"""The declarations of a designer: module, signal, slot, condition, rule, settings. Values without behaviour."""
+"""The declarations of a designer: module, signal, slot, condition, rule, settings. They are plain values."""

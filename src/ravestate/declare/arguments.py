@@ -89,8 +89,8 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 def condition(value: object, what: str, where: str, home: str) -> Condition:
     """Return `value` if it is a condition; refuse any other value.
 
-    For the message, `what` is the argument's name, and `where` is the place of the declaration. Names of the module
-    `home` appear there without the module's name.
+    For the message, `what` is the argument's name, and `where` is the place of the declaration. In the message, names
+    of the module `home` appear without the module's name.
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)

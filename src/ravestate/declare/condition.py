@@ -23,7 +23,7 @@ DEFAULT_MAX_AGE = 5.0  # the default `max_age` of a constraint, in seconds (L4)
 Predicate = Callable[[Any], object]  # a function of a payload or of a slot's value
 
 LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
-"""The flags of a code object whose call only makes a generator or a coroutine."""
+"""The flags of a code object. A call of code with one of these flags only makes a generator or a coroutine."""
 
 
 class Condition:

@@ -6,7 +6,7 @@ from ravestate.errors import RavestateError
 
 
 class Resign(RavestateError):
-    """An outcome: the rule does not apply after all, and the next best rule gets its turn.
+    """An outcome: the rule does not apply after all, and the next best rule may run instead.
 
     Write ``return rs.Resign("reason")`` or ``raise rs.Resign("reason")``, before the rule writes a slot.
     """
@@ -17,7 +17,7 @@ class Resign(RavestateError):
 
 
 class Retire(RavestateError):
-    """An outcome: the rule leaves this context for good. Other contexts of the same policy keep it."""
+    """An outcome: the rule leaves this context for good. Other contexts of the same policy keep the rule."""
 
     def __init__(self, reason: str = "") -> None:
         super().__init__(reason)

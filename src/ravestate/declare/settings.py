@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """A numeric setting's name, and the `owner`: the settings class that defines it, or None for the rule's module."""
+    """The name of a numeric setting, and the settings class that owns it; None means the rule's own module."""
 
     name: str
     owner: type | None = None

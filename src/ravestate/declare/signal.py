@@ -24,7 +24,7 @@ class SignalOptions(TypedDict, total=False):
         input: Whether code outside the rules may raise the signal even if a rule raises it too (L8). A signal that no
             rule raises is always an input.
         keep: ``"all"`` or ``"latest"``. With ``"latest"``, a new spike withdraws the signal's older spikes (L20).
-        limit: The maximum number of live spikes, 100,000 by default. Beyond it, the oldest spike is dropped (L23).
+        limit: The maximum number of live spikes, 100,000 by default. A further spike drops the oldest spike (L23).
     """
 
     input: bool

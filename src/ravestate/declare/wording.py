@@ -12,7 +12,7 @@ CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as Python code for the file of the module `home`; its own names are plain variables there."""
+    """Return a qualified name as Python code for the file of the module `home`, whose own names are variables there."""
     parts = name.split(":")
     if parts[0] == "core":
         parts[0] = "rs"
@@ -21,7 +21,7 @@ def spelt(name: str, home: str = "") -> str:
 
 def place_of_call() -> str:
     """Return the place of the nearest caller outside this folder, as ``file:line``."""
-    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # a message names the line of the mistake
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages show the line of the mistake
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
         if frame.f_code.co_filename == CORE:
             break

@@ -32,7 +32,10 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
 
 
 def topological(after: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices in topological order, except those on or behind a cycle; `after` has each one's successors."""
+    """Return the vertices in topological order. Leave out vertices on or behind a cycle.
+
+    `after` has the successors of each vertex.
+    """
     waiting = Counter(v for ahead in after for v in ahead)
     order = [v for v in range(len(after)) if not waiting[v]]
     for u in order:
@@ -44,7 +47,7 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Return vertex → its number in an order in which few edges point backwards, preferably weak ones."""
+    """Return each vertex's number in an order in which few edges point backwards, and most of these are weak."""
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     out = [0] * count
@@ -74,11 +77,15 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     return place
 
 
-_LAST = (0, 2)  # vertices of these ranks (see `_urgency`) get the last free number, and others the first
+_LAST = (0, 2)  # a vertex of these ranks (see `_urgency`) gets the last free number, any other vertex the first
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
-    """Return a vertex's sort key (rank, gain). Ranks: 0 sink, 1 source, 2 and 3 the same among strong edges, 4 other."""
+    """Return a vertex's sort key (rank, gain).
+
+    The ranks are: 0 for a sink; 1 for a source; 2 for a sink if weak edges are ignored; 3 for a source if weak edges
+    are ignored; 4 for any other vertex.
+    """
     if out == 0:
         return (0, 0)
     if into == 0:

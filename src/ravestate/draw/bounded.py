@@ -16,7 +16,7 @@ from ravestate.draw.simplex import Arc
 Extent = tuple[float, float]
 """Width and height in pixels."""
 
-_SCREEN = 720.0  # pixels: a picture of this height fits a screen, however narrow it is
+_SCREEN = 720.0  # pixels: a picture of at most this height fits a screen, even if the picture is narrow
 _TALLEST = 1.2  # the minimum of width : height; a narrower picture is too tall
 _ASPECT = 1.6  # desired width : height
 _SPLITS = 16  # the maximum number of parts into which the largest layer is split
@@ -51,7 +51,7 @@ def bounded_layers(ranks: Sequence[int], arcs: Sequence[Arc], most: int) -> list
     for u, v, _, length in arcs:
         after[u].append((v, length))
         waiting[v] += 1
-    tail = [0] * count  # vertex → the longest path from it, in layers
+    tail = [0] * count  # vertex → the length of the longest path from it, in layers
     for u in reversed(topological([[v for v, _ in ahead] for ahead in after])):
         tail[u] = max((tail[v] + length for v, length in after[u]), default=0)
     found = list(ranks)

@@ -1,6 +1,6 @@
 """Building a diagram from declared rules.
 
-The diagram has only the slots and signals that some rule names. It shows a slot's signals only if they have a listener.
+The diagram has a slot or a signal only if a rule uses it. It has a slot's signal only if a rule waits for the signal.
 Conditions are in disjunctive normal form, since a rule fires by one clause at a time (L5). Several constraints of a
 clause meet in a conjunction, and several clauses meet in a disjunction.
 """

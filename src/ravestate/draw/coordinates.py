@@ -1,8 +1,8 @@
 """Coordinate assignment, which makes lines short first and then straight.
 
-Each layer in turn moves as near as possible to its neighbours. Within one layer, the best coordinates under minimum
-distances are a weighted isotonic regression, solved by pooling adjacent violators. Forward and backward sweeps repeat this
-for all layers. In the end, `Straightener` removes small steps.
+Each layer in turn moves as near as possible to its neighbours. Within one layer, a weighted isotonic regression (pool
+adjacent violators) finds the best coordinates with the minimum distances. Forward and backward sweeps repeat this for
+all layers. In the end, `Straightener` removes small steps.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from ravestate.draw.layered import LayeredGraph
 from ravestate.draw.straighten import Straightener
 
 _SWEEPS = 24  # sweeps over all layers, forwards and backwards in turn
-_AHEAD = 0.15  # weight of neighbours ahead of a sweep, relative to those behind it
+_AHEAD = 0.15  # weight of neighbours that a sweep has not reached yet, relative to neighbours that it has passed
 
 
 def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:
-    """Return the vertical middle of each vertex in pixels, for a graph with ordered layers and placed ports.
+    """Return the y coordinate of each vertex's middle in pixels. The graph must have ordered layers and placed ports.
 
     The picture is at most `room` pixels high, unless its largest layer needs more.
     """

@@ -1,7 +1,7 @@
 """Crossing minimisation: the order of the vertices within their layers.
 
-Barycentre sweeps run forwards and backwards, each followed by transpositions of neighbours (Sugiyama, Tagawa and Toda 1981;
-Gansner et al. 1993). There are two initial orders; the result is the best order that the sweeps find. The
+Barycentre sweeps run forwards and backwards. After each sweep, neighbours are transposed (Sugiyama, Tagawa and Toda
+1981; Gansner et al. 1993). There are two initial orders; the result is the best order that the sweeps find. The
 initial orders come from a depth-first search in declaration order, which keeps related declarations together.
 """
 
@@ -13,15 +13,15 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph, places
 
-_WORK = 400_000  # the maximum of segments x sweeps
+_WORK = 400_000  # the maximum product of the numbers of segments and sweeps
 _PATIENCE = 4  # sweeps without improvement before the search ends
 
 
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
-    A vertex's neighbours are initially in order of creation. If `centred`, dummies are in the middle of them, so that a
-    hyperedge through many layers runs straight, with branches to both sides.
+    A vertex's neighbours are initially in order of creation. If `centred`, the dummies among them are in the middle. A
+    hyperedge through many layers then runs straight, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:
@@ -29,7 +29,8 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
         after = [_dummies_centred(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
-    least = count_crossings(best, after) + 1  # + 1: an initial order that is no worse replaces the order of creation
+    # The 1 lets an equally good initial order replace the order of creation.
+    least = count_crossings(best, after) + 1
     for downwards in (True, False):
         order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)
         if crossed < least:
@@ -107,7 +108,10 @@ def _sweep(
 
 
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
-    """Sort the vertices with neighbours by the mean place of their neighbours; other vertices stay. With `flip`, ties swap."""
+    """Sort the vertices that have neighbours by the mean place of these; vertices without neighbours stay.
+
+    With `flip`, vertices with equal means are reversed.
+    """
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
         moving.reverse()
@@ -143,5 +147,5 @@ def _transpose(
 
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
     """Return how many crossings a swap of two vertices saves, given the sorted places of their neighbours."""
-    # The ends in `lower` before `end` cross now; those after it would cross after the swap.
+    # Lines to the ends in `lower` before `end` cross now. Lines to the ends after `end` would cross after the swap.
     return sum(bisect_left(lower, end) - len(lower) + bisect_right(lower, end) for end in upper)

@@ -17,8 +17,8 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""(upper, lower neighbour in a layer) → the minimum pixels between them; `False` stands for a dummy vertex."""
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; overlapping dashes would not match
+"""Two adjacent vertices of a layer (upper, lower) → the minimum pixels between them. `False` stands for a dummy."""
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed ones would blur each other
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
 _LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, but entering and leaving lines stay apart
@@ -78,7 +78,10 @@ class LayeredGraph:
         return (self.height[upper] + self.height[lower]) / 2 + _GAPS[solid]
 
     def neighbours(self) -> tuple[list[list[int]], list[list[int]]]:
-        """Return vertex → its neighbours in the layer before, and those in the layer after, once for each segment."""
+        """Return two lists: vertex → its neighbours in the layer before, and the same for the layer after.
+
+        A neighbour occurs once for each segment.
+        """
         before: list[list[int]] = [[] for _ in self.layer]
         after: list[list[int]] = [[] for _ in self.layer]
         for segment in range(len(self.segments)):
@@ -99,8 +102,8 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # A label is near the arrow's head, on its own line. The dashes of two overlapping lines
-            # coincide only if the lines start at the same point.
+            # A label needs a piece of line that belongs to its edge alone, near the arrow's head. Two dashed lines
+            # look like one only if they start at the same point.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
@@ -110,7 +113,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
 
 
 def places(order: Sequence[Sequence[int]]) -> list[int]:
-    """Return vertex → its place within its layer, given the vertices of each layer."""
+    """Return each vertex's place within its layer, given the vertices of each layer."""
     found = [0] * sum(map(len, order))
     for layer in order:
         for place, vertex in enumerate(layer):
@@ -180,7 +183,7 @@ class _Builder:
 
 
 def place_ports(graph: LayeredGraph) -> None:
-    """Place the ports of each side in the order of the vertices to which they lead. The layers must be in order."""
+    """Place the ports of each side in the order of the vertices to which they lead. Order the layers before."""
     place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:

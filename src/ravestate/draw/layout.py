@@ -4,7 +4,7 @@
 2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
 3. Dummy vertices split long edges into short segments (`layered`). Crossing minimisation orders the layers (`crossings`).
 4. Coordinate assignment places ports (`layered`) and vertices (`coordinates`).
-5. Edge routing sets the distances of the layers and the turns of the lines (`tracks`, `routing`).
+5. Edge routing sets the distances between the layers and the turns of the lines (`tracks`, `routing`).
 
 Connected components are laid out one by one and packed in rows. The result depends on the diagram and its order alone.
 """
@@ -173,7 +173,7 @@ def _extent(graph: LayeredGraph) -> Size:
 
 
 def _tightness(edge: Edge, kinds: Mapping[str, NodeKind]) -> int:
-    """Return what an edge costs for each layer that it spans.
+    """Return the cost of an edge for each layer that the edge spans.
 
     High costs keep junctions near rules, and signals near slots.
     """

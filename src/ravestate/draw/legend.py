@@ -55,7 +55,7 @@ def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Le
 
 
 def _rows(wide: Sequence[float], room: float) -> list[tuple[float, int]]:
-    """Return the left edge (pixels) and the row of each entry, in as few rows as possible, of about equal length."""
+    """Return the left edge (pixels) and the row of each entry. The rows are few and about equally long."""
     found = _filled(wide, room)
     while room > max(wide) and (narrower := _filled(wide, room - 10.0))[-1][1] == found[-1][1]:
         found, room = narrower, room - 10.0

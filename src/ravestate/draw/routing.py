@@ -1,4 +1,4 @@
-"""Edge routing, which turns vertices with coordinates into lines of points."""
+"""Edge routing: it makes lines of points between vertices that have coordinates."""
 
 from __future__ import annotations
 
@@ -26,14 +26,13 @@ class Routed:
 
 
 def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
-    """Return the layers side by side, with room between them for the lines, and the route of each line."""
+    """Put the layers side by side, with room for the lines between them, and find the route of each line."""
     gaps: list[list[int]] = [[] for _ in graph.order]
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    turns = [(0.0, 0.0)] * len(
-        graph.segments
-    )  # segment → the x at which it leaves its first y, and reaches its second y
+    # segment → the x at which its line leaves the first y, and the x at which its line reaches the second y
+    turns = [(0.0, 0.0)] * len(graph.segments)
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
         column = max(graph.width[v] for v in layer)

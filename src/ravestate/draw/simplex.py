@@ -1,8 +1,9 @@
 """Layer assignment with short edges: the network simplex of Gansner, Koutsofios, North and Vo (1993).
 
-A spanning tree of tight arcs fixes all ranks. A tree arc with a negative cut value should be longer: it leaves the
-tree, and the tightest arc that crosses the cut in the other direction takes its place. The cut value of a tree arc is
-the sum of (weight out - weight in) over the vertices on the side of its tail. Arcs within that side cancel out.
+An arc is tight if it has its minimum length. A spanning tree of tight arcs fixes all ranks (layers). Without one of its
+arcs, the tree falls into two sides. The arc's cut value is the sum of (weight out - weight in) over the vertices on the
+side of the arc's tail. An arc with a negative cut value should be longer, so it leaves the tree. The tightest arc that
+crosses between the two sides in the other direction takes its place.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from ravestate.draw.acyclic import topological
 Arc = tuple[int, int, int, int]
 """An arc: its tail, its head, its weight, and its minimum length in layers."""
 
-_WORK = 2_000_000  # the maximum of exchanges x vertices
+_WORK = 2_000_000  # the maximum product of the numbers of exchanges and vertices
 
 
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
@@ -28,7 +29,7 @@ def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
     """
     if count == 0:
         return []
-    surplus = [0] * count  # vertex → weight out - weight in
+    surplus = [0] * count  # vertex → the weight of its outgoing arcs minus the weight of its incoming arcs
     for u, v, weight, _ in arcs:
         surplus[u] += weight
         surplus[v] -= weight
@@ -38,9 +39,8 @@ def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
         leaving, side = _worst_cut(arcs, tree, surplus)
         if not side:
             break
-        back = (
-            arcs[leaving][0] in side
-        )  # the arc grows if its tail moves to an earlier layer, or its head to a later one
+        # The arc gets longer if its tail moves to an earlier layer, or if its head moves to a later layer.
+        back = arcs[leaving][0] in side
         slack, entering = min(
             (rank[v] - rank[u] - length, i)
             for i, (u, v, _, length) in enumerate(arcs)
@@ -110,7 +110,10 @@ def _worst_cut(arcs: Sequence[Arc], tree: Sequence[int], surplus: Sequence[int])
 
 
 def _balanced(rank: list[int], arcs: Sequence[Arc], surplus: Sequence[int]) -> list[int]:
-    """Return the ranks from 0 on. If several ranks cost the same, a vertex takes the rank with the fewest vertices."""
+    """Shift the ranks so that they begin at 0, and return them.
+
+    If several ranks cost the same, a vertex takes the rank with the fewest vertices.
+    """
     least = min(rank)
     rank = [r - least for r in rank]
     size = [rank.count(r) for r in range(max(rank) + 1)]

@@ -12,7 +12,7 @@ from ravestate.draw.layered import LayeredGraph
 
 _BEND = 60.0  # the cost of a step in a line, in pixels of length
 _ROUNDS = 4  # the maximum number of passes over all segments
-_LEVEL = 0.01  # pixels: a smaller step counts as none
+_LEVEL = 0.01  # pixels: a line with a smaller step counts as straight
 
 
 class Straightener:

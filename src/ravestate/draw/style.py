@@ -62,7 +62,7 @@ EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
 
 
 def stylesheet() -> str:
-    """Return the CSS of a standalone SVG. Its rules apply to elements below class ``srs`` alone."""
+    """Return the CSS of a standalone SVG. Its rules apply only inside elements of the class ``srs``."""
     rules: list[tuple[str, str, Paint, str]] = [
         (".srs-paper", "fill", PAPER, ""),
         (".srs text", "fill", TEXT, f"font-family:{_FONTS};font-size:13px"),

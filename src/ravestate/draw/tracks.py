@@ -17,7 +17,7 @@ Segment = tuple[int, int, float, float]
 """The port at the left end, the port at the right end, and the y coordinates of both (pixels)."""
 
 _NEAR = 5.0  # pixels: closer stubs look like one line
-_APART = 7.0  # pixels: minimum distance of two verticals on one track
+_APART = 7.0  # pixels: minimum distance between two vertical lines on one track
 _LEVEL = 0.01  # pixels: a net whose ends differ by less needs no track
 _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of all crossings together
 
@@ -108,7 +108,10 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 
 
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
-    """Return the segments to slant if `a` cannot be left of `b`: for each overlap of stubs, those of the smaller side."""
+    """Return the segments to slant if `a` cannot be left of `b`.
+
+    If two stubs overlap, the segments of the stub with fewer segments are slanted.
+    """
     found: set[int] = set()
     for p, y in a.left.items():
         for q, z in b.right.items():

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
+from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, RUNNING, WAITING, Activation
 from ravestate.engine.consent import Refusal, ask, stalemate
 from ravestate.engine.deadlines import PATIENCE, RECHECK, TIMEOUT
 from ravestate.engine.effects import Run
@@ -31,15 +31,30 @@ from ravestate.policy.policy import Policy
 
 ASKABLE = (READY, WAITING)
 
+BATCH = 100
+"""The number of activations without consent that start before the events of their runs are received."""
+
 
 class Agenda(Slots):
     """The layer of the engine that decides which ready activations start."""
+
+    __slots__ = (
+        "_activity",
+        "_breakers",
+        "_pressure",
+        "_queue",
+        "patience",
+        "ran",
+        "standing",
+    )
 
     def __init__(self, policy: Policy, patience: float) -> None:
         super().__init__(policy)
         self.patience = patience
         # The activations that ask in this instant, the best first.
         self._queue: list[tuple[int, float, int, int, Activation]] = []
+        # The activations that wait for nothing but each other, the best first.
+        self._breakers: list[tuple[tuple[float, int, int], Activation]] = []
         self.ran: dict[int, float] = {}
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.standing = Standing(self.ran)
@@ -48,6 +63,9 @@ class Agenda(Slots):
 
     def look(self) -> None:
         """Make all alternatives visible to an observer: each becomes an activation that waits for the best clause."""
+        for half, spikes in list(self.halves.items()):
+            for first in list(spikes):
+                self.unfold_half(first, half)
         for best in list(self.alternatives):
             spike = best.spikes[0]
             assert spike is not None  # the activation is ready, or runs
@@ -67,16 +85,15 @@ class Agenda(Slots):
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
 
     def _start_free(self) -> None:
-        """Start the ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
-        free = sorted(self._free, key=_newest) if len(self._free) > 1 else self._free
-        self._free = []
-        for activation in free:
-            clause = activation.clause
-            if activation.state is not READY or (clause.guards and not self._guarded(activation)):
+        """Start ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
+        started = 0
+        while started < BATCH and (activation := self._free.pop()) is not None:
+            if activation.clause.guards and not self._guarded(activation):
                 continue
             if self._loops.runs > MANY and self._loops.defer(activation):
                 continue
             self._start(activation)
+            started += 1
 
     def _guarded(self, activation: Activation) -> bool:
         """Return whether the activation's predicates on slots are true; if not, the activation is no longer ready."""
@@ -95,19 +112,23 @@ class Agenda(Slots):
         """
         queue = self._queue
         self.standing.now = self.now
-        for activation in self._asking:
-            heapq.heappush(queue, (*self._turn(activation), activation))
-        self._asking.clear()
+        asking = self._asking
+        self._asking = {}
         if self._dirty or self._stirred:
-            again: dict[Activation, None] = {}
             for group in self._dirty:
-                again.update(group.interested)
+                asking.update(group.interested)
             self._dirty.clear()
             for hope in self._stirred:
-                again.update(self.hoping.get(hope, {}))
+                asking.update(self.hoping.get(hope, {}))
             self._stirred.clear()
-            for activation in again:
-                heapq.heappush(queue, (*self._turn(activation), activation))
+        if queue:  # the places of those left may have changed since the last round
+            asking.update((entry[4], None) for entry in queue if entry[4].state in ASKABLE)
+            queue.clear()
+        if len(asking) == 1:
+            queue += [(0, 0.0, 0, 0, activation) for activation in asking]
+        else:
+            queue += [(*self._turn(activation), activation) for activation in asking]
+            heapq.heapify(queue)
         written: set[int] = set()
         later: list[tuple[int, float, int, int, Activation]] = []
         while queue:
@@ -119,9 +140,6 @@ class Agenda(Slots):
             if self._loops.runs > MANY and activation.state is READY and self._loops.defer(activation):
                 continue
             rule = clause.rule
-            if rule.cooldown and (turn := self._turn(activation)) > entry[:4]:
-                heapq.heappush(queue, (*turn, activation))  # its rule has run meanwhile, so its utility is lower
-                continue
             if written and not rule.readable.isdisjoint(written):
                 if self._is_taken(activation):
                     later.append(entry)  # by the next round it waits, or has lost its spike
@@ -132,12 +150,33 @@ class Agenda(Slots):
                 written.update(rule.slots)
         for entry in later:
             heapq.heappush(queue, entry)
-        if self._refused and not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
-            best = stalemate(self, self.waiting)
-            if best is None:
-                self._refused.clear()
-            else:
-                self._start(best)
+        idle = not (
+            queue or self._asking or self._dirty or self._stirred or self._acts or self._free.new or self._free.line
+        )
+        if idle and (self._refused or self._stuck):
+            self._break_stalemate()
+
+    def _break_stalemate(self) -> None:
+        """Start the best of the activations that wait for nothing but each other, if there are any."""
+        found = stalemate(self, self._refused, self._stuck)
+        self._refused.clear()
+        for activation in found:
+            if activation not in self._stuck:
+                self._stuck[activation] = None
+                heapq.heappush(self._breakers, (self.order(activation), activation))
+        while self._breakers:
+            order, best = heapq.heappop(self._breakers)
+            if best not in self._stuck:
+                continue  # it has asked again since
+            if order != self.order(best):
+                heapq.heappush(self._breakers, (self.order(best), best))  # its rule has run meanwhile
+                continue
+            for group in best.firm_groups():
+                for other in group.interested:  # what these wait for depends on the group, and so on this start
+                    self._stuck.pop(other, None)
+                    self._refused[other] = None
+            self._start(best)
+            break
 
     def _is_taken(self, activation: Activation) -> bool:
         """Return whether one of the activation's slots is taken in each of its groups."""
@@ -175,8 +214,9 @@ class Agenda(Slots):
         activation.firm = tuple(refusal.firm)
         activation.bounded = refusal.pressed or refusal.taken
         activation.hopes = tuple(refusal.hopes)
-        for hope in activation.hopes:
+        for hope, most in refusal.hopes.items():
             self.hoping.setdefault(hope, {})[activation] = None
+            self._hope_counts[hope] = max(most, self._hope_counts.get(hope, 0))
         activation.interests = tuple(refusal.interests)
         for group in activation.interests:
             group.concern(activation)
@@ -223,10 +263,31 @@ class Agenda(Slots):
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
         return until
 
+    def is_pressed(self, time: float, owner: tuple[Group, int | Activation]) -> bool:
+        """Return whether the patience of a rival still matters."""
+        group, rival = owner[0].root(), owner[1]
+        if isinstance(rival, int):
+            return bool(group.interested)
+        return rival.state < RUNNING and rival.pressed.get(group) == time
+
+    def on_patience(self, time: float, owner: tuple[Group, int | Activation]) -> None:
+        """Let the activations that wait in a group judge a rival again, whose patience is over (L16)."""
+        self._dirty[owner[0].root()] = None
+
+    def on_recheck(self, time: float, activation: Activation) -> None:
+        """Let an activation ask again, because the order of recovering utilities has changed (L15)."""
+        activation.recheck = NEVER
+        if activation.state == WAITING:
+            self._asking[activation] = None
+
+    def on_timeout(self, time: float, run: Activation) -> None:
+        """Cancel a run that has had its time (L18)."""
+        self._cancel(run, "timeout")
+
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""
         for spike in rival.firm_spikes():
-            spike.refuse(rival.clause.rule.index)
+            self._refuse_for_good(spike, rival.clause.rule)
         self._end(rival, "eliminated")
 
     def _start(self, activation: Activation) -> None:
@@ -288,12 +349,6 @@ class Agenda(Slots):
             self._set_flag(self._activity, activity)
             return True
         return False
-
-
-def _newest(activation: Activation) -> tuple[int, int, int]:
-    """Return the sort key of an activation that needs no consent: its newest spike, then the order of declaration."""
-    newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
-    return (newest, activation.clause.index, activation.id)
 
 
 def _endless(rules: Sequence[RulePlan]) -> str:

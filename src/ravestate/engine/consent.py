@@ -9,16 +9,17 @@ A rival that may never become ready is under pressure: it has its patience, once
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from ravestate.engine.activation import NEVER, RUNNING, Activation
 from ravestate.engine.horizon import FIRM, NO, Horizon
-from ravestate.policy.model import Clause, RulePlan
+from ravestate.policy.model import Clause, Half, RulePlan
 
 if TYPE_CHECKING:
     from ravestate.engine.agenda import Agenda as Engine
     from ravestate.engine.group import Group
+    from ravestate.engine.spike import Spike
 
 
 class Refusal:
@@ -39,7 +40,7 @@ class Refusal:
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
-        self.hopes: Iterable[tuple[int, int]] = ()
+        self.hopes: Mapping[tuple[int, int], int] = {}
         self.names: dict[str, None] = {}
         self.blockers: dict[Activation, None] = {}
         self.firm: list[tuple[Activation, ...]] = []
@@ -72,6 +73,7 @@ def ask(
         commit: Whether rivals come under pressure, and give up when their patience is over.
     """
     refusal = Refusal()
+    eliminated = False
     clause = activation.clause
     rule = clause.rule
     slots = rule.slotset
@@ -87,6 +89,27 @@ def ask(
                 refusal.blockers[holder] = None
         if not group.taken.keys().isdisjoint(slots):
             continue
+        for half, spike in _rival_halves(engine, group, slots) if group.entries else ():
+            if clause.rule.cooldown:
+                engine.unfold_half(spike, half)
+                continue
+            best = _best(engine, half, spike, clause)
+            if best is None or not standing.refuses(best.clause, clause):
+                continue
+            if horizon is None:
+                horizon = _horizon(engine, activation, without)
+            strength, roots = horizon.judge(best.clause, best, group)
+            if (
+                horizon.judge(best.clause, None, group)[0] != NO
+                or horizon.open_bits(best.clause, group)
+                or (strength != NO and (strength != FIRM or best.clause.rule.index in engine.active))
+            ):
+                engine.unfold_half(spike, half)  # its rivals must be pressed, or compared, one by one
+                horizon.renew()
+            elif strength == FIRM:
+                refusal.blockers.update(dict.fromkeys(roots))
+                refusal.firm.append(roots)
+                refusal.names[best.clause.rule.name] = None
         for rival, members in _rivals(engine, activation, group):
             if clause.rule.cooldown or rival.rule.cooldown:
                 refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
@@ -117,14 +140,33 @@ def ask(
                     if commit and member is not None:
                         horizon.forget(member)
                         engine.eliminate(member)
+                        eliminated = True
                     continue
                 apart += member is not None and member not in group.members
                 refusal.names[rival.rule.name] = None
+    if eliminated and refusal:
+        return ask(engine, activation, without)  # rivals judged before may have hung on the eliminated one
     if horizon is not None:
         refusal.interests.update(horizon.visited)
         refusal.hopes = horizon.hopes
         refusal.recheck = min(refusal.recheck, horizon.recheck)
     return refusal
+
+
+def _rival_halves(engine: Engine, group: Group, slots: frozenset[int]) -> list[tuple[Half, Spike]]:
+    """Return the halves that hold spikes of the group for clauses that write one of the slots, with these spikes."""
+    return [(h, spike) for spike in group.entries for h in engine.halves_of(spike) if not h.slotset.isdisjoint(slots)]
+
+
+def _best(engine: Engine, half: Half, spike: Spike, clause: Clause) -> Activation | None:
+    """Return the activation that the best other clause would have for an entry; it stands for all (`Half`)."""
+    for need in half.best:
+        if need.clause is not clause and engine.keeps(need, spike):
+            best = Activation(0, need.clause)
+            best.spikes[need.index] = spike
+            best.missing &= ~need.bit
+            return best
+    return None
 
 
 def _horizon(engine: Engine, activation: Activation, without: Collection[Activation]) -> Horizon:
@@ -178,8 +220,8 @@ def _place(rival: tuple[Clause, list[Activation]]) -> int:
     return rival[0].index
 
 
-def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | None:
-    """Return the best of the activations that wait for nothing but each other, if there are any.
+def stalemate(engine: Engine, refused: Iterable[Activation], known: Collection[Activation] = ()) -> set[Activation]:
+    """Return activations that wait for nothing but each other.
 
     Two ready rules may each wait for a rival that the other might bring about. They would wait for ever, so the one
     with the greater effective utility goes first, or else the one declared first.
@@ -187,22 +229,34 @@ def stalemate(engine: Engine, refused: Iterable[Activation]) -> Activation | Non
     Args:
         engine: The engine.
         refused: The activations that were refused since the last search: at least one is in any new stalemate.
+        known: The activations that earlier searches found.
     """
-    stuck: set[Activation] = set()
+    waiting = engine.waiting.keys()
+    seen: set[Activation] = set()
     reached = list(refused)
-    while reached:
-        one = reached.pop()
-        if one not in stuck and one in engine.waiting and one.firm and not one.bounded:
-            stuck.add(one)
-            reached += [root for roots in one.firm for root in roots]
-    while stuck:
-        freed = {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}
-        if not freed:
-            break
-        stuck -= freed
-    while stuck:
-        freed = {one for one in stuck if ask(engine, one, stuck, commit=False)}
-        if not freed:
-            break
-        stuck -= freed
-    return min(stuck, key=engine.order, default=None)
+    while True:
+        while reached:
+            one = reached.pop()
+            if one in seen or one not in waiting or not one.firm or one.bounded:
+                continue
+            if any(waiting.isdisjoint(roots) for roots in one.firm):
+                continue  # it waits for work that waits for nothing
+            seen.add(one)
+            for roots in one.firm:
+                reached += roots
+        if not seen:
+            return seen
+        stuck = set(seen)
+        while freed := {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}:
+            stuck -= freed
+        while stuck:
+            without = stuck.union(known)
+            answers = [(one, ask(engine, one, without, commit=False)) for one in stuck]
+            freed = [(one, refusal) for one, refusal in answers if refusal]
+            if not freed:
+                break
+            stuck -= {one for one, _ in freed}
+            for _, refusal in freed:  # it waits for others as well, and these may wait for it
+                reached += [root for roots in refusal.firm for root in roots if root not in seen]
+        if not any(root in engine.waiting and root.firm and not root.bounded for root in reached):
+            return stuck

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
+    from ravestate.engine.spike import Spike
 
 NOTHING: Any = MappingProxyType[Any, Any]({})
 
@@ -18,13 +19,14 @@ class Group:
     Attributes:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
         members: Activation with non-detached spikes of the group → the number of these spikes; oldest activation first.
+        entries: The group's spikes that halves hold without an activation.
         interested: The waiting activations that ask again when something ends in the group.
         pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
         answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
             them for the trace, while there is a tracer.
     """
 
-    __slots__ = ("answers", "id", "interested", "into", "members", "pressed", "taken")
+    __slots__ = ("answers", "entries", "id", "interested", "into", "members", "pressed", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
@@ -33,6 +35,7 @@ class Group:
         # Most groups never need the following tables, so each table is created on first use.
         self.taken: Mapping[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: Mapping[Activation, None] = NOTHING
+        self.entries: Mapping[Spike, None] = NOTHING
         self.pressed: dict[int, float] | None = None
         self.answers: Mapping[int, tuple[str, int]] = NOTHING
 
@@ -84,6 +87,18 @@ class Group:
         if activation in self.interested:
             self.interested.pop(activation)  # type: ignore[attr-defined]  # as above
 
+    def enter(self, spike: Spike) -> None:
+        """Note that a half holds a spike of the group."""
+        if self.entries is NOTHING:
+            self.entries = {spike: None}
+        else:
+            self.entries[spike] = None  # type: ignore[index]  # as above
+
+    def leave(self, spike: Spike) -> None:
+        """Note that no half holds the spike any more."""
+        if spike in self.entries:
+            self.entries.pop(spike)  # type: ignore[attr-defined]  # as above
+
     def absorb(self, other: Group) -> None:
         """Make `other` part of this group. A slot that is taken for good in either group stays taken."""
         other.into = self
@@ -94,6 +109,8 @@ class Group:
             self.members[activation] = self.members.get(activation, 0) + count
         for activation in other.interested:
             self.concern(activation)
+        for spike in other.entries:
+            self.enter(spike)
         if other.pressed:
             mine = self.pressed or {}
             self.pressed = {**mine, **{c: min(until, mine.get(c, until)) for c, until in other.pressed.items()}}
@@ -104,7 +121,7 @@ class Group:
         if other.answers:
             self.answers = {**other.answers, **self.answers}
         other.members = {}
-        other.taken = other.interested = other.answers = NOTHING
+        other.taken = other.interested = other.answers = other.entries = NOTHING
 
     def __repr__(self) -> str:
         return f"group {self.id}"

@@ -16,16 +16,18 @@ from ravestate.engine.activation import (
     WAITING,
     Activation,
 )
-from ravestate.engine.deadlines import EXPIRE, FORGET, RIPEN
+from ravestate.engine.deadlines import RIPEN
+from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.loops import MANY
 from ravestate.engine.spike import Spike
-from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need, SignalPlan
 
 
-class Holdings(State):
+class Holdings(Entries):
     """The layer of the engine that gives spikes to activations and takes them away."""
+
+    __slots__ = ()
 
     def _look(self, activation: Activation, needs: Iterable[Need]) -> None:
         """For each detached need without a spike, take the newest live spike that fits, old enough if possible."""
@@ -44,6 +46,17 @@ class Holdings(State):
                             break
                 if best is not None:
                     self._acquire(activation, need, best)
+
+    def _offer_to_lacking(self, need: Need, spike: Spike) -> None:
+        """Offer a new spike to every activation that lacks it, oldest first (L12)."""
+        lacking = self.lacking[need]
+        for activation in sorted(lacking, key=_age) if len(lacking) > 1 else tuple(lacking):
+            if need.kin != need.bit and not self._coherent(activation, need, spike):
+                continue
+            if activation.missing & need.bit:  # an earlier offer may have met the need
+                self._acquire(activation, need, spike)
+                self._stir(activation)
+                self._update(activation)
 
     def _swap(self, activation: Activation, need: Need, spike: Spike) -> None:
         """Let a detached need hold another spike."""
@@ -130,18 +143,20 @@ class Holdings(State):
             if spike is not None and need.max_age != NEVER:
                 self._let_expire(spike, spike.born + need.max_age)
 
-    def _let_expire(self, spike: Spike, due: float) -> None:
-        """Set the time (seconds) at which holders that are still incomplete give the spike up (L14)."""
-        if due <= self.now or due not in spike.expiring:
-            spike.expiring = (*spike.expiring, due)
-            self._deadlines.add(due, EXPIRE, spike)
-
-    def _expire(self, spike: Spike, time: float) -> None:
+    def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in list(spike.holders):
             if holder.state is GATHERING:
                 old = [need for need in self._of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self._lose(holder, old, "age")
+        for half in self.halves_of(spike):
+            if spike.born + half.max_age <= time:
+                self._drop(spike, half)
+
+    def on_ripen(self, time: float, activation: Activation) -> None:
+        """Judge an activation again whose spikes are old enough now (L14)."""
+        activation.ripens = NEVER
+        self._update(activation)
 
     def _complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it: a writer asks for consent, and any other activation starts without it.
@@ -156,7 +171,7 @@ class Holdings(State):
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
         else:
-            self._free.append(activation)
+            self._free.new.append(activation)
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
         """Take the spike of a need from an activation; `by` is the run that is the reason, or None."""
@@ -176,7 +191,7 @@ class Holdings(State):
                 self._dirty[group] = None
         if spike not in activation.spikes:
             spike.holders.pop(activation, None)
-            if not spike.holders:
+            if not (spike.holders or spike.entries):
                 self._forget(spike)
         if reason and self.tracer is not None:
             self.tracer(
@@ -281,31 +296,18 @@ class Holdings(State):
         """Make an activation stop waiting, so that changes in its groups do not make it ask again."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
+        if self._stuck:
+            self._stuck.pop(activation, None)
         for hope in activation.hopes:
             hoping = self.hoping.get(hope)
             if hoping is not None:
                 hoping.pop(activation, None)
                 if not hoping:
-                    del self.hoping[hope]
+                    del self.hoping[hope], self._hope_counts[hope]
         activation.hopes = ()
         for group in activation.interests:
             group.root().forget(activation)
         activation.interests = ()
-
-    def _forget(self, spike: Spike) -> None:
-        """Remove a spike that no activation holds, unless detached needs may still look at it."""
-        signal = spike.signal
-        if signal.retain >= 0 and spike.born + signal.retain > self.now:
-            if signal.retain != NEVER:
-                self._deadlines.add(spike.born + signal.retain, FORGET, spike)
-            return
-        live = self.live.get(signal.index)
-        if live is not None:
-            live.pop(spike, None)
-            if not live:
-                del self.live[signal.index]
-        if spike.group.root().interested:
-            self._dirty[spike.group.root()] = None
 
     def _kill(self, spike: Spike, reason: str) -> None:
         """Withdraw a spike (L20): activations give it up, but a run that started with the spike keeps it."""
@@ -318,6 +320,8 @@ class Holdings(State):
                 del self.live[spike.signal.index]
         for watch in self._watched_by.pop(spike, ()):
             watch.lose(spike)
+        for half in self.halves_of(spike):
+            self._drop(spike, half)
         for holder in list(spike.holders):
             if holder.state < RUNNING:
                 self._lose(holder, self._of_spike(holder, spike), "withdrawn")
@@ -347,8 +351,12 @@ class Holdings(State):
         """Make the run's rule give up `spikes` for good, in all its other activations."""
         rule = run.clause.rule
         for spike in spikes:  # mark all of them first: an activation that loses a spike looks for another at once
-            spike.refuse(rule.index)
+            self._refuse_for_good(spike, rule)
         for spike in spikes:
             for other in list(spike.holders) if len(spike.holders) > 1 else ():
                 if other is not run and other.clause.rule is rule and other.state < RUNNING:
                     self._lose(other, [n for n in self._of_spike(other, spike) if not n.detached], reason, run)
+
+
+def _age(activation: Activation) -> int:
+    return activation.id

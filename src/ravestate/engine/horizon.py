@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Generator, Set
 from typing import TYPE_CHECKING, Any
 
-from ravestate.engine.activation import GATHERING, NEVER, RUNNING, Activation
+from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
 from ravestate.policy.model import Clause, Need
 
 if TYPE_CHECKING:
@@ -51,22 +51,36 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups on whose state the latest results depend.
-        hopes: Pairs of a kind and the number of a rule or signal: changes of these may change the results.
+        hopes: Pairs of a kind and the number of a rule or signal: changes of these may change the results. For
+            `OUTSIDE`, a change counts if the rule has at most this many other activations.
         recheck: The time at which a spike that a result depends on grows too old to be looked at (seconds).
     """
 
-    __slots__ = ("_by_rule", "_cuts", "_known", "_path", "engine", "hopes", "recheck", "roots", "still", "visited")
+    __slots__ = (
+        "_by_rule",
+        "_cuts",
+        "_known",
+        "_path",
+        "_still",
+        "engine",
+        "hopes",
+        "recheck",
+        "roots",
+        "still",
+        "visited",
+    )
 
     def __init__(self, engine: Engine, still: Set[Activation]) -> None:
         self.engine = engine
         self.still = still
+        self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
         self._cuts = 0  # how often a cycle was cut
         self._path: set[tuple[int, Group]] = set()  # the signals whose derivation is in progress
         self._known: dict[tuple[int, Group, Slots], tuple[int, tuple[Activation, ...]]] = {}
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
-        self.hopes: dict[tuple[int, int], None] = {}
+        self.hopes: dict[tuple[int, int], int] = {}
         self.recheck = NEVER
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
@@ -82,6 +96,7 @@ class Horizon:
     def forget(self, activation: Activation) -> None:
         """Leave out an activation that is about to end, and what was derived while it lived."""
         self._known.clear()
+        self._still = None
         for home in activation.firm_groups():
             there = self._by_rule.get(home)
             if there is not None:
@@ -91,20 +106,31 @@ class Horizon:
                 if not same:
                     there.pop(activation.clause.rule.index, None)
 
-    def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
-        """Return a clause's activations that hold no spike of the group, but lack a spike that the group may cause."""
+    def renew(self) -> None:
+        """Forget what was derived before activations were created."""
+        self._known.clear()
+        self._by_rule.clear()
+
+    def open_bits(self, clause: Clause, group: Group) -> int:
+        """Return the bits of the needs for which a clause's activations in other groups may get a spike of the group."""
         if clause.apart:
-            return []  # any spike that it lacks must come from the group that it stands on
-        active = self.engine.active.get(clause.rule.index)
+            return 0  # any spike that it lacks must come from the group that it stands on
         reach = self._rules(group).keys()
         ancestors = self.engine.policy.causes.ancestors
-        open_bits = 0
+        bits = 0
         for need in clause.needs:
             if not need.detached and not reach.isdisjoint(ancestors(need.signal.index)):
-                open_bits |= need.bit
+                bits |= need.bit
+        return bits
+
+    def elsewhere(self, clause: Clause, group: Group) -> list[Activation]:
+        """Return a clause's activations that hold no spike of the group, but lack a spike that the group may cause."""
+        open_bits = self.open_bits(clause, group)
         if not open_bits:
             return []
-        self.hopes[RULE, clause.rule.index] = None
+        self.hopes[RULE, clause.rule.index] = 0
+        self.engine.unfold_clause(clause)
+        active = self.engine.active.get(clause.rule.index)
         return [
             one
             for one in active or ()
@@ -186,7 +212,7 @@ class Horizon:
 
     def _seen(self, need: Need, group: Group, slots: Slots) -> Step:
         """Return the strength with which anything may meet a detached need."""
-        self.hopes[SEEN, need.signal.index] = None
+        self.hopes[SEEN, need.signal.index] = 0
         spike = self.engine.newest(need)
         if spike is not None:
             self.visited[spike.group.root()] = None
@@ -269,14 +295,30 @@ class Horizon:
         causes = self.engine.policy.causes
         wide = causes.wide_ancestors(signal.index)
         if wide:
-            self.hopes[OUTSIDE, signal.index] = None
+            hope = (OUTSIDE, signal.index)
+            most = self.hopes.setdefault(hope, 0)
             narrow = causes.ancestors(signal.index)
-            for rule, activations in self.engine.active.items():
-                if rule in wide and any(
-                    a not in self.still and (rule not in narrow or a not in group.members) for a in activations
-                ):
-                    return True
+            live = self.engine.active
+            for rule in wide if len(wide) < len(live) else live:
+                alive = len(live.get(rule, ()))
+                if alive and rule in wide:
+                    apart = self._apart(rule, group, near=rule in narrow)
+                    most = self.hopes[hope] = max(most, apart)
+                    if alive > apart:
+                        return True
         return False
+
+    def _apart(self, rule: int, group: Group, *, near: bool) -> int:
+        """Return how many activations of a rule do nothing, or (`near`) belong to a group."""
+        if self._still is None:
+            self._still = {}
+            for activation in self.still:
+                number = activation.clause.rule.index
+                self._still[number] = self._still.get(number, 0) + (activation.state is not ENDED)
+        count = self._still.get(rule, 0)
+        if near:
+            count += sum(activation not in self.still for activation in self._rules(group).get(rule, ()))
+        return count
 
 
 def _solve(step: Step) -> int:

@@ -70,6 +70,11 @@ class Loops:
         self._instant = 0
         self._named: set[int] = set()
 
+    @property
+    def full(self) -> bool:
+        """Whether further turns of loops wait until nothing else is ready."""
+        return self._turns >= TURNS
+
     def rest(self) -> None:
         """End the instant: nothing is left to do."""
         self.runs = self.late = self._turns = 0

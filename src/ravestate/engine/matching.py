@@ -6,10 +6,10 @@ from typing import Any
 
 from ravestate.engine import trace
 from ravestate.engine.activation import CANCEL, GATHERING, NEVER, RUNNING, Activation
-from ravestate.engine.conflict_sets import ConflictSets
-from ravestate.engine.deadlines import LOOK, PATIENCE, WATCH
+from ravestate.engine.deadlines import LOOK, WATCH
 from ravestate.engine.effects import Cancel, CancelReason, Spiked
 from ravestate.engine.group import Group
+from ravestate.engine.halves import Halves
 from ravestate.engine.horizon import SEEN
 from ravestate.engine.loops import MANY, Lineage
 from ravestate.engine.spike import Spike
@@ -17,8 +17,10 @@ from ravestate.engine.watch import Watch
 from ravestate.policy.model import Need, SignalPlan
 
 
-class Matching(ConflictSets):
+class Matching(Halves):
     """The layer of the engine that creates spikes, groups them, and offers them to activations."""
+
+    __slots__ = ()
 
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
         """Return the parents of the spikes that a run raises; none for a detached rule, or for code outside (L19)."""
@@ -47,6 +49,8 @@ class Matching(ConflictSets):
     def _merge(self, one: Group, other: Group) -> Group:
         """Merge two causal groups into the older one, and return it."""
         root, merged = (one, other) if one.id < other.id else (other, one)
+        self._unfold_group(one)
+        self._unfold_group(other)
         root.absorb(merged)
         if self.tracer is not None:
             self.tracer(trace.Merged(self.now, merged.id, root.id))
@@ -120,11 +124,14 @@ class Matching(ConflictSets):
             self._watch(spike)
         if self.hoping and (SEEN, signal.index) in self.hoping:
             self._stirred[SEEN, signal.index] = None
-        for need in signal.uncontested:
+        for need in signal.others:
             self._offer(need, spike)
+        if signal.halves:
+            for need in self._offer_to_halves(signal, spike):
+                self._offer(need, spike)
         if signal.contests:
             self._offer_to_sets(signal, spike)
-        if not spike.holders:
+        if not (spike.holders or spike.entries):
             self._forget(spike)
 
     def _offer(self, need: Need, spike: Spike) -> None:
@@ -144,15 +151,8 @@ class Matching(ConflictSets):
             if spike.group.taken and spike.group.finished(rule.slots):
                 self._pass_by(clause, spike, "consumed")
                 return
-        lacking = self.lacking.get(need)
-        if lacking:
-            for activation in sorted(lacking, key=_age) if len(lacking) > 1 else tuple(lacking):
-                if need.kin != need.bit and not self._coherent(activation, need, spike):
-                    continue
-                if activation.missing & need.bit:  # an earlier offer may have met the need
-                    self._acquire(activation, need, spike)
-                    self._stir(activation)
-                    self._update(activation)
+        if need in self.lacking:
+            self._offer_to_lacking(need, spike)
         if need.detached and clause.asks_detached:
             if need.min_age:
                 self._deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
@@ -166,12 +166,8 @@ class Matching(ConflictSets):
             group = spike.group.root()
             if group.interested:
                 self._dirty[group] = None
-            if group.pressed and clause.index in group.pressed:
-                # The stand-by was under pressure, and this is what became of it.
-                until = group.pressed[clause.index]
-                activation.pressed = {group: until}
-                if until > self.now:
-                    self._deadlines.add(until, PATIENCE, (group, activation))
+            if group.pressed:
+                self._take_over(activation, group)
         if clause.simple:
             self._complete(activation)
             return
@@ -190,6 +186,18 @@ class Matching(ConflictSets):
                 held = activation.spikes[need.index]
                 if held is not None and held.id < spike.id:
                     self._swap(activation, need, spike)
+
+    def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
+        """Show a spike to a detached need for which it is old enough now (L19)."""
+        need, spike = looking
+        need = self.policy.clause_plans[need.clause.index].needs[need.index]  # a rule may have been added since
+        if self._fits(need, spike):
+            self._show(need, spike)
+
+    def on_watch(self, time: float, watch: Watch) -> None:
+        """Judge an `until` condition whose spikes are old enough now (L21)."""
+        watch.due = NEVER
+        self._judge(watch)
 
     def _watch(self, spike: Spike) -> None:
         """Offer a new spike to the `until` conditions of runs (L21)."""
@@ -231,10 +239,6 @@ class Matching(ConflictSets):
             self.tracer(trace.Told(self.now, run.id, run.clause.rule.name, reason))
         self._acts = True
         self._out.append(Cancel(run.id, reason))
-
-
-def _age(activation: Activation) -> int:
-    return activation.id
 
 
 def _birth_order(offer: tuple[int, int, int, Activation, Spike]) -> tuple[int, int, int]:

@@ -24,6 +24,9 @@ class Spike:
         source: The number of the run that raised the spike; 0 if code outside raised it.
         holders: The activations that hold the spike, in the order in which they took it.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
+        entries: How many halves hold the spike without an activation (``halves.py``).
+        parted: The numbers of the clauses in these halves that do not hold the spike: they gave it up, or have an
+            activation with it.
         refused: The numbers of the rules that gave the spike up for good.
         lineage: In an instant with many runs: the rules that led to the spike (L23).
     """
@@ -40,6 +43,8 @@ class Spike:
     lineage: Lineage | None = field(init=False, default=None)
     holders: dict[Activation, None] = field(init=False, default_factory=dict[Any, None])
     expiring: tuple[float, ...] = field(init=False, default=())
+    entries: int = field(init=False, default=0)
+    parted: set[int] | None = field(init=False, default=None)
     refused: set[int] | None = field(init=False, default=None)
 
     def refuse(self, rule: int) -> None:

@@ -7,31 +7,23 @@ by the need that they lack. So the cost of an event does not grow with the numbe
 from __future__ import annotations
 
 import copy
+from collections import OrderedDict
 from types import MappingProxyType
 from typing import Any
 
 from ravestate.declare.condition import Holds
 from ravestate.declare.core import RuleFailure
-from ravestate.engine.activation import RUNNING, Activation
-from ravestate.engine.deadlines import (
-    EXPIRE,
-    LOOK,
-    PATIENCE,
-    RECHECK,
-    RIPEN,
-    TIMEOUT,
-    WATCH,
-    Deadlines,
-    Entry,
-)
+from ravestate.engine.activation import Activation
+from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
+from ravestate.engine.free import Free
 from ravestate.engine.group import Group
 from ravestate.engine.horizon import OUTSIDE, RULE
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
-from ravestate.policy.model import Clause, Need, RulePlan, SlotPlan
+from ravestate.policy.model import Clause, Half, Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
@@ -40,6 +32,45 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 
 class State:
     """The slots, live spikes and activations of an engine, and the work that is still to be done."""
+
+    __slots__ = (
+        "_activations",
+        "_acts",
+        "_asking",
+        "_blamed",
+        "_busy",
+        "_deadlines",
+        "_dirty",
+        "_errors",
+        "_free",
+        "_groups",
+        "_hope_counts",
+        "_loops",
+        "_out",
+        "_refused",
+        "_spikes",
+        "_stirred",
+        "_stuck",
+        "_unseen",
+        "_watched_by",
+        "_watches",
+        "active",
+        "alternatives",
+        "dropped",
+        "gated",
+        "halves",
+        "hoping",
+        "lacking",
+        "live",
+        "now",
+        "policy",
+        "retired",
+        "running",
+        "tracer",
+        "values",
+        "waiting",
+        "watched",
+    )
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
@@ -55,6 +86,9 @@ class State:
         """Number of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but none for this need."""
+        self.halves: dict[Half, OrderedDict[Spike, int]] = {}
+        """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
+        before theirs (``halves.py``)."""
         self.gated: dict[Activation, None] = {}
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.waiting: dict[Activation, None] = {}
@@ -64,6 +98,7 @@ class State:
         them have had an activation; the activation number just before theirs."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
         """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
+        self._hope_counts: dict[tuple[int, int], int] = {}  # the same keys → the greatest count in `Horizon.hopes`
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.retired: set[int] = set()
@@ -74,9 +109,10 @@ class State:
         """The names of the signals whose spikes are reported as effects, as the keys of a table."""
         self._out: list[Effect] = []
         self._acts = False  # whether one of these effects starts or cancels a run
-        self._free: list[Activation] = []  # ready activations that need no consent
+        self._free = Free()
         self._asking: dict[Activation, None] = {}  # ready or waiting activations that are about to ask for consent
         self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
+        self._stuck: dict[Activation, None] = {}  # activations found in a stalemate since they were refused
         self._dirty: dict[Group, None] = {}  # groups in which something ended
         self._stirred: dict[tuple[int, int], None] = {}  # the keys of `hoping` that have changed
         self._watches: dict[Clause, dict[Activation, Watch]] = {}
@@ -85,7 +121,7 @@ class State:
         self._errors: list[tuple[RuleFailure, Lineage | None]] = []
         self._loops = Loops()
         self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
-        self._deadlines = Deadlines(self._stands)
+        self._deadlines: Deadlines
         self._busy: int = 0  # how many activations count for `core:activity`
         self._activations: int = 0  # the number of the newest activation
         self._spikes = 0
@@ -107,35 +143,20 @@ class State:
 
     def stir_rule(self, rule: RulePlan) -> None:
         """Note that an activation of a rule has come, changed or gone: activations in other groups may depend on it."""
+        others = len(self.active.get(rule.index, ())) - 1
         for kind, number in self.hoping:
             if (
                 number == rule.index
                 if kind == RULE
-                else kind == OUTSIDE and rule.index in self.policy.causes.wide_ancestors(number)
+                else kind == OUTSIDE
+                and others <= self._hope_counts[kind, number]
+                and rule.index in self.policy.causes.wide_ancestors(number)
             ):
                 self._stirred[kind, number] = None
 
-    def _stands(self, entry: Entry) -> bool:
-        """Return whether a deadline still counts: its owner lives, and has no other deadline of this kind."""
-        time, kind, _, owner = entry
-        if kind is EXPIRE:
-            return bool(owner.holders) or owner in self.live.get(owner.signal.index, ())
-        if kind is RIPEN:
-            return owner.ripens == time
-        if kind is PATIENCE:
-            group, rival = owner
-            if isinstance(rival, int):
-                return bool(group.root().interested)
-            return rival.state < RUNNING and rival.pressed.get(group.root()) == time
-        if kind is LOOK:
-            return owner[1] in self.live.get(owner[1].signal.index, ())
-        if kind is RECHECK:
-            return owner.recheck == time
-        if kind is TIMEOUT:
-            return owner.deadline == time
-        if kind is WATCH:
-            return owner.due == time and owner.run.state == RUNNING
-        return owner in self.live.get(owner.signal.index, ())
+    def is_live(self, spike: Spike) -> bool:
+        """Return whether a spike is live: something holds it, or detached needs may look at it."""
+        return spike in self.live.get(spike.signal.index, ())
 
     def read(self, slot: int) -> Any:
         """Return the value of the slot with this number."""

@@ -32,7 +32,7 @@ def load_module(name: str, folder: Path = Path()) -> Module:
             return _as_module(name, installed[name].load())
     if "/" in name or name.startswith(".") or not name:
         raise UsageError(f"{name!r} is not a module: name a file (./hello.py), or a dotted path (pkg.mod)")
-    if str(Path.cwd()) not in sys.path:  # a command does not search the working folder by default
+    if str(Path.cwd()) not in sys.path:  # by default, an installed command does not import from the working folder
         sys.path.insert(0, str(Path.cwd()))
     if "." in name or ":" in name or (name.isidentifier() and importlib.util.find_spec(name) is not None):
         return _from_path(name, [*BUILT_IN, *installed])
@@ -61,7 +61,7 @@ def _from_file(name: str, path: Path) -> Module:
         raise UsageError(f"there is no file {name}")
     known = sys.modules.get(path.stem)
     if known is not None and getattr(known, "__file__", None) == str(path):
-        return _as_module(name, known)  # a test has already imported the file: its slots must be the same objects
+        return _as_module(name, known)  # a test may have imported the file before, and needs the same slot objects
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
         raise UsageError(f"{name} is not a Python file")
@@ -80,7 +80,7 @@ def _from_file(name: str, path: Path) -> Module:
 
 @contextlib.contextmanager
 def _loading(failure: str) -> Generator[None]:
-    """Turn an exception while a user's module loads into an error whose message begins with `failure`.
+    """If loading a user's module raises an exception, raise a `UsageError` whose message begins with `failure`.
 
     ``sys.exit`` counts as such an exception, because it would end the command without a message.
     """

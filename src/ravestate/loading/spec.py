@@ -35,7 +35,7 @@ class AgentSpec:
         modules: The modules, in order.
         settings: Module's name → key → value, for the settings that files and options set.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: The seconds that a rival under pressure has to become ready (L16).
+        patience: The seconds after which a pressured rival gives up if it is not ready (L16).
         faults: A message for each mistake so far.
     """
 
@@ -60,8 +60,8 @@ class AgentSpec:
     def read(self, path: Path) -> list[tuple[str, Path]]:
         """Take the settings and numbers of an agent file, and add its mistakes to `faults`.
 
-        Return the names of the file's modules, each with the folder of the file. Raise a `UsageError` if it cannot be
-        read at all.
+        Return the names of the file's modules, each with the folder of the file. If the file cannot be read at all,
+        raise a `UsageError`.
         """
         try:
             content: Any = load_yaml(path.read_text(encoding="utf-8"), str(path))
@@ -90,7 +90,7 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load the modules with these names; a relative path is resolved against the folder beside the name."""
+        """Load the modules with these names. Each name comes with the folder to which a relative path refers."""
         for name, folder in names:
             try:
                 module = load_module(name, folder)
@@ -127,7 +127,7 @@ class AgentSpec:
     def check(self) -> None:
         """If there are `faults`, raise a `UsageError` with all of them, and with the faults of the settings.
 
-        If there are none, the settings are not checked here: compiling the modules finds their faults.
+        If there are no `faults`, do not check the settings: compiling the modules finds the faults of the settings.
         """
         if not self.faults:
             return

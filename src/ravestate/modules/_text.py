@@ -29,7 +29,8 @@ def without_controls(text: str) -> str:
 def printable(text: str) -> str:
     """Return `text` without terminal escape sequences and control characters. Use it for a whole text.
 
-    Like `without_controls`, but it also removes escape sequences, and turns ``\\r\\n`` and ``\\r`` into line feeds.
+    The function works like `without_controls`. It also removes escape sequences, and turns ``\\r\\n`` and ``\\r`` into
+    line feeds.
 
     Example:
         >>> printable("\\x1b[31mred\\x1b[0m\\x00")

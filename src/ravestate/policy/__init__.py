@@ -1,1 +1,4 @@
-"""The analysis of modules before they run: compile, pathways, utility, conflicts, findings, diagram. Pure."""
+"""The analysis of modules before they run: compile, pathways, utility, conflicts, findings, diagram.
+
+This package uses no third-party code.
+"""

@@ -52,7 +52,7 @@ class Causes:
         """Return the roots of the signal's pathways, as bits; roots are numbered separately from signals.
 
         A root is a signal without causes, or a cycle without causes from outside. The pathways of two signals have a
-        signal in common if and only if the two share a root.
+        signal in common if and only if the two signals share a root.
         """
         return self._roots[self.components.of[signal]]
 
@@ -73,12 +73,12 @@ class Causes:
         return found
 
     def closure(self, signal: int) -> int:
-        """Return, as bits, the signals on a signal's pathways: itself, and all that lead to it without detachment."""
+        """Return the signals on a signal's pathways, as bits: the signal itself, and all that lead to it undetached."""
         return self._closures[self.components.of[signal]]
 
     @cached_property
     def _closures(self) -> list[int]:
-        """Return component → the closure that the component's signals share."""
+        """Return the closure of each component. All signals of a component have the same closure."""
         of = self.components.of
         found: list[int] = []
         for number, members in enumerate(self.components.members):  # causes before their effects
@@ -127,7 +127,7 @@ class Causes:
         found = {s.index for r in self.rules for c in r.clauses for slot, _ in c.guards for s in slot.signals}
         rules = [rule for rule in self.rules if rule.slots or not found.isdisjoint(rule.raises)]
         seen = set(rules)
-        for rule in rules:  # the list grows
+        for rule in rules:  # the loop also visits the rules that its body appends
             for signal in {need.signal.index for need in _needs(rule)} - found:
                 found.add(signal)
                 more = [cause for cause in self.all_causes[signal] if cause not in seen]

@@ -27,7 +27,7 @@ class Conjunction:
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
     """Bring a condition of any depth into disjunctive normal form, in declaration order, without duplicates.
 
-    If it has more than `MAX_CLAUSES` conjunctions, or a part that is not a condition, raise a `DeclarationError`.
+    If the result has more than `MAX_CLAUSES` conjunctions, or a part is not a condition, raise a `DeclarationError`.
     """
     parts = list(_inner_first(condition))
     _check(condition, parts)
@@ -61,7 +61,7 @@ def _inner_first(condition: Condition) -> Iterator[Condition]:
 
 
 def _check(condition: Condition, parts: list[Condition]) -> None:
-    """Refuse a part that is not a condition, or too many conjunctions, before `_expanded` makes any conjunction."""
+    """Refuse a part that is not a condition, and refuse a condition that would have too many conjunctions."""
     counts: dict[int, int] = {}
     for part in parts:
         key = id(part)
@@ -86,7 +86,7 @@ def _shown(count: int) -> str:
 
 
 def _expanded(part: Condition, forms: dict[int, list[Atoms]]) -> list[Atoms]:
-    """Return the conjunctions of a part; `forms` has those of the parts that it contains."""
+    """Return the conjunctions of a part. `forms` has the conjunctions of the parts inside this part."""
     if isinstance(part, AnyOf):
         return [atoms for inner in part.parts for atoms in forms[id(inner)]]
     if isinstance(part, Signal):

@@ -14,9 +14,9 @@ from ravestate.declare.wording import few
 from ravestate.errors import DeclarationError, DeclarationErrors
 from ravestate.policy.causes import Causes
 from ravestate.policy.completion import UNIT, Completion
-from ravestate.policy.connect import connect, find_contests, find_kin
+from ravestate.policy.connect import connect, find_contests, find_halves, find_kin
 from ravestate.policy.least import Least
-from ravestate.policy.model import RulePlan, SignalPlan
+from ravestate.policy.model import Clause, RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 from ravestate.policy.policy import Policy
@@ -75,6 +75,7 @@ def build(
     find_kin(numbered.plans, causes)
     completion = _assign_utilities(names.signals, numbered.plans, causes)
     find_contests(names.signals, causes)
+    find_halves(names.signals, causes)
     return Policy(
         modules=tuple(modules),
         declared=tuple(rules),
@@ -146,20 +147,21 @@ def _in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     return list(ordered)
 
 
-PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds, because it halves the prior (L9)
+PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the probability (L9)
+SAME = 1e-9  # base utilities whose relative difference is at most this are equal
 NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: above 0, so that its weight counts
 
 
 def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
     """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
 
-    Return the graph in which clauses are completed; `Pathways` lists their other pathways with it.
+    Return the graph in which clauses are completed. `Pathways` uses it to list the clauses' other pathways.
     """
     completion = Completion(signals, rules, causes)
     least = Least(completion)
     of = causes.components.of
     for rule in rules:
-        # A clause is cyclic if a signal that its rule raises leads to one of its needs.
+        # A clause is cyclic if a signal that its rule raises leads to one of the clause's needs.
         raised = set[int]() if rule.detached else {of[signal] for signal in rule.raises}
         for clause in rule.clauses:
             firm = [need.signal.index for need in clause.needs if not need.detached]
@@ -172,4 +174,14 @@ def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], 
             # The sum is rounded because the information of a predicate is not a multiple of the unit.
             clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
             clause.base = (clause.utility or NO_INFORMATION) * rule.weight
+    _make_equal([clause for rule in rules for clause in rule.clauses])
     return completion
+
+
+def _make_equal(clauses: Iterable[Clause]) -> None:
+    """Give one base utility to clauses whose base utilities differ in their last digits alone: they are equals (L15)."""
+    last = 0.0
+    for clause in sorted(clauses, key=lambda clause: clause.base):
+        if clause.base - last <= SAME * clause.base:
+            clause.base = last
+        last = clause.base

@@ -30,7 +30,7 @@ class Completion:
         alternatives: Place → the signal's alternatives, each a tuple of places.
         bare: Place → whether a pathway may hold the signal without its causes.
         information: Place → the self-information of the signal (L9), in units (`UNIT`).
-        components: Groups of places that lead to each other without passing a bare signal; causes before effects.
+        components: Groups of places that lead to each other without passing a bare signal. Groups of causes come first.
         cycle: Place → the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 
@@ -88,7 +88,7 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 
 
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
-    """Return signal → the number of rules with the signal on one of their pathways."""
+    """Return, for each signal, the number of rules that have the signal on a pathway."""
     of, members = causes.components.of, causes.components.members
     completed = [0] * len(members)  # component → the rules that it leads to without detachment, as a set
     looked_at = [0] * len(signals)

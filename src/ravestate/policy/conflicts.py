@@ -18,8 +18,8 @@ class Conflict:
         slots: The names of the slots that both rules write.
         causes: The names of the signals that lie on pathways of both rules.
         winner: The name of the rule that goes first if both are ready and recovered.
-        margin: The winner's lead in nats of effective utility (utility x weight). It is 0 if neither rule carries
-            information, even if a weight decides.
+        margin: The winner's lead in effective utility (utility x weight, nats). It is 0 if neither rule carries
+            information, even if a weight decides which rule wins.
         tie: Whether the two effective utilities are equal, so that the order of declaration decides.
     """
 
@@ -49,7 +49,7 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
 
 
 def writers(policy: Policy) -> dict[int, list[RulePlan]]:
-    """Return the number of a slot → the rules that write the slot."""
+    """Return a map from each slot's number to the rules that write the slot."""
     found: dict[int, list[RulePlan]] = {}
     for rule in policy.rule_plans:
         for slot in rule.slots:

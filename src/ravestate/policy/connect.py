@@ -1,11 +1,12 @@
-"""The relations between the records of a policy: listeners, coherent needs, contests."""
+"""The relations between the records of a policy: listeners, coherent needs, contests, halves."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from ravestate.policy.causes import Causes
-from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
+from ravestate.policy.model import Clause, Half, Need, RulePlan, SignalPlan, SlotPlan
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
@@ -31,7 +32,10 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 
 
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
-    """Set the kin of each need: the needs of its clause whose pathways share a signal with its own (coherence, L12)."""
+    """Set the kin of each need: the needs of its clause that must hold spikes of the same causal group (L12).
+
+    Needs are kin if their pathways share a signal.
+    """
     for rule in rules:
         for clause in rule.clauses:
             families: list[tuple[int, int]] = []  # the roots and the needs of each group of kin, as bits
@@ -57,9 +61,9 @@ def find_contests(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the contests of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
-    Only the first clause can get consent, unless it resigns or fails. Until then the engine makes no activation of
-    the others (``engine/conflict_sets.py``). So none of their effects may help a rule that writes a slot: else other
-    activations would wait for what they may yet cause (L16).
+    Only the first clause can get consent, unless it resigns or fails. Until it has done so, the engine makes no
+    activation of the other clauses (``engine/conflict_sets.py``). A clause takes no part if its effects may help a rule
+    that writes a slot. Other activations may have to wait for such effects (L16), so this clause needs an activation.
     """
     helpful = causes.leading_to_slots()
     for signal in signals:
@@ -74,5 +78,49 @@ def find_contests(signals: Sequence[SignalPlan], causes: Causes) -> None:
             for clauses in contests.values()
             if len(clauses) > 1
         )
+
+
+def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
+    """Set the halves of each signal, and the listeners in no contest and no half.
+
+    A first spike changes nothing for such a clause but what it lacks, so a table of spikes is enough
+    (``engine/halves.py``). As for a contest, none of the rule's effects may help a rule that writes a slot.
+    """
+    helpful = causes.leading_to_slots()
+    for signal in signals:
         contested = {clause for clauses in signal.contests for clause in clauses}
-        signal.uncontested = tuple(need for need in signal.listeners if need.clause not in contested)
+        halves: dict[Any, list[Need]] = {}
+        for need in signal.listeners:
+            if _is_plain(need.clause) and helpful.isdisjoint(need.clause.rule.raises):
+                halves.setdefault(_likeness(need, causes), []).append(need)
+        signal.halves = tuple(Half(tuple(needs)) for needs in halves.values())
+        signal.others = tuple(n for n in signal.listeners if n.half is None and n.clause not in contested)
+
+
+def _is_plain(clause: Clause) -> bool:
+    """Return whether a clause is its rule's only one, and two spikes make it ready at once."""
+    rule = clause.rule
+    return (
+        len(clause.needs) == 2
+        and len(rule.clauses) == 1
+        and clause.needs[0].signal is not clause.needs[1].signal
+        and not (clause.guards or clause.cyclic or clause.reflexive or rule.cooldown)
+        and not any(need.detached or need.min_age for need in clause.needs)
+    )
+
+
+def _likeness(need: Need, causes: Causes) -> Any:
+    """Return a key: needs of one signal with equal keys are alike for every decision about a first spike."""
+    rule = need.clause.rule
+    if need.predicates:
+        return need
+    other = need.clause.needs[1 - need.index].signal
+    return (
+        need.max_age,
+        need.kin == need.bit,
+        rule.slotset,
+        rule.background,
+        other.input,
+        tuple(cause.index for cause in causes.causes[other.index]),
+        tuple(cause.index for cause in causes.all_causes[other.index]),
+    )

@@ -46,7 +46,7 @@ class Finding:
 
 
 def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
-    """Return all findings, at most one of each kind for a rule. Those that make a rule fail at run time come first.
+    """Return all findings, at most one of each kind for a rule. Findings that make a rule fail at run time come first.
 
     `source` returns the source of a function. Without it, the findings that need source code are left out.
     """
@@ -162,7 +162,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
 
 
 def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
-    """Return (slot, rarest signal of the clause) → clauses that wait only for their signals, best first."""
+    """Return a map: (slot, the clause's rarest signal) → the clauses that wait only for signals, the best first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:

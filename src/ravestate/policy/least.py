@@ -2,13 +2,13 @@
 
 A pathway is a set that holds an alternative of each of its signals (`Completion`). The search begins with the
 clause's own signals. Each step takes the highest signal that lacks an alternative, and tries each of its alternatives.
-Two sets have the same future if they agree in all signals that may still matter; the search follows only the cheaper
-one. So independent choices do not multiply. In a chain, a ring or a tree, one or two steps lead from the least pathway
-of the causes to that of the effect.
+If two sets agree in all signals that may still matter, all further steps are the same for both. So the search follows
+only the cheaper set, and independent choices do not multiply. The search for a signal starts at the least pathways of
+its causes. If the causes form a chain, a ring or a tree, the search takes one or two steps.
 
 A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
-step leaves more sets than there is room for, the search follows only the cheapest ones, and the result may be too
-high. That happens only if dozens of a policy's choices depend on each other; its size does not matter.
+step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens only
+if dozens of choices depend on each other; the size of the policy does not matter.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ravestate.policy.components import components
 EFFORT = 100_000
 """The number of sets that all searches of a policy together may examine, beyond the first `FREE` sets of each search.
 
-One search may use a tenth of what the earlier searches left, divided among its steps.
+A search may use a tenth of the number that the earlier searches left over. It divides this tenth among its steps.
 """
 
 FREE = 100  # the number of sets that each search may always examine
@@ -52,8 +52,8 @@ class Least:
     def pathway(self, firm: Iterable[int], looked_at: Iterable[int]) -> tuple[int, int]:
         """Return the information of a clause's least pathway, and the pathway as a set.
 
-        `firm` has the places of its non-detached signals. `looked_at` has those of its detached signals; they need no
-        completion.
+        `firm` has the places of the clause's non-detached signals. `looked_at` has the places of its detached signals,
+        which need no completion.
         """
         free = _set(looked_at)
         cost, found = self._search(firm, free)
@@ -129,7 +129,7 @@ class Least:
                     more, price = self._joined(found, cost, alternative, free)
                     steps.append((price, more, self._lacking(lacking ^ 1 << place, found, more)))
         self._effort = max(0, self._effort - max(0, looked - FREE))
-        assert best is not None  # every signal has an alternative, and each step adds signals until none lacks one
+        assert best is not None  # each step adds signals until every signal has an alternative
         return best
 
     def _joined(self, found: int, cost: int, places: Iterable[int], free: int) -> tuple[int, int]:
@@ -149,7 +149,10 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """Return the signals that lack an alternative in `found`, out of `lacking` and those that `before` does not have."""
+        """Return the signals that lack an alternative in `found`.
+
+        Candidates are the signals in `lacking`, and the signals that are in `found` but not in `before`.
+        """
         new = found & ~before
         left = lacking | new & self._open
         for place in each(left):

@@ -2,8 +2,8 @@
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is not part of a loop here, because it may end the loop. Nor is a rule part of a loop if it takes time: if it awaits
-something, or is a plain function that calls code outside its context.
+is not part of a loop here, because it may end the loop. A rule that takes time is not part of a loop either. A rule
+takes time if it awaits something, or if it is a plain function that calls code outside its context.
 """
 
 from __future__ import annotations
@@ -60,7 +60,10 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
 
 
 def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
-    """Remove each clause that waits for a signal which no rule of the remaining clauses raises; return the rest."""
+    """Drop clauses until each remaining clause waits only for signals that rules of remaining clauses raise.
+
+    Return the remaining clauses.
+    """
     hearers: dict[int, list[Clause]] = {}
     raisers = Counter[int]()
     for clause in clauses:
@@ -80,7 +83,7 @@ def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
 
 
 def _wanted(clause: Clause) -> list[Need]:
-    """Return the clause's needs that take a new spike for each run. A detached need beside them may reuse a spike."""
+    """Return the clause's needs that take a new spike for each run. A detached need beside them may reuse its spike."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 
@@ -113,5 +116,5 @@ def _takes_time(rule: RulePlan) -> bool:
 def _content(cell: CellType) -> list[object]:
     try:
         return [cell.cell_contents]
-    except ValueError:  # the cell is still empty
+    except ValueError:  # the variable of the enclosing function has no value yet
         return []

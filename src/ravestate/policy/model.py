@@ -47,10 +47,12 @@ class SignalPlan:
     limit: int = field(init=False)
     listeners: tuple[Need, ...] = ()
     """The needs for this signal in conditions of rules, in declaration order."""
-    uncontested: tuple[Need, ...] = ()
-    """The listeners that take part in no contest."""
+    others: tuple[Need, ...] = ()
+    """The listeners in no contest and in no half."""
     contests: tuple[tuple[Clause, ...], ...] = ()
     """Groups of clauses that compete for each spike of the signal; the best clause of a group comes first."""
+    halves: tuple[Half, ...] = ()
+    """The listeners whose spikes are held without an activation."""
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
@@ -106,6 +108,8 @@ class Need:
     bit: int = field(init=False)
     kin: int = field(init=False)
     """The bits of this need and of the needs that must hold spikes of the same causal group (L12)."""
+    half: Half | None = field(init=False, default=None)
+    """The half to which the need belongs, if the clause needs no activation until both of its needs are met."""
 
     def __post_init__(self) -> None:
         self.bit = self.kin = 1 << self.index
@@ -142,7 +146,7 @@ class Clause:
     simple: bool = False
     """Whether a spike makes the clause ready at once: it has a single need, without `min_age`, and no guard."""
     apart: bool = False
-    """Whether an activation of the clause holds spikes of one group only: its firm needs are all kin."""
+    """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
     reflexive: bool = False
     """Whether the clause hears a built-in flag. If so, its activations change no built-in flag (L22)."""
     cyclic: bool = False
@@ -186,3 +190,42 @@ class RulePlan:
 
     def __repr__(self) -> str:
         return self.name
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Half:
+    """Needs for one signal in clauses of two needs. For a first spike, the engine makes no activation of the clauses.
+
+    All needs that the engine would treat alike share one record.
+
+    Attributes:
+        needs: The needs, in declaration order.
+        best: The same needs; the need of the best clause comes first.
+        kin: Whether both spikes of a clause must belong to one causal group (L12).
+        max_age: The age at which the needs give a spike up (seconds).
+        slotset: The numbers of the slots that each of the rules writes.
+        busy: Whether a held spike counts for ``core:activity``.
+        places: Number of a rule → the place of its need in `needs`.
+    """
+
+    needs: tuple[Need, ...]
+    best: tuple[Need, ...] = field(init=False)
+    kin: bool = field(init=False)
+    max_age: float = field(init=False)
+    slotset: frozenset[int] = field(init=False)
+    busy: bool = field(init=False)
+    places: dict[int, int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        first = self.needs[0]
+        self.best = tuple(sorted(self.needs, key=lambda need: (-need.clause.base, need.clause.index)))
+        self.kin = first.kin != first.bit
+        self.max_age = first.max_age
+        self.slotset = first.clause.rule.slotset
+        self.busy = not first.clause.rule.background
+        self.places = {need.clause.rule.index: place for place, need in enumerate(self.needs)}
+        for need in self.needs:
+            need.half = self
+
+    def __repr__(self) -> str:
+        return f"{self.needs[0].signal}/{len(self.needs)}"

@@ -15,7 +15,7 @@ from ravestate.policy.model import SignalPlan, SlotPlan
 
 
 class Names:
-    """The numbered signals and slots that modules declare, in declaration order. Their faults go to `faults`."""
+    """The numbered signals and slots that modules declare, in declaration order. `faults` has their mistakes."""
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
         self.faults = faults
@@ -63,7 +63,7 @@ class Names:
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """Return the record of a signal that a declaration (`where`) names. If there is none, add a fault; return None."""
+        """Return the record of a signal that a declaration (`where`) uses. If none exists, add a fault; return None."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan

@@ -16,7 +16,7 @@ from ravestate.errors import nearest
 class Numbers:
     """Checks the numbers in rules, and replaces a setting by its value.
 
-    It adds numbers out of range, and missing settings, to `faults`. If it has met a setting, `refers` is true.
+    It adds numbers out of range, and missing settings, to `faults`. `refers` is true if a rule refers to a setting.
     """
 
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:
@@ -45,7 +45,7 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting, or None after a fault. A setting without an owner is of the rule's module."""
+        """Return the value of a setting, or None after a fault. A setting without an owner is in the rule's module."""
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

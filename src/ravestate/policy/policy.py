@@ -147,7 +147,7 @@ class Policy:
         return draw(self, format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """Return a policy with these modules and the given settings. If no rule names a setting, return this policy.
+        """Return a policy with these modules and the given settings. If no rule uses a setting, return this policy.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible, e.g. a number is out of range.

@@ -18,13 +18,13 @@ from ravestate.policy.numbers import Numbers
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
 """The prefixes of the names of the built-in flags' signals (`core:activity` and `core:pressure`).
 
-An activation that waits for such a signal changes neither flag. If it did, an activation on `activity.false` would set
-the flag, and so lose its spike. The flag would then be false again, and so on, all in one instant.
+An activation that waits for such a signal changes neither flag. If it could, an activation on `activity.false` would
+set `activity`, and so lose its spike. Then `activity` would be false again, and so on, all in one instant.
 """
 
 
 class Rules:
-    """The records of a policy's rules, in the order in which they were added. Their faults go to `faults`."""
+    """The records of a policy's rules, in the order in which they were added. `faults` has the rules' faults."""
 
     def __init__(self, names: Names, numbers: Numbers, faults: list[str]) -> None:
         self.names = names

@@ -100,7 +100,7 @@ class _Reader:
         self._first = function.__code__.co_firstlineno - 1
         self._names = dict(function.__globals__)
         for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
-            with contextlib.suppress(ValueError):  # the cell is still empty
+            with contextlib.suppress(ValueError):  # the variable of the enclosing function has no value yet
                 self._names[name] = cell.cell_contents
         self._unknown = unknown
         self._known = {*self._names, *function.__builtins__, *function.__code__.co_freevars}
@@ -194,7 +194,7 @@ def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
                     stack.append(inner)
                     ends = isinstance(inner, ast.If) and isinstance(inner.body[-1], (ast.Return, ast.Raise))
                     if ends and _is_decided(inner, variables):
-                        break  # the code after it depends on the variable, too
+                        break  # this branch leaves the function, so the code after it is guarded, too
 
 
 def _is_decided(node: ast.AST, variables: Collection[str]) -> bool:

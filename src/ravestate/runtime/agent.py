@@ -25,6 +25,6 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context of this agent. It can be started once. `options` override those of the agent."""
+        """Return a new context of this agent. A context starts only once. `options` override the agent's options."""
         merged: Any = self._options | options
         return Context(self.policy, **merged)

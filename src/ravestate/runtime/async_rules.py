@@ -24,9 +24,9 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    It calls `finish` with a run, its result and its exception when the run's function has ended. If the run does not end
-    within `GRACE` seconds of its cancellation, it calls `give_up` with the run and the reason. It calls `proceed` when the
-    tasks in `cleaning` have ended, or when their turns are over.
+    When a run's function has ended, this class calls `finish` with the run, its result and its exception. If a run does
+    not end within `GRACE` seconds of its cancellation, this class calls `give_up` with the run and the reason. It calls
+    `proceed` when the tasks in `cleaning` have ended, or when their turns are over.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class AsyncRules:
         self._spare: EagerTask | None = None
 
     def start(self, ctx: RuleContext) -> None:
-        """Take the first step of a run's function, and leave the other steps to a task."""
+        """Run a function up to its first ``await`` that suspends it. A task continues from there."""
         task = self._spare
         if task is None:
             task = self._spare = EagerTask(self._loop, self._timer)
@@ -79,7 +79,7 @@ class AsyncRules:
         self._grace[ctx] = self._loop.call_later(GRACE, self._grace_is_over, ctx)
 
     async def close(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all runs and wait for them for at most `GRACE` seconds; then end the runs that have not ended.
+        """Cancel all runs, and wait at most `GRACE` seconds until they end. Then abandon the runs that have not ended.
 
         With `at_once`, do not wait.
         """

@@ -29,9 +29,9 @@ class StepTimer:
     """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
-    processor or for the interpreter's lock does not count: a busy machine raises no alarm. The system counts how often
-    the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted it, there is no
-    warning. On systems without these counts (Windows, macOS), only computing counts.
+    processor or for the interpreter's lock does not count, so a busy machine causes no warning. The system counts how
+    often the thread slept voluntarily, and how often the scheduler preempted the thread. After a preemption, there is
+    no warning. Windows and macOS do not have these numbers; there, the timer ignores sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.

@@ -38,9 +38,9 @@ class Context:
 
     Args:
         modules: Modules to compile, or one compiled `Policy` to share.
-        settings: Module's name → the module's settings; they override those of the environment.
+        settings: Module's name → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: Seconds that a rival under pressure has to become ready (L16), if its rule sets no patience.
+        patience: Seconds after which a pressured rival gives up if it is not ready (L16). A rule may set its own value.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
 
@@ -122,7 +122,7 @@ class Context:
 
         The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
         are cancelled, and may clean up. A rule that runs for ever does not delay the end if it has ``background=True``.
-        If `stop` itself is cancelled, it waits no longer.
+        If `stop` itself is cancelled, it stops waiting.
         """
         runner = self._running()
         self.ask_to_stop()
@@ -137,7 +137,10 @@ class Context:
             raise
 
     def ask_to_stop(self) -> None:
-        """Make `until_stopped` return; the context runs on until its ``async with`` ends. Any thread may call this."""
+        """Make `until_stopped` return. Any thread may call this.
+
+        The context keeps running until its ``async with`` ends.
+        """
         if self._runner is not None and self._stopping is not None:
             with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
                 self._runner.loop.call_soon_threadsafe(self._stopping.set)
@@ -166,7 +169,7 @@ class Context:
     # ------------------------------------------------------------------------------------ its clock
 
     def pause(self) -> None:
-        """Halt the context's clock; call this, `step` and `resume` on the context's loop only.
+        """Halt the context's clock. Call `pause`, `step` and `resume` on the context's loop only.
 
         The context still takes events from outside. No rule starts, no deadline passes, and ``ctx.sleep`` does not end.
         A rule that computes, or waits for something else, continues.
@@ -220,7 +223,9 @@ class Context:
         self._running().receive(Wipe(signal.name))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule that uses this context's signals and slots, to this context alone. Any thread may call this.
+        """Add a rule to this context alone. Any thread may call this.
+
+        The rule must use signals and slots of this context's policy.
 
         Raises:
             DeclarationErrors: The rule does not fit the policy.
@@ -311,7 +316,7 @@ class Context:
         return snapshot(self._running().engine_now())
 
     def plain_functions(self) -> list[str]:
-        """Return the names of the rules whose plain functions are running, one for each run."""
+        """Return the names of the rules whose plain functions are running: one name for each run."""
         return self._running().plain_functions()
 
     def _running(self) -> Runner:

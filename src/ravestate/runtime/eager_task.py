@@ -1,9 +1,9 @@
 """A task for a coroutine that may end before it needs a task.
 
-To make a task and switch to it costs more time than most rules take. So the first step of a coroutine runs
-outside of any task, while a spare task counts as the current task. `asyncio.current_task`, `asyncio.timeout` and
-context variables work as they should. If the coroutine ends in its first step, the spare task is kept for the next
-coroutine. If the coroutine suspends, the spare task adopts it.
+Making a task and switching to it takes more time than most rules take. So the first step of a coroutine runs outside
+of any task, while a spare task counts as the current task. Thus `asyncio.current_task`, `asyncio.timeout` and context
+variables work as usual. If the coroutine ends in its first step, the spare task is kept for the next coroutine. If the
+coroutine suspends, the spare task adopts it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class EagerTask:
         self.task: asyncio.Task[Any] = loop.create_task(host, context=self._context)
 
     def first_step(self, coroutine: Coroutine[Any, Any, Any], rule: Rule[Any, Any]) -> None:
-        """Drive a coroutine to its end or to its first suspension, where the task adopts it.
+        """Run a coroutine to its end or to its first suspension. If it suspends, the task adopts it.
 
         Raises:
             StopIteration: The coroutine has ended. The spare task is free for another coroutine, unless it is `spoilt`.
@@ -106,7 +106,7 @@ class EagerTask:
                 except GeneratorExit:
                     coroutine.close()
                     raise
-                except BaseException as thrown:  # the coroutine gets it below
+                except BaseException as thrown:  # the loop throws this into the coroutine below
                     error = thrown
             if self._abandoned:
                 coroutine.close()

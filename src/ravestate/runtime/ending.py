@@ -14,7 +14,7 @@ from ravestate.errors import RuleError
 
 
 def ending(run: int, rule: Rule[Any, Any], outcome: Any, raised: bool) -> Finish:
-    """Return the event that reports the end of a run, given its result or, if `raised`, its exception."""
+    """Return the event that reports the end of a run. `outcome` is the run's result or, if `raised`, its exception."""
     if outcome is None:
         return Finish(run, "done")
     if isinstance(outcome, Resign):
@@ -45,7 +45,7 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
 
 
 def _place(rule: Rule[Any, Any], failure: BaseException) -> str:
-    """Return the place in the rule's own file at which it failed, e.g. `` (guide.py:42)``; empty if there is none."""
+    """Return the line of the rule's file in which the rule failed, e.g. `` (guide.py:42)``; empty if there is none."""
     file = rule.origin.rpartition(":")[0]
     line, step = 0, failure.__traceback__
     while step is not None:

@@ -22,7 +22,7 @@ log = logging.getLogger("ravestate")
 class PlainRules:
     """Starts and abandons the runs of one context's rules that are plain functions.
 
-    It calls `finish` on the loop with a run, its result and its exception when the run's function has ended.
+    When a run's function has ended, this class calls `finish` on the loop with the run, its result and its exception.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class PlainRules:
 
 
 def _listed(jobs: Iterable[Job]) -> str:
-    """Return a list of the rules of jobs, e.g. ``a:b (3 runs, up to 12 s), c:d (1 run, up to 5 s)``."""
+    """Return the names of the jobs' rules as text, e.g. ``a:b (3 runs, up to 12 s), c:d (1 run, up to 5 s)``."""
     by_name: dict[str, list[float]] = {}
     for job in jobs:
         by_name.setdefault(job.name, []).append(monotonic() - (job.began or job.made))

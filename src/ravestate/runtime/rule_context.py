@@ -39,10 +39,10 @@ class Host(Protocol):
 
 
 class RuleContext:
-    """The argument of a rule's function: with it, the function reads slots, writes slots and emits signals.
+    """The argument of a rule's function. With it, the function reads slots, writes slots and emits signals.
 
-    ``ctx[slot]`` reads a slot: its value when the rule started, or the rule's own last write. ``ctx[slot] = value``
-    writes it; the write takes effect, and raises its signals, at once.
+    ``ctx[slot]`` is the slot's value when the rule started, or the rule's own last write. ``ctx[slot] = value`` writes
+    the slot. A write takes effect, and raises signals, at once.
     """
 
     __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
@@ -58,7 +58,7 @@ class RuleContext:
         self.cancelled = ""
         """Why the function was cancelled; empty if it was not. The function may still write while it cleans up."""
         self.ended = ""
-        """Why the run is over; empty if it is not. The function may go on, because a thread cannot be stopped."""
+        """Why the run is over; empty if it is not. The function may still be running: a thread cannot be stopped."""
 
     @overload
     def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
@@ -148,7 +148,7 @@ class RuleContext:
         self._host.receive(Wipe(signal.name, self.run))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
-        """Add a rule that uses this context's signals and slots, to this context alone.
+        """Add a rule to this context alone. The rule must use signals and slots of this context's policy.
 
         Raises:
             DeclarationErrors: The rule does not fit the policy.
@@ -250,7 +250,7 @@ class Items(Mapping[str, V], Generic[V]):
         return self._ctx._values[self._slot.name]  # pyright: ignore[reportPrivateUsage]
 
     def add(self, key: str, item: V) -> None:
-        """Set the item of a key. This raises ``added`` if the key is new, and ``changed`` unless the item is equal.
+        """Set the item of a key. A new key raises ``added`` and ``changed``; a different item raises ``changed``.
 
         Raises:
             UndeclaredError: The rule does not declare the collection in ``writes``.
@@ -259,7 +259,7 @@ class Items(Mapping[str, V], Generic[V]):
         self._ctx._host.receive(Store(self._slot.name, key, item, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def remove(self, key: str) -> None:
-        """Remove the item of a key. If there is one, this raises ``removed`` and ``changed``.
+        """Remove the item of a key. If the key has an item, this raises ``removed`` and ``changed``.
 
         Raises:
             UndeclaredError: The rule does not declare the collection in ``writes``.

@@ -64,7 +64,7 @@ def warn_if_mute(policy: Policy) -> None:
 
 
 async def run_context(context: Context) -> None:
-    """Run a context until a rule, other code, SIGINT or SIGTERM stops it. Another such signal aborts the shutdown."""
+    """Run a context until a rule, other code, SIGINT or SIGTERM stops it. A second signal aborts the shutdown."""
     with asked_by_signals(context.ask_to_stop):
         async with context:
             await context.until_stopped()
@@ -78,7 +78,10 @@ async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutin
 
 
 async def until_first_ends(*coroutines: Coroutine[Any, Any, object]) -> None:
-    """Run coroutines at the same time until one of them ends; then cancel the others, and raise their exception if any."""
+    """Run coroutines at the same time until one of them ends, then cancel the others.
+
+    If a coroutine has failed, raise its exception.
+    """
     tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
     ends: list[object] = []
     try:
@@ -117,7 +120,7 @@ def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
         yield
     except asyncio.CancelledError:
         if main is not None:
-            for _ in range(1, asked):  # a signal after the first has cancelled the task
+            for _ in range(1, asked):  # each signal after the first has cancelled the task once: undo these calls
                 main.uncancel()
         if asked < 2 or main is None or main.cancelling():
             raise

@@ -44,9 +44,9 @@ log = logging.getLogger("ravestate")
 class Runner:
     """Gives events to an engine, and performs the effects that the engine returns.
 
-    `Context` acts through its public methods, and so does `RuleContext` (see `rule_context.Host`). The runner calls
-    `stop` when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the
-    engine takes it, and with `Taken` before effects are taken.
+    `Context` and `RuleContext` (see `rule_context.Host`) call its public methods. The runner calls `stop` when a rule
+    asks the context to end, or when the engine fails. It calls `journal` with each event before the engine takes the
+    event, and with `Taken` before the runner takes effects.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Runner:
         self.waits = Waits(engine, self._is_busy, self._schedule)
         self.closed = False
         self.fault: RavestateError | None = None
-        """The error that ends the context: a rule gave it (``ctx.stop``), or the engine has failed; else None."""
+        """The error that ends the context, from a rule (``ctx.stop``) or from the engine; None without an error."""
         self._engine = engine
         self._ask_to_stop = stop
         self._hooks = hooks
@@ -121,7 +121,7 @@ class Runner:
         if run is None or run in self._contexts:
             try:
                 self.receive(event)
-            except Exception:  # no caller could catch it, but the designer must see it
+            except Exception:  # no caller could catch this error, but the designer must see it
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
@@ -180,7 +180,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or cleaning) and self._held():
-                    break  # go on when these functions or rules have ended
+                    break  # the end of these functions or rules schedules the next call
                 self._rounds += 1
                 if not self._todo:
                     if self._journal is not None:
@@ -200,7 +200,7 @@ class Runner:
                     break
             else:
                 self._schedule()
-        except BaseException:  # a rule has interrupted the process: the other rules continue as long as the loop does
+        except BaseException:  # such as KeyboardInterrupt from a rule; other rules continue while the loop runs
             self._schedule()
             raise
         finally:
@@ -245,7 +245,7 @@ class Runner:
         self.clock.halt()
 
     def step(self) -> bool:
-        """While the clock is halted: perform the next wave of effects. If none is due, first set the clock forward.
+        """Perform the next wave of effects; the clock must be halted. If no effect is due, first set the clock forward.
 
         Returns:
             False if nothing is due, not even at a later time; else True.
@@ -296,7 +296,7 @@ class Runner:
         self._engine.tracer = tracer
 
     def _arm(self) -> None:
-        """Set the timer to the engine's next deadline, unless it is early enough: an early timer is harmless."""
+        """Set the timer to the engine's next deadline. Leave a timer that fires earlier: it does no harm."""
         due = self._engine.next_deadline()
         if due is None or self.clock.driven or (self._timer is not None and self._timer_due <= due):
             return
@@ -343,7 +343,7 @@ class Runner:
             self._schedule()
 
     def _drop(self, ctx: RuleContext, reason: str) -> None:
-        """End a run, for a `reason`, although its function goes on; the function may not act any more."""
+        """End a run, for a `reason`, although its function is still running. The function must not act any more."""
         if self._contexts.pop(ctx.run, None) is not None and not self.closed:
             ctx.ended = reason
             self.receive(Finish(ctx.run, "done", reason))
@@ -365,11 +365,11 @@ class Runner:
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits for consent; with a slot, no rule that may cause its write."""
+        """Wait until no foreground rule runs or waits for consent. With a slot, ignore rules that cannot affect it."""
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:
-        """Ask the context to end; if there are several calls, the first failure is the reason."""
+        """Ask the context to end. If there are several calls, the first `failure` is raised."""
         self.fault = self.fault or failure
         self._ask_to_stop()
 

@@ -13,8 +13,8 @@ from ravestate.engine.engine import Engine
 class Waits:
     """The tasks that wait until one engine reaches a certain state.
 
-    While `is_busy` returns true, some effects have not been performed yet; `schedule` makes the loop perform effects,
-    and call `check` afterwards.
+    While `is_busy` returns true, some effects have not been performed yet. A call of `schedule` makes the loop perform
+    them, and then call `check`.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
@@ -26,7 +26,10 @@ class Waits:
         self._ended = False
 
     async def until(self, reached: Callable[[], bool]) -> None:
-        """Wait until all effects are performed and `reached` is true. Only effects and ends of runs may make it true."""
+        """Wait until all effects are performed and `reached` is true.
+
+        Nothing but an effect or the end of a run may make `reached` true.
+        """
         if not self._ended and (self._is_busy() or not reached()):
             future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self.futures[future] = reached
@@ -53,8 +56,10 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits for consent. With a slot, ignore rules that cannot cause its
-        write."""
+        """Return whether no foreground rule runs or waits for consent.
+
+        With a slot, ignore rules that cannot cause a write of the slot.
+        """
         alive = [activation.clause.rule for activation in (*self._engine.running.values(), *self._engine.waiting)]
         if slot is not None and alive:
             policy = self._engine.policy
@@ -63,14 +68,14 @@ class Waits:
         return all(rule.background for rule in alive)
 
     def alive(self) -> dict[int, Activation]:
-        """Return number → activation, for the activations that run or wait for consent."""
+        """Return the activations that run or wait for consent, as a map: number → activation."""
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until only `known` activations run or wait, and no rule waits for ``rs.shutdown`` to reach an age.
+        """Wait until only `known` activations run or wait, and no rule waits until ``rs.shutdown`` is old enough.
 
-        A background rule among `known` may restart endlessly. Its new run counts only if it handles ``rs.shutdown``.
-        Wait for at most `seconds`.
+        A background rule among `known` may restart endlessly. Wait for its new run only if that run handles
+        ``rs.shutdown``. Wait for at most `seconds`.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index

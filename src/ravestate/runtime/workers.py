@@ -3,8 +3,8 @@
 All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons: a
 function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
 
-At its end, the process still waits a while for running functions. A thread may be inside a C++ library, loading a model
-for instance; if the interpreter ends the thread there, the whole process may crash.
+At its end, the process still waits a while for running functions. A thread may be inside a C++ library, for instance to
+load a model. If the interpreter ended such a thread, the whole process might crash.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ IDLE = 30.0  # the seconds after which a worker thread without a job ends
 class Job:
     """A function to call in a worker thread, for the rule `name`; the function must not raise.
 
-    It was `made` when it was submitted, and `began` when a thread took it (seconds on the monotonic clock).
+    `made` is the time of its submission, and `began` the time when a thread took it (seconds on the monotonic clock).
     """
 
     queue: JobQueue
@@ -47,7 +47,7 @@ class ThreadPool:
         self.reset()
 
     def reset(self) -> None:
-        """Begin without threads and jobs."""
+        """Set the pool to its initial state, without threads and jobs."""
         lock = threading.Lock()
         self.change = threading.Condition(lock)
         self.rest = threading.Condition(lock)
@@ -59,7 +59,7 @@ class ThreadPool:
         self._number = 0
 
     def take(self, job: Job) -> None:
-        """Queue a job for the threads; the caller holds the lock of `change`.
+        """Queue a job for the threads. The caller must hold the lock of `change`.
 
         Raises:
             RuntimeError: The system refuses a new thread, and the pool has no thread that could do the job later.
@@ -81,7 +81,7 @@ class ThreadPool:
                 self._free += 1
 
     def is_full(self) -> bool:
-        """Return whether there are more jobs than free threads; the caller holds the lock of `change`."""
+        """Return whether there are more jobs than free threads. The caller must hold the lock of `change`."""
         return len(self._jobs) > self._free
 
     def _live(self) -> None:
@@ -136,7 +136,11 @@ class JobQueue:
             self._pool.contexts += 1
 
     def submit(self, call: Callable[[], None], name: str = "") -> Job:
-        """Queue a job that calls `call` for the rule `name`, and return it. Raise a RuntimeError if there are no more threads."""
+        """Queue a job that calls `call` for the rule `name`, and return the job.
+
+        Raises:
+            RuntimeError: The system refuses a new thread, and the pool has no thread.
+        """
         job = Job(self, call, name)
         with self._pool.change:
             if len(self._begun) < SHARE:
@@ -156,8 +160,11 @@ class JobQueue:
                     self._pool.take(following)
 
     def done(self, job: Job) -> list[Job]:
-        """Return the job, if any, that gets the place of this job; the caller holds the lock of the pool's `change`."""
-        if job not in self._begun:  # the job was abandoned, and its place has gone to another
+        """Return the job that gets the place of this job, in a list; the list may be empty.
+
+        The caller must hold the lock of the pool's `change`.
+        """
+        if job not in self._begun:  # the job was abandoned, and another job has its place already
             return []
         self._begun.remove(job)
         following = [self._waiting.popleft()] if self._waiting else []
@@ -170,7 +177,7 @@ class JobQueue:
             return bool(self._waiting) or self._pool.is_full()
 
     def holders(self) -> list[Job]:
-        """Return the jobs that keep others from a thread: those of this context if its share is full, else all jobs."""
+        """Return the jobs whose threads other jobs need: this context's jobs if its share is full, else all jobs."""
         with self._pool.change:
             full = len(self._begun) >= SHARE
             return [job for job in self._pool.at_work if not full or job in self._begun]

@@ -1,4 +1,4 @@
-"""Public helpers for tests: `simulate` runs modules in virtual time, `talk` holds a spoken conversation in it.
+"""Public helpers for tests. `simulate` runs modules, and `talk` holds a spoken conversation, both in virtual time.
 
 A platform's tests run `CHECKS`.
 """

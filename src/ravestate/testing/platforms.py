@@ -41,7 +41,7 @@ async def repeat(ctx: rs.RuleContext) -> None:
 class Driver(Protocol):
     """The users of a platform on which `echo` runs. Each check gets a new driver, so all users are new.
 
-    Use it as an async context manager: it starts the agent on entry, and ends it on exit.
+    Use a driver as an async context manager: it starts the agent on entry, and ends the agent on exit.
     """
 
     async def __aenter__(self) -> object:
@@ -53,7 +53,7 @@ class Driver(Protocol):
         ...
 
     async def say(self, user: str, text: str) -> None:
-        """Say something as a user, also while the agent is down."""
+        """Send a message as a user. This must work even while the agent is down."""
         ...
 
     async def read(self, user: str, count: int) -> list[str]:
@@ -61,7 +61,7 @@ class Driver(Protocol):
         ...
 
     async def kill(self) -> None:
-        """End the agent without warning, as a crash does. If it keeps nothing in files, cut the users' connections."""
+        """End the agent without warning, as a crash does. If the agent keeps no files, cut the users' connections."""
         ...
 
     async def restart(self) -> None:
@@ -89,7 +89,7 @@ async def check_order(driver: Driver) -> None:
 
 
 async def check_users(driver: Driver) -> None:
-    """Check that users who write at once get their own answers alone, each from a context of their own."""
+    """Check that users who write at the same time get only answers to their own messages, from their own contexts."""
     async with _limited(driver):
         for n in range(3):
             await asyncio.gather(*(driver.say(user, f"{n} of {user}") for user in USERS))

@@ -25,10 +25,10 @@ class Said:
 
     Attributes:
         speaker: ``user`` or ``agent``.
-        text: The recognised words of the user; the words of the agent that the user heard.
-        start, end: The times at which its sound began and ended (seconds on the recording's time line).
-        cut: Whether the user interrupted it.
-        filler: Whether it only filled a pause.
+        text: The user's words as recognised, or the agent's words as far as the user heard them.
+        start, end: The times at which the sound began and ended (seconds on the recording's time line).
+        cut: Whether the user interrupted the utterance.
+        filler: Whether the utterance only filled a pause.
     """
 
     speaker: Literal["user", "agent"]

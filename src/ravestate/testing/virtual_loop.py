@@ -83,12 +83,12 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> asyncio.TimerHandle:
         """Set a timer. Timers for the same time run in the order in which they were set."""
-        self._check_closed()  # type: ignore[attr-defined]  # of BaseEventLoop
+        self._check_closed()  # type: ignore[attr-defined]  # a method of BaseEventLoop
         self._timers += 1
         timer = _Timer(when, callback, args, self, context)
         timer.number = self._timers
         heapq.heappush(vars(self)["_scheduled"], timer)
-        timer._scheduled = True  # pyright: ignore[reportAttributeAccessIssue]  # as BaseEventLoop marks it
+        timer._scheduled = True  # pyright: ignore[reportAttributeAccessIssue]  # BaseEventLoop marks its timers so
         return timer
 
     def give_up(self, rule: str) -> None:
@@ -112,7 +112,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     def on_idle(self) -> None:
         """Jump to the next timer, or stop if `goal` comes first. The loop calls this when only timers are left."""
-        timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # of BaseEventLoop
+        timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # an attribute of BaseEventLoop
         due: float | None = timers[0].when() if timers else None
         if self.goal is not None and (due is None or due > self.goal):
             self._virtual = max(self._virtual, self.goal)

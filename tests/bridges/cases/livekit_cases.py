@@ -10,6 +10,7 @@ import agents
 import pytest
 from livekit.agents import AgentSession, ChatContext, ConversationItemAddedEvent
 from livekit.agents.llm import ChatMessage
+from sound import Loudspeaker, Voice
 
 import ravestate as rs
 from ravestate.bridges.livekit import RavestateAgent
@@ -122,6 +123,26 @@ async def test_an_interruption_ends_the_answer_and_the_rule() -> None:
         assert cut.text_content == "One, two, "
         await context.quiet()  # the rule has ended
         assert await answers(session, "what did I hear?") == ["You heard 'One, two, '"]
+
+
+async def test_the_agent_knows_which_of_its_spoken_words_were_heard() -> None:
+    loudspeaker = Loudspeaker()
+    async with asyncio.timeout(60), AgentSession[None]() as session:
+        session.output.audio = loudspeaker
+        await session.start(RavestateAgent(agents.interrupted, tts=Voice()), record=False)
+        items = Items(session)
+        assert await answers(session, "count") == ["One, two, three."]
+        assert (await items.next()).text_content == "One, two, three."
+        loudspeaker.most = len("One, two,")
+        handle = session.generate_reply(user_input="count again")  # written at once, and then spoken
+        await loudspeaker.stopped.wait()
+        await session.interrupt()
+        await handle
+        assert (await items.next()).text_content == "One, two,"
+        loudspeaker.most = 10**6
+        loudspeaker.stopped.clear()
+        assert await answers(session, "what did I hear?") == ["You heard 'One, two,'"]
+    assert loudspeaker.played == ["One, two, three.", "One, two,", "You heard 'One, two,'"]
 
 
 async def test_many_sessions_at_once_are_not_crossed() -> None:

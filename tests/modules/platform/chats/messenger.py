@@ -39,7 +39,7 @@ class Post:
         self.sent: list[Outgoing] = []
         self.failures: list[Exception] = []
         self.files: dict[str, bytes] = {}
-        self.shown: list[str] = []
+        self.shown: list[tuple[float, str]] = []
         self.attempts: list[tuple[float, str]] = []
         self.news = asyncio.Condition()
 
@@ -66,8 +66,10 @@ class Post:
             raise DeliveryError("there is no such file", final=True)
         return self.files[file]
 
-    async def show_work(self, chat: str) -> None:
-        self.shown.append(chat)
+    async def show_work(self, chat: str, words: str) -> None:
+        self.shown.append((asyncio.get_running_loop().time(), words))
+        if self.failures:
+            raise self.failures.pop(0)
 
     def can_react(self, emoji: str) -> bool:
         return emoji == "👍"

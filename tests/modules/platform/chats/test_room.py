@@ -123,6 +123,34 @@ async def test_pieces_become_one_message_even_if_the_answer_is_cut(tmp_path: Pat
 
 
 @in_virtual_time
+async def test_a_growing_answer_is_shown_about_once_a_second_and_is_then_one_message(tmp_path: Path) -> None:
+    writer = rs.Module("writer", requires=(rawio,))
+    words = [f"{n % 10} " for n in range(45)]
+
+    @writer.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), emits=rawio.piece)
+    async def write(ctx: rs.RuleContext) -> None:
+        ctx[rawio.speaking] = True
+        for word in words:
+            ctx.emit(rawio.piece, word)
+            await ctx.sleep(0.1)
+        ctx[rawio.output] = "".join(words)
+        ctx[rawio.speaking] = False
+
+    post = Post()
+    async with room(tmp_path, post, writer) as opened:
+        opened.receive([letter("Write!")])
+        await past(0.7)
+        post.failures += [DeliveryError("too many messages", wait=1.0)]
+        assert await post.said(1) == [f"a: {''.join(words).strip()}"]
+        await past(60.0)
+    assert len(post.sent) == 1
+    times = [time for time, _ in post.shown]
+    assert all(after - before > 0.9 for before, after in itertools.pairwise(times))
+    assert times[2] - times[1] > 1.9  # the messenger has asked to wait
+    assert all(shown and "".join(words).startswith(shown) for _, shown in post.shown)
+
+
+@in_virtual_time
 async def test_a_rule_may_send_a_picture_to_its_chat(tmp_path: Path) -> None:
     painter = rs.Module("painter", requires=(rawio,))
 

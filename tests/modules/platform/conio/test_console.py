@@ -22,9 +22,9 @@ from ravestate.modules.platform.conio.console import Console
 async def main():
     async with Console(history=Path(sys.argv[1])) as console:
         async for line in console:
-            console.write(f"heard {line!r}")
+            console.utter(f"heard {line!r}")
             for piece in ("What", " do", " you mean?"):
-                console.stream(piece)
+                console.grow(piece)
             if line == "bye":
                 break
     print("ending:", console.ending, file=sys.stderr)
@@ -100,12 +100,12 @@ def test_lines_come_until_the_input_ends(last: BaseException, ending: str) -> No
 def test_output_is_clean_and_in_order() -> None:
     screen = Script()
     console = Console(screen)
-    console.write("one\x07\r\ntwo\x1b]0;x\x07")
-    console.stream("th")
-    console.stream("\x1b")
-    console.stream("ree")
-    console.write("four")
-    console.end()
+    console.utter("one\x07\r\ntwo\x1b]0;x\x07")
+    console.grow("th")
+    console.grow("\x1b")
+    console.grow("ree")
+    console.utter("four")
+    console.fall_silent()
     assert screen.log == ["show one\ntwo", "stream th", "stream ree", "end", "show four"]
 
 
@@ -113,10 +113,10 @@ def test_streamed_pieces_may_become_the_whole_text() -> None:
     screen = Script()
     console = Console(screen)
     for whole in ("Hello you!", "Hello", "Help!", "again"):
-        console.stream("Hel")
-        console.stream("lo")
-        console.write(whole)
-        console.end()
+        console.grow("Hel")
+        console.grow("lo")
+        console.utter(whole)
+        console.fall_silent()
     streamed = ["stream Hel", "stream lo"]
     assert screen.log == [
         *streamed, "stream  you!", "end",
@@ -129,10 +129,10 @@ def test_streamed_pieces_may_become_the_whole_text() -> None:
 def test_other_output_during_a_stream_gets_a_line_of_its_own() -> None:
     screen = Script()
     console = Console(screen)
-    console.stream("Hello")
-    console.write("Look!")
-    console.stream(" to")
-    console.write("Hello to you!")
+    console.grow("Hello")
+    console.utter("Look!")
+    console.grow(" to")
+    console.utter("Hello to you!")
     assert screen.log == ["stream Hello", "end", "show Look!", "stream  to", "stream  you!", "end"]
 
 
@@ -141,7 +141,7 @@ def test_a_streamed_line_is_ended_at_the_end() -> None:
 
     async def main() -> None:
         async with Console(screen) as console:
-            console.stream("half")
+            console.grow("half")
 
     asyncio.run(main())
     assert screen.log == ["begin", "stream half", "end", "finish"]
@@ -152,9 +152,9 @@ def test_writing_to_a_closed_output_ends_the_console(broken: Exception) -> None:
     screen = Script("hello")
     console = Console(screen)
     screen.broken = broken
-    console.write("one")
-    console.stream("two")
-    console.end()
+    console.utter("one")
+    console.grow("two")
+    console.fall_silent()
     assert console.ending == "closed"
     with pytest.raises(StopAsyncIteration):
         asyncio.run(console.__anext__())
@@ -173,7 +173,7 @@ def test_anything_but_a_terminal_is_plain(monkeypatch: pytest.MonkeyPatch) -> No
 
 async def _lines(console: Console) -> list[str]:
     async with console:
-        console.write("hello")
+        console.utter("hello")
         return [line async for line in console]
 
 
@@ -216,7 +216,7 @@ def test_a_full_disk_is_a_failure_and_a_broken_pipe_is_none() -> None:
         script = Script("hello")
         script.broken = error
         async with Console(script) as console:
-            console.write("hello")
+            console.utter("hello")
             assert [line async for line in console] == []
             assert console.ending == "closed"
             return console.failure

@@ -4,6 +4,8 @@ import asyncio
 import hashlib
 import hmac
 import itertools
+import os
+import socket
 import subprocess
 from collections.abc import AsyncGenerator, Iterator
 from contextlib import asynccontextmanager
@@ -19,6 +21,7 @@ from modules.platform.telegramio.conftest import free_port
 ROOT = Path(__file__).parents[4]
 SECRET = "a secret of the tests alone"
 PLENTY = {"per_second": 10_000, "burst_count": 10_000}
+PATIENCE = 100.0
 _numbers = itertools.count(1)
 
 
@@ -71,14 +74,19 @@ class Homeserver:
         self._command = command
 
     def start(self) -> None:
-        self._process = subprocess.Popen(self._command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        with httpx.Client(trust_env=False) as client:
-            while True:  # until it listens
-                try:
-                    client.get(f"{self.url}/_matrix/client/versions", timeout=30.0)
-                    return
-                except httpx.TransportError:
-                    assert self._process.poll() is None, (self._folder / "log.txt").read_text()
+        ready = self._folder / "ready"
+        ready.unlink(missing_ok=True)
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notice:  # as systemd waits for a service
+            notice.bind(str(ready))
+            notice.settimeout(PATIENCE)
+            environment = {**os.environ, "NOTIFY_SOCKET": str(ready)}
+            self._process = subprocess.Popen(
+                self._command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
+            try:
+                notice.recv(100)
+            except TimeoutError:
+                pytest.fail((self._folder / "log.txt").read_text())
 
     def kill(self) -> None:
         assert self._process is not None

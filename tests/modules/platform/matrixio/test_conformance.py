@@ -1,9 +1,6 @@
 """Matrix passes the checks of platforms, with the agent in a process of its own, on a real homeserver."""
 
 import asyncio
-import contextlib
-import os
-import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
@@ -11,6 +8,7 @@ import httpx
 import pytest
 
 from modules.platform.matrixio.conftest import Account, Homeserver, register
+from modules.platform.matrixio.test_restart import Robin
 from ravestate.testing import CHECKS, Driver
 
 
@@ -21,11 +19,11 @@ class Users:
         self._server = server
         self._folder = folder
         self._users: dict[str, tuple[Account, str]] = {}
-        self._process: asyncio.subprocess.Process | None = None
 
     async def __aenter__(self) -> None:
         self._http = httpx.AsyncClient(timeout=60.0, trust_env=False)
         self._robin = await register(self._server, self._http, "Robin")
+        self._process = Robin(self._robin, self._folder)
         await self.restart()
 
     async def __aexit__(self, *_: object) -> None:
@@ -33,22 +31,10 @@ class Users:
         await self._http.aclose()
 
     async def restart(self) -> None:
-        environment = {
-            **os.environ,
-            "RAVESTATE_MATRIXIO_HOMESERVER": self._server.url,
-            "RAVESTATE_MATRIXIO_USER": self._robin.id,
-            "RAVESTATE_MATRIXIO_PASSWORD": "password",
-            "RAVESTATE_MATRIXIO_PATH": str(self._folder / "chats.sqlite"),
-        }
-        self._process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "ravestate", "run", "matrixio", "ravestate.testing.platforms:echo", env=environment
-        )
+        await self._process.start()
 
     async def kill(self) -> None:
-        assert self._process is not None
-        with contextlib.suppress(ProcessLookupError):
-            self._process.kill()
-        await self._process.wait()
+        await self._process.kill()
 
     async def say(self, user: str, text: str) -> None:
         if user not in self._users:

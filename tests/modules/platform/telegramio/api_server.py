@@ -243,6 +243,16 @@ class Server:
             "Bad Request: message is not modified: specified new message content and reply markup are exactly the same",
         )
 
+    async def sendMessageDraft(self, bot: str, a: dict[str, Any]) -> Any:
+        chat = int(a["chat_id"])
+        self.writable(bot, chat)
+        if chat < 0:
+            raise Refusal(400, "Bad Request: drafts can be sent to private chats only")
+        if not int(a["draft_id"]) or len(a.get("text", "")) > LONGEST:
+            raise Refusal(400, "Bad Request: DRAFT_INVALID")
+        await self.tell()
+        return True
+
     async def sendChatAction(self, bot: str, a: dict[str, Any]) -> Any:
         self.writable(bot, int(a["chat_id"]))
         await self.tell()
@@ -279,7 +289,7 @@ class Server:
             return JSONResponse({"ok": False, "error_code": 404, "description": "Not Found"}, 404)
         arguments = await form(request)
         chat = str(arguments.get("chat_id", ""))
-        self.calls[bot].append({"method": method, "chat": chat})
+        self.calls[bot].append({"method": method, "chat": chat, "text": arguments.get("text", "")})
         await self.tell()
         if self.banned.get((bot, chat), 0.0) > time.monotonic():
             self.early[bot] += 1
@@ -295,6 +305,8 @@ class Server:
             self.banned[bot, chat] = time.monotonic() + wait
             return JSONResponse({"ok": False, "error_code": 429, "description": f"Too Many Requests: retry after {wait}",
                                  "parameters": {"retry_after": wait}}, 429)  # fmt: skip
+        if kind == "404":
+            return JSONResponse({"ok": False, "error_code": 404, "description": "Not Found"}, 404)
         if kind == "409":
             text = "Conflict: terminated by other getUpdates request; make sure that only one bot instance is running"
             return JSONResponse({"ok": False, "error_code": 409, "description": text}, 409)
@@ -431,6 +443,14 @@ class Broken(Response):
         await send({"type": "http.response.body", "body": b'{"ok"', "more_body": False})
 
 
+class Announced(uvicorn.Server):
+    """A server that prints a line once it listens."""
+
+    async def startup(self, sockets: Any = None) -> None:
+        await super().startup(sockets)
+        print("ready", flush=True)
+
+
 async def form(request: Request) -> dict[str, Any]:
     """The arguments of a call, from a form of either kind."""
     body = await request.body()
@@ -476,10 +496,5 @@ def application(file: str) -> Starlette:
 
 
 if __name__ == "__main__":
-    uvicorn.run(
-        application(sys.argv[2]),
-        host="127.0.0.1",
-        port=int(sys.argv[1]),
-        log_level="error",
-        timeout_graceful_shutdown=1,
-    )
+    app, port = application(sys.argv[2]), int(sys.argv[1])
+    Announced(uvicorn.Config(app, "127.0.0.1", port, log_level="error", timeout_graceful_shutdown=1)).run()

@@ -32,20 +32,15 @@ class Telegram:
         self._process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
-        self._process = subprocess.Popen([sys.executable, str(SERVER), str(self.port), str(self._file)])
-        transport = httpx.HTTPTransport(retries=0)
-        with httpx.Client(transport=transport) as client:
-            while True:  # until it listens
-                try:
-                    client.post(f"{self.root}/control/1:aaaaaaaa/left", timeout=5.0)
-                    return
-                except httpx.TransportError:
-                    assert self._process.poll() is None, "the server has ended"
+        command = [sys.executable, str(SERVER), str(self.port), str(self._file)]
+        self._process = subprocess.Popen(command, stdout=subprocess.PIPE)
+        assert self._process.stdout is not None
+        assert self._process.stdout.readline() == b"ready\n", "the server has ended"
 
     def kill(self) -> None:
         assert self._process is not None
         self._process.kill()
-        self._process.wait()
+        self._process.communicate()
 
 
 class Bot:

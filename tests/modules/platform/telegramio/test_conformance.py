@@ -1,40 +1,25 @@
 """Telegram passes the checks of platforms, with the agent in a process of its own."""
 
 import asyncio
-import contextlib
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import pytest
 
 from modules.platform.telegramio.conftest import Bot
-from modules.platform.telegramio.test_restart import start
+from modules.platform.telegramio.test_restart import Robin
 from ravestate.testing import CHECKS, Driver
 
 
-class Users:
+class Users(Robin):
     """The users of a bot whose agent runs in a process of its own."""
 
     def __init__(self, bot: Bot, folder: Path) -> None:
-        self._bot = bot
-        self._folder = folder
+        super().__init__(bot, folder, "ravestate.testing.platforms:echo")
         self._chats: dict[str, int] = {}
-        self._process: asyncio.subprocess.Process | None = None
-
-    async def __aenter__(self) -> None:
-        await self.restart()
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.kill()
 
     async def restart(self) -> None:
-        self._process = await start(self._bot, self._folder, "ravestate.testing.platforms:echo")
-
-    async def kill(self) -> None:
-        assert self._process is not None
-        with contextlib.suppress(ProcessLookupError):
-            self._process.kill()
-        await self._process.wait()
+        await self.start()
 
     async def say(self, user: str, text: str) -> None:
         await self._bot.say(self._chats.setdefault(user, len(self._chats) + 1), text)

@@ -97,16 +97,6 @@ async def test_the_agent_answers(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_two_hundred_chats_at_once_and_none_crossed(bot: Bot, tmp_path: Path) -> None:
-    async with running(bot, tmp_path):
-        await bot.do(
-            "crowd", messages=[{"chat": chat, "text": f"{n} of {chat}"} for n in range(2) for chat in range(1, 201)]
-        )
-        said = await bot.said(400)
-    assert sorted(said) == sorted(f"{chat}: {n} of {chat}" for n in range(2) for chat in range(1, 201))
-
-
-@live
 async def test_messages_of_a_chat_are_answered_in_order(bot: Bot, tmp_path: Path) -> None:
     for n in range(20):
         await bot.say(7, f"message {n}")
@@ -238,6 +228,46 @@ async def test_the_agent_shows_that_it_writes(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
+async def test_a_growing_answer_is_a_draft_in_a_private_chat_and_then_a_message(bot: Bot, tmp_path: Path) -> None:
+    go = asyncio.Event()
+    writer = rs.Module("writer", requires=(rawio,))
+
+    @writer.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def write(ctx: rs.RuleContext) -> None:
+        ctx.emit(rawio.piece, "I think ")
+        await go.wait()
+        ctx[rawio.output] = "I think so."
+
+    async def drafts(count: int) -> list[tuple[str, str]]:
+        found = (await bot.do("called", method="sendMessageDraft", count=count))["calls"]
+        return [(call["chat"], call["text"]) for call in found]
+
+    async with running(bot, tmp_path, writer):
+        await bot.say(7, "Is it?")
+        assert await drafts(1) == [("7", "I think")]
+        go.set()
+        assert await bot.said(1) == ["7: I think so."]
+        go.clear()
+        await bot.say(-5, "Robin, is it?", user=7)  # a group has no drafts
+        await bot.do("called", method="sendChatAction", count=1)
+        go.set()
+        assert (await bot.said(2))[1:] == ["-5: I think so."]
+        go.clear()
+        await bot.do("fault", method="sendMessageDraft", kind="lost")  # a draft that fails does no harm
+        await bot.say(8, "Is it?")
+        await drafts(2)
+        go.set()
+        assert (await bot.said(3))[2:] == ["8: I think so."]
+        go.clear()
+        await bot.do("fault", method="sendMessageDraft", kind="404")  # an older server
+        await bot.say(9, "Is it?")
+        await bot.do("called", method="sendChatAction", count=2)
+        go.set()
+        assert (await bot.said(4))[3:] == ["9: I think so."]
+        assert len(await drafts(0)) == 3
+
+
+@live
 async def test_a_long_answer_comes_in_parts(bot: Bot, tmp_path: Path) -> None:
     tale = " ".join(f"Sentence {n} ends." for n in range(400))
     wordy = rs.Module("wordy", requires=(rawio,))
@@ -316,6 +346,52 @@ def test_nothing_is_lost_or_doubled_after_a_failed_answer(bot: Bot, tmp_path: Pa
             said = await bot.said(6)
             assert said == await settled(bot)
             assert sorted(said) == sorted(f"{chat}: message {n}" for chat in (7, 8) for n in range(3))
+
+    test(bot, tmp_path)
+
+
+@live
+async def test_a_lost_answer_is_found_behind_many_messages_of_others(bot: Bot, tmp_path: Path) -> None:
+    slow = rs.Module("slow", requires=(rawio,))
+    go = asyncio.Event()
+
+    @slow.rule(when=rawio.input.changed, writes=rawio.output)
+    async def think(ctx: rs.RuleContext) -> None:
+        await go.wait()
+        ctx[rawio.output] = ctx.payload(rawio.input.changed)
+
+    async with running(bot, tmp_path, slow):
+        await bot.say(7, "Hello")
+        await bot.do("called", method="sendChatAction", count=1)
+        await bot.do("fault", method="getUpdates", kind="500", times=10**6)
+        polls = (await bot.do("called", method="getUpdates"))["calls"]
+        await bot.say(8, "Hello")  # ends the request for updates that is open
+        await bot.do("called", method="getUpdates", count=len(polls) + 1)
+        await bot.do("crowd", messages=[{"chat": chat, "text": "Hello"} for chat in range(100, 200)])
+        await bot.do("fault", method="sendMessage", kind="lost", times=2)
+        go.set()
+        await bot.said(2)
+        await bot.do("heal")
+        await bot.said(102)
+        assert sorted(await settled(bot)) == sorted(f"{chat}: Hello" for chat in (7, 8, *range(100, 200)))
+
+
+@pytest.mark.parametrize("method", ["sendMessage", "getUpdates", "getFile"])
+def test_a_server_that_does_not_answer_in_time_is_asked_again(
+    bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str
+) -> None:
+    monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.ANSWER", 0.5)
+    monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.PATIENCE", 0.5)
+
+    @live
+    async def test(bot: Bot, folder: Path) -> None:
+        await bot.do("fault", method=method, kind="hang")
+        async with running(bot, folder):
+            await bot.say(7, "Hello")
+            await bot.say(7, photo=[{**await bot.do("upload", size=1000), "width": 9, "height": 9}])
+            await bot.said(2)
+            assert await settled(bot) == ["7: Hello", "7: 1000 bytes"]
+            assert len((await bot.do("called", method=method))["calls"]) > 1
 
     test(bot, tmp_path)
 

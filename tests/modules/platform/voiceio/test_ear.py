@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from modules.platform.voiceio.speech import noise, track
+from modules.platform.voiceio.speech import noise, spoken, track
 from ravestate.modules.platform.voiceio import ear as ears
 from ravestate.modules.platform.voiceio.ear import Ear, is_articulate
 
@@ -40,6 +40,35 @@ def test_speech_after_a_pause_continues_the_turn() -> None:
     assert [event for _, event in events if event != "articulate"] == ["onset", "pause", "onset", "pause"]
     turn = ear.take()
     assert turn is not None and turn.start < 0.7 and turn.end > 2.4
+
+
+def test_another_person_who_does_not_wait_for_a_pause_has_a_turn_of_their_own() -> None:
+    first = spoken("I would like to go to the station.", "espeak:en-us")
+    ear = Ear()
+    pcm = track((0.5, first + spoken("No, that is much too far for us.", "espeak:en+f3")), length=5.0)
+    events = [event for _, event in hear(ear, pcm)]
+    assert events.count("another") == 1 and ear.parted is not None and ear.turn is not None
+    assert ear.parted.end == pytest.approx(0.5 + len(first) / 32000, abs=0.3)
+    assert ear.parted.end == ear.turn.start < ear.turn.end
+
+
+def test_a_closed_ear_frees_its_canceller() -> None:
+    closed: list[str] = []
+
+    class Canceller:
+        def clean(self, near: bytes, far: bytes) -> bytes:
+            assert not closed
+            return near
+
+        def close(self) -> None:
+            closed.append("freed")
+
+    ear = Ear(canceller=Canceller())
+    list(hear(ear, bytes(6400)))
+    ear.close()
+    ear.close()
+    assert closed == ["freed"]
+    assert list(hear(ear, bytes(6400))) == []
 
 
 def test_turns_that_were_taken_are_apart() -> None:

@@ -2,6 +2,9 @@
 
 import os
 import signal
+import subprocess
+import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -127,3 +130,48 @@ def test_users_of_the_same_model_share_its_process(children: Path) -> None:
     model_process.drop(two)
     model_process.drop(other)
     assert one.pid is None
+
+
+def test_a_process_that_lingers_serves_the_next_user(children: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(model_process, "LINGER", 3600.0)
+    one = model_process.take("obedient", {"b": 1})
+    one.start()
+    pid = one.pid
+    model_process.drop(one, linger=True)
+    two = model_process.take("obedient", {"b": 1})
+    assert two is one and two.pid == pid is not None
+    model_process.drop(two)
+    assert two.pid is None
+
+
+def test_a_process_that_nobody_takes_again_ends(children: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(model_process, "LINGER", 0.0)
+    one = model_process.take("obedient", {"c": 1})
+    one.start()
+    before = set(threading.enumerate())
+    model_process.drop(one, linger=True)
+    for timer in set(threading.enumerate()) - before:
+        timer.join()
+    assert one.pid is None
+    with pytest.raises(PlatformError, match="is closed"):
+        one.start()
+    other = model_process.take("obedient", {"c": 1})
+    assert other is not one
+    model_process.drop(other)
+
+
+def test_processes_that_linger_end_with_the_interpreter(children: Path) -> None:
+    """Also while their timer runs."""
+    program = (
+        "import sys, pathlib\n"
+        "from ravestate.modules.platform.voiceio import model_process\n"
+        "model_process.CHILDREN = pathlib.Path(sys.argv[1])\n"
+        "one = model_process.take('obedient', {})\n"
+        "one.start()\n"
+        "print(one.pid)\n"
+        "model_process.drop(one, linger=True)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(children)], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(done.stdout), 0)

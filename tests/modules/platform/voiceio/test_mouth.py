@@ -53,6 +53,20 @@ async def _wait(seconds: float) -> None:
     await done
 
 
+@pytest.mark.parametrize(("seconds", "heard"), [(0.09, ""), (0.11, "one,"), (1.09, "one,"), (1.11, "one, two.")])
+def test_the_pause_behind_a_word_is_no_part_of_it(seconds: float, heard: str) -> None:
+    text, word, pause = "one, two.", b"\0\x10" * round(0.2 * SECOND / 2), bytes(round(0.8 * SECOND))
+
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(Spoken(text, (word + pause) * 2, b"", by_places(text, [(0, 0.0), (5, 1.0)], 2.0)), 0)
+        await _wait(seconds)
+        assert one.heard(text) == heard
+
+    run(listen)
+
+
 def test_several_sentences_add_up() -> None:
     async def listen() -> None:
         one = mouth()

@@ -1,11 +1,13 @@
 """Two voices are told apart by their pitch; one person stays one."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from modules.platform.voiceio.speech import PEOPLE, noise, spoken
 from ravestate.modules.platform.voiceio import sound
-from ravestate.modules.platform.voiceio.pitch import is_another, pitch
+from ravestate.modules.platform.voiceio.pitch import change, is_another, pitch, pitches
 
 
 @pytest.mark.parametrize("hertz", [90.0, 140.0, 220.0, 330.0])
@@ -16,17 +18,36 @@ def test_a_tone_has_its_pitch(hertz: float) -> None:
 
 
 def test_noise_and_silence_have_none() -> None:
-    assert pitch(sound.samples(noise(1.0, 3000))) is None
-    assert pitch(np.zeros(16000, np.int16)) is None
+    assert not any(pitches(sound.samples(noise(1.0, 3000))))
+    assert not any(pitches(np.zeros(16000, np.int16)))
+
+
+def voice(text: str, name: str) -> list[float | None]:
+    return pitches(sound.samples(spoken(text, name)))
 
 
 def test_a_low_and_a_high_voice_are_two_people() -> None:
-    low = [sound.samples(spoken(text, "espeak:en-us")) for text in ("I would like to go to", "Not today, thank you.")]
-    high = sound.samples(spoken("No, that is too far.", "espeak:en+f3"))
+    low = [voice(text, "espeak:en-us") for text in ("I would like to go to", "Not today, thank you.")]
+    high = voice("No, that is too far.", "espeak:en+f3")
     assert is_another(low[0], high) and is_another(high, low[1])
     assert not is_another(*low)
 
 
 def test_a_person_is_one() -> None:
     pcm = sound.samples(sound.decode(PEOPLE / "librivox" / "sense_and_sensibility_01_austen_64kb-0870.wav", 16000))
-    assert not is_another(pcm[: len(pcm) // 2], pcm[len(pcm) // 2 :])
+    assert not is_another(pitches(pcm[: len(pcm) // 2]), pitches(pcm[len(pcm) // 2 :]))
+
+
+def test_another_person_is_noticed_within_speech() -> None:
+    low = voice("I would like to go to the station.", "espeak:en-us")
+    high = voice("No, that is much too far for us.", "espeak:en+f3")
+    for first, second in ((low, high), (high, low)):
+        place = change([*first, *second])
+        assert place is not None and abs(place - len(first)) < 6
+    assert change([*low, *low]) is None
+
+
+@pytest.mark.parametrize("file", sorted((PEOPLE / "librivox").glob("*.wav")), ids=lambda file: file.stem[-9:])
+def test_a_reader_stays_one_person_also_when_the_voice_moves(file: Path) -> None:
+    found = pitches(sound.samples(sound.decode(file, 16000)), 512)
+    assert all(change(found[at : at + 250]) is None for at in range(0, len(found), 60))

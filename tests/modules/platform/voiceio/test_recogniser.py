@@ -1,12 +1,14 @@
 """Recognition of people's speech by the real models, and what a recogniser writes for sounds that are no speech."""
 
+import runpy
 from pathlib import Path
 
 import pytest
 
-from modules.platform.voiceio.speech import PEOPLE, plain, word_errors
+from modules.platform.voiceio.speech import PEOPLE, plain, spoken, word_errors
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.voiceio import Settings, recogniser, sound
+from ravestate.modules.platform.voiceio.model_process import CHILDREN
 from ravestate.modules.platform.voiceio.recogniser import Recogniser
 
 LIBRIVOX = PEOPLE / "librivox"
@@ -31,6 +33,40 @@ def test_people_are_understood() -> None:
         assert found.confidence > 0.5
     assert wrong / total < 0.15
     small.close()
+
+
+def test_a_short_sound_is_not_written_twice() -> None:
+    """In a short window, the model does not notice the end of the speech, and begins again."""
+    small = Recogniser(Settings(model="tiny.en"))
+    for text in ("Dinner is ready.", "I have never been so happy.", "Can we start again?"):
+        found = small.recognise(bytes(9600) + spoken(text) + bytes(6400))
+        assert plain(found.text) == plain(text) and found.confidence > 0.5
+        assert found.last[plain(text)[-1]] > 0.5
+    small.close()
+
+
+def test_a_last_word_that_needs_more_remains_plausible() -> None:
+    small = Recogniser(Settings(model="tiny.en"))
+    found = small.recognise(bytes(9600) + spoken("It is a photograph of my") + bytes(6400))
+    assert found.last.get("my", 0.0) > 0.05
+    small.close()
+
+
+@pytest.mark.parametrize(
+    ("words", "at_limit", "kept"),
+    [
+        ("dinner is ready dinner is ready dinner", True, 3),
+        ("dinner is ready dinner is ready", False, 3),
+        ("no no no", False, 3),
+        ("no no no no no no", True, 1),
+        ("tell me what you tell me", False, 6),
+        ("one two three", True, 3),
+        ("", True, 0),
+    ],
+)
+def test_repetitions_are_cut_off(words: str, at_limit: bool, kept: int) -> None:
+    once = runpy.run_path(str(CHILDREN / "whisper.py"))["_once"]
+    assert once(words.split(), at_limit=at_limit) == kept
 
 
 def test_a_grammar_understands_commands_and_refuses_other_words() -> None:

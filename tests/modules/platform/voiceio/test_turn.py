@@ -34,6 +34,20 @@ def test_words_and_melody_decide_how_long_a_pause_may_be(text: str, complete: fl
     assert wanted_silence(text, complete, SETTINGS) == silence
 
 
+@pytest.mark.parametrize(
+    ("text", "last", "silence"),
+    [
+        ("It is a photograph of mine.", {"mine": 0.74, "my": 0.21}, 0.7),
+        ("It is a photograph of mine.", {"mine": 0.99}, 0.2),
+        ("I like apple.", {"apple": 0.2, "ap": 0.1}, 0.7),
+        ("Where are you from?", {"from": 0.99}, 0.2),
+        ("I am looking for a", {"a": 0.99}, 1.4),
+    ],
+)
+def test_the_last_word_may_be_another_one(text: str, last: dict[str, float], silence: float) -> None:
+    assert wanted_silence(text, 0.9, SETTINGS, last) == silence
+
+
 def test_no_pause_is_longer_than_the_setting() -> None:
     quick = Settings(longest_pause=0.5)
     assert max(wanted_silence(text, 0.1, quick) for text in ("and the", "Yes.", "I think that")) == 0.5
@@ -46,7 +60,21 @@ def test_german_has_words_of_its_own() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["Mhm.", "Mm-hmm.", "M-H-M.", "Hmm", "Yes.", "Yeah, okay.", "Ha ha ha!", "Hahaha", "Oh, I see.", "Uh-huh."]
+    "text",
+    [
+        "Mhm.",
+        "Mm-hmm.",
+        "M-H-M.",
+        "M.H.N.",
+        "M-A-K-M",
+        "Hmm",
+        "Yes.",
+        "Yeah, okay.",
+        "Ha ha ha!",
+        "Hahaha",
+        "Oh, I see.",
+        "Uh-huh.",
+    ],
 )
 def test_showing_that_one_listens_is_no_interruption(text: str) -> None:
     assert is_back_channel(text)

@@ -8,7 +8,7 @@ from modules.platform.webio.visit import in_virtual_time
 from ravestate.modules import webio
 from ravestate.modules.platform.webio import Settings
 from ravestate.modules.platform.webio.access import Access, is_local
-from ravestate.modules.platform.webio.protocol import ProtocolError
+from ravestate.modules.platform.webio.fields import ProtocolError
 from ravestate.settings import load_settings
 
 TOKEN = "open sesame, please"

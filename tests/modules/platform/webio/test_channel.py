@@ -7,7 +7,7 @@ import pytest
 
 from modules.platform.webio.visit import in_virtual_time
 from ravestate.modules.platform.webio.channel import Channel
-from ravestate.modules.platform.webio.protocol import CLOSING_CODES, ProtocolError
+from ravestate.modules.platform.webio.fields import CLOSING_CODES, ProtocolError
 
 
 class Socket:

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ravestate.modules._text import printable
-from ravestate.modules.platform.webio.protocol import (
+from ravestate.modules.platform.webio.fields import GREATEST, ProtocolError, heard_text
+from ravestate.modules.platform.webio.frames import (
     CLIENT,
-    GREATEST,
     SERVER,
     Bye,
     ClientFrame,
@@ -22,16 +22,13 @@ from ravestate.modules.platform.webio.protocol import (
     Piece,
     Ping,
     Pong,
-    ProtocolError,
     Renamed,
     Say,
     Typing,
     Welcome,
     Writing,
-    heard_text,
-    parse,
-    serialise,
 )
+from ravestate.modules.platform.webio.protocol import parse, serialise
 
 texts = st.text().map(printable)
 keys = st.from_regex(r"[A-Za-z0-9_-]{1,64}", fullmatch=True)

@@ -12,7 +12,7 @@ from starlette.testclient import TestClient
 from modules.platform.webio.ears import WORD, ears, story, tone
 from modules.platform.webio.visit import Visit, in_virtual_time, page, past
 from ravestate.modules import rawio
-from ravestate.modules.platform.webio.protocol import LONGEST_SOUND
+from ravestate.modules.platform.webio.fields import LONGEST_SOUND
 from ravestate.modules.platform.webio.session import Session
 
 SPEECH = tone(1.0, rawio.IN_RATE)

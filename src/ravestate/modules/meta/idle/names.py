@@ -20,9 +20,9 @@ class Settings(rs.Settings):
     answer_time: Seconds = 25.0
     """Seconds without activity after which the agent is bored if it has asked a question; at least ``bored_after``."""
     writing_time: Seconds = 20.0
-    """Seconds since the last key after which the agent is bored while the user has an unsent line."""
+    """Seconds since the last key press after which the agent is bored, if the user has typed a line but not sent it."""
     remarks: Annotated[int, Field(ge=0)] = 2
-    """The maximum number of remarks out of boredom until the user says or types something again."""
+    """The maximum number of remarks that the bored agent makes before the user says or types something again."""
     impatient_after: Seconds = 1.0
     """Seconds that a ready rule waits before the agent is impatient."""
 
@@ -30,10 +30,11 @@ class Settings(rs.Settings):
 module = rs.Module("idle", requires=[rawio], settings=Settings)
 
 bored = module.signal("bored")
-"""Nothing happens for ``bored_after`` seconds. Raised once for each silence, including the one after startup.
+"""There was no activity for ``bored_after`` seconds. The signal is raised once for each silence, also after startup.
 
-A rule that speaks ends the silence. After ``remarks`` unanswered remarks, a wish for quiet or a goodbye, no signal
-comes until the user speaks again; after words of sorrow, none comes for twelve utterances.
+A rule that speaks ends the silence. If the user does not respond to ``remarks`` remarks, asks for quiet or says
+goodbye, the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised for
+twelve utterances.
 """
 
 hushed = module.signal("hushed")
@@ -55,4 +56,4 @@ dismissed = module.flag("dismissed")
 """Whether the user's last words ask for quiet or say goodbye."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances of the user for which their last words of sorrow still count."""
+"""The number of further utterances of the user during which their last words of sorrow still count."""

@@ -13,7 +13,7 @@ from ravestate.modules import rawio
 from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
-"""The maximum number of characters, from the end of the agent's words, that are searched for a question."""
+"""The number of characters at the end of the agent's words in which the rule looks for a question."""
 
 
 @module.rule(
@@ -82,9 +82,9 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, reads=sorrow, writes=(dismissed, sorrow), emits=hushed)
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
-    """Note whether the user asks for quiet, says goodbye or is sad; emit `hushed` in the first case.
+    """Note whether the user asks for quiet, says goodbye or is sad. If the user asks for quiet, emit `hushed`.
 
-    The encoder may take a few milliseconds, so it runs in a thread. This is activity: the silence begins after it.
+    The encoder may take a few milliseconds, so it runs in a thread. This run is activity: the silence begins after it.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})
@@ -110,7 +110,10 @@ def _has_words(text: str) -> bool:
     background=True,
 )
 async def notice_question(ctx: rs.RuleContext) -> None:
-    """Note the agent's question, because its answer gets more time. Count the first words after boredom as a remark."""
+    """Note the agent's question, because the user gets more time to answer it.
+
+    If these are the agent's first words since it was bored, count them as a remark.
+    """
     said = sentences(ctx.payload(rawio.output.changed)[-LONGEST:])
     ctx[asked] = said[-1] if said and "?" in said[-1] else ""
     if not ctx[remarked]:

@@ -29,10 +29,10 @@ from .tree import Tree
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
-"""The acts for which nlp has a signal, with the signal's name."""
+"""Act of the user → the name of the signal of nlp for this act. Other acts have no signal."""
 
 MATCHERS = ("acts", "feelings")
-"""The files of examples whose classes an analysis names."""
+"""The names of the files of examples with which an analysis compares the user's sentences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Analysis:
     text: str
     """The text as typed."""
     normal: Normal
-    """The text as written English."""
+    """The normal form of the text: written English."""
     tree: Tree
     entities: tuple[Entity, ...]
     triples: tuple[Triple, ...]
@@ -54,15 +54,15 @@ class Analysis:
     statements: tuple[Statement, ...] = ()
     """The triples with flags for their circumstances: denied, past, hearsay..."""
     acts: Mapping[str, Match] = field(default_factory=dict[str, Match])
-    """The user's acts, by the classes of ``acts.yaml``: greeting, thanks... each with its best sentence."""
+    """Class in ``acts.yaml``, such as ``greeting`` → the best match of a sentence for this act."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
-    """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
+    """Class in ``feelings.yaml`` → the best match of a sentence for this feeling."""
 
     move: Move | None = None
     """The move: what a good listener does next, such as rejoice, console, advise..."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
-    """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
+    """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""
 
     @property
     def acted(self) -> tuple[str, ...]:
@@ -70,7 +70,7 @@ class Analysis:
         return tuple(signal for act, signal in INTENTS.items() if act in self.acts)
 
     def act(self, name: str) -> Match | None:
-        """Return the best sentence with the act `name`; None if there is none."""
+        """Return the best match of a sentence for the act `name`; None if no sentence matches it."""
         return self.acts.get(name)
 
 
@@ -81,20 +81,20 @@ def analyse(
     users: Iterable[str] = (),
     designed: Matcher | None = None,
 ) -> Analysis:
-    """Analyse `text`. Blocks for a few milliseconds.
+    """Analyse `text`. This blocks for a few milliseconds.
 
     Args:
-        text: Any text; the analysis covers the beginning of a long one.
+        text: Any text; the analysis covers only the beginning of a long text.
         pipeline: The pipeline; the first call loads it in about a second.
         agent_names: The agent's names. A text with one of them is about the agent. Case is ignored.
-        users: The names of the users present. The normal form gives their names and the agent's names capitals.
-        designed: The matcher of the designer's intents. The first utterance waits until it has learnt the examples.
+        users: The names of the users present. In the normal form, these names and the agent's names have capitals.
+        designed: The matcher of the designer's intents. The first call waits until the matcher has learnt its examples.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
     """
     if designed is not None:
-        with contextlib.suppress(PlatformError):  # without the sentence model, it knows the examples word for word
+        with contextlib.suppress(PlatformError):  # without the sentence model, it recognises only its examples verbatim
             designed.load()
     names = tuple(agent_names)
     normal = pipeline.normalise(text, (*names, *users))
@@ -102,9 +102,8 @@ def analyse(
     sentences = sentences_of(normal.text)
     parsed = Clause.all_in(tree)
     statements = statements_of(tree, entities, parsed)
-    bundled_matcher("acts").prepare(
-        [*sentences, *clauses(sentences, names), *compared(sentences)]
-    )  # one run of the encoder serves all matchers
+    # One run of the encoder serves all matchers.
+    bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names), *compared(sentences)])
     question = question_of(tree, parsed)
     return Analysis(
         text=text,
@@ -112,7 +111,8 @@ def analyse(
         tree=tree,
         entities=entities,
         triples=tuple(statement.triple for statement in statements),
-        yesno=yesno_of(normal.text if "?" in text else normal.text.replace("?", ".")),  # an added mark is a guess
+        # The normal form may add question marks to the user's text. These are guesses, so do not use them here.
+        yesno=yesno_of(normal.text if "?" in text else normal.text.replace("?", ".")),
         question=question,
         about_agent=_is_about_agent(tree, names),
         sentences=sentences,
@@ -125,7 +125,7 @@ def analyse(
 
 
 def _intents(matcher: Matcher, sentences: Iterable[str]) -> dict[str, Match]:
-    """Return the designer's intents of the sentences, each with the best of its sentences."""
+    """Return a map from each intent of the designer that a sentence matches to the best match."""
     found = [match for match in matcher.match_all(tuple(sentences)) if match is not None and ":" in match.name]
     return {match.name: match for match in sorted(found, key=lambda match: match.score)}
 

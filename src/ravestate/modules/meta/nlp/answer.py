@@ -26,9 +26,9 @@ class YesNo:
     """
 
     yes: int | None = None
-    """0: no, 1: weakly, 2: surely."""
+    """Whether the text says yes: 0 (it does not), 1 (weakly) or 2 (surely)."""
     no: int | None = None
-    """0: no, 1: weakly, 2: surely."""
+    """Whether the text says no: 0 (it does not), 1 (weakly) or 2 (surely)."""
     unsure: bool | None = None
     """Whether the speaker does not know."""
 
@@ -38,12 +38,12 @@ class YesNo:
 
 
 _SCORES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
-"""The classes of examples as scores."""
+"""Class of examples → its score, from 2 (surely yes) to -2 (surely no)."""
 _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
 _HEDGE = re.compile(r"\b(?:probably|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
-"""A hedge before an answer or at the end of a part; *maybe he is at home* hedges a statement."""
+"""A hedge before an answer or at the end of a part. *maybe he is at home* does not count: it hedges a statement."""
 _FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry thanks frankly ha haha")
 _VERB = "am|is|are|was|were|do|does|did|have|has|had|can|could|will|would|shall|should|may|might|must"
 _YES = re.compile(rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|ok|okay|okey|sure(?! (?:{_VERB})\b))\b")
@@ -74,7 +74,7 @@ def yesno_of(text: str) -> YesNo:
     spoken = _PART.findall(_STRETCHED.sub(r"\1", text[:_LONGEST].lower()))
     first, *others = _TURN.split("".join(plain(words) + marks for words, marks in spoken), maxsplit=1)
     score, other = _score(first), _score(others[0]) if others else None
-    if not any(_parts(first)):  # "thanks, but no"
+    if not any(_parts(first)):  # as in "thanks, but no"
         score = other
     elif score is not None and other and score * other <= 0:
         score = 1 if other > 0 else -1
@@ -82,7 +82,7 @@ def yesno_of(text: str) -> YesNo:
 
 
 def _score(text: str) -> int | None:
-    """Return the score of the first part that is more than a filler, with the parts up to the end of its sentence."""
+    """Return the score of the first sentence of a text that has more than fillers."""
     found: int | None = None
     hedged = False
     for part, marks in _parts(text):
@@ -105,7 +105,7 @@ def _score(text: str) -> int | None:
 
 
 def _parts(text: str) -> Iterator[tuple[str, str]]:
-    """Yield the parts of a text without fillers before them, and the punctuation after them."""
+    """Yield each part of a text, without the fillers at its beginning, and the punctuation after the part."""
     for part, marks in _PART.findall(text):
         words = part.split()
         while words and words[0] in _FILLERS:
@@ -115,7 +115,7 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _score_of_part(part: str, asks: bool) -> int | None:
-    """Return the score of a part. A question counts if it is a weak answer, or resembles an example that asks."""
+    """Return the score of a part. A question has a score only if it resembles a weak answer or an example that asks."""
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:

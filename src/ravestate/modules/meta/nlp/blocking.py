@@ -26,7 +26,7 @@ class _BlockingFinder(MetaPathFinder):
 
 @contextmanager
 def blocked(*names: str) -> Generator[None]:
-    """Keep this thread from importing the packages `names` for the first time; other threads may.
+    """Prevent this thread from importing the packages `names` for the first time. Other threads still can import them.
 
     Example:
         >>> with blocked("this"):

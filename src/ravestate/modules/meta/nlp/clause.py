@@ -62,7 +62,7 @@ class _Unknown:
 
 
 class Clause:
-    """One clause of a tree; `all_in` makes them."""
+    """One clause of a tree. `all_in` makes all clauses of a tree."""
 
     def __init__(self, tree: Tree, verb: Word, clauses: dict[int, Clause]) -> None:
         self.tree = tree
@@ -70,7 +70,7 @@ class Clause:
         self.chain = chain_of(tree, verb)
         """The verb with the verbs that it governs: *want to become*."""
         self.verbs = list(dict.fromkeys([*self.chain[::-1], verb]))
-        """All of its verbs, the last one first."""
+        """All verbs of the clause, the last one first."""
         self._clauses = clauses
         """All clauses of the tree by the index of each of their verbs."""
 
@@ -133,21 +133,21 @@ class Clause:
         for word in self.own:
             before, after = self.tree.before(word), self.tree.after(word)
             if word.low in NEGATIONS and not self._denies_conjunct(word) and self.tree.head(word) not in self.chain[1:]:
-                return True  # but in "decide not to go", only the going is denied
+                return True  # unlike "decide not to go", which denies only "go"
             if before is not None and (before.low, word.low) == ("no", "longer"):
                 return True
             if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
                 return True
             if word.low == "no" and word.dep == "det" and after and after.low != "one":
                 return True
-        head = self.head_clause  # I don't smoke or drink
+        head = self.head_clause  # as in "I don't smoke or drink"
         if self.verb.dep != "conj" or head is None or self.own_subjects:
             return False
         return head.negated and any(word.low in ("or", "nor") for word in self.tree.children(head.verb, "cc"))
 
     @cached_property
     def passive(self) -> Word | None:
-        """The auxiliary of a passive, also of an adjective that is a participle: *are they married*."""
+        """The auxiliary of a passive, or of a participle that serves as an adjective: *are they married*."""
         first, head = self.chain[0], self.head_clause
         auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
         if first.low in _FEELINGS:
@@ -156,9 +156,9 @@ class Clause:
             return auxiliaries[0]
         if self.own_subjects or self.tree.children(self.verb, "aux", "dobj"):
             return None
-        if head is not None and self.verb.dep == "conj" and first.low.endswith(("ed", "en")):  # born and raised
+        if head is not None and self.verb.dep == "conj" and first.low.endswith(("ed", "en")):  # as in "born and raised"
             return head.passive
-        return _BE if first.low in ("born", "raised") and head is None else None  # born in Rome
+        return _BE if first.low in ("born", "raised") and head is None else None  # as in "born in Rome"
 
     @property
     def requests(self) -> bool:
@@ -169,7 +169,7 @@ class Clause:
 
     @cached_property
     def _inherited(self) -> list[Word]:
-        """The verbs that a joined clause inherits: *like*, for *run* in *like to swim and run*."""
+        """The verbs that a joined clause inherits: in *like to swim and run*, the clause of *run* inherits *like*."""
         head, verb = self.head_clause, self.tree.head(self.verb)
         if self.verb.dep != "conj" or head is None or verb not in head.chain[1:]:
             return []
@@ -203,7 +203,7 @@ class Clause:
 
     @cached_property
     def own(self) -> list[Word]:
-        """The words of this clause, without those of clauses inside it."""
+        """The words of this clause, without the words of clauses inside it."""
         found = list(self.verbs)
         for word in found:  # the list grows in the loop
             found += [child for child in self.tree.children(word) if child.index not in self._clauses]
@@ -211,7 +211,7 @@ class Clause:
 
     @cached_property
     def _is_relative(self) -> bool:
-        """Whether this is a relative clause. *Tom, where do you live* has none: it is a question."""
+        """Whether this is a relative clause. In *Tom, where do you live*, *where do you live* is a question instead."""
         deps = [word.dep for word in self.tree.children(self.verb, "aux", *SUBJECTS)]
         return self.verb.dep == "relcl" and not (deps[:1] == ["aux"] and set(deps) & set(SUBJECTS))
 
@@ -225,27 +225,27 @@ class Clause:
             return False
         first = self.tree.subtree(subjects[0])[0]
         if self._is_copula and first.pos != "PRON" and self.unknown is None and not self._objects():
-            return False  # was a nice day
+            return False  # as in "was a nice day"
         return heads[0].index < first.index and heads[0].low in AUXILIARIES
 
     @cached_property
     def _is_lets(self) -> bool:
-        """Whether it is the *let* of *let's play*, whose subject is *we*."""
+        """Whether the verb is the *let* of *let's play*, whose subject is *we*."""
         after = self.tree.after(self.verb)
         return self.verb.low == "let" and after is not None and after.low in ("'s", "us", "s")
 
     # ------------------------------------------------------------------------------ subjects, objects
 
     def _parts(self) -> tuple[list[Part], list[tuple[Part, bool]]]:
-        """Return the subjects and the objects, and for each object whether *not* precedes it alone."""
+        """Return the subjects and the objects. With each object comes whether a *not* denies this object alone."""
         unknown, objects = self.unknown, self._objects()
         if self._names_pursuit:
             gerunds = conjuncts(self.tree, self.verb, self._clauses.keys() - {self.verb.index})
             return self.subjects, [(phrase_of(self.tree, verb, self._gerund(verb)), False) for verb in gerunds]
         if self._by:
-            given = self._written(self.tree.children(self.chain[0], "dobj"))  # I was given a watch by my aunt
+            given = self._written(self.tree.children(self.chain[0], "dobj"))  # as in "I was given a watch by my aunt"
             asked = given or [(part, False) for part in self.subjects]
-            if unknown is not None and not self._agents:  # who was it written by
+            if unknown is not None and not self._agents:  # as in "who was it written by"
                 return [unknown.kind], asked
             return [part for part, _ in self._written(self._agents)], asked
         if unknown is None or unknown.top in self.own_subjects:
@@ -259,22 +259,23 @@ class Clause:
 
     @cached_property
     def own_subjects(self) -> list[Word]:
-        """The subjects of the clause itself. The parser attaches some to an auxiliary or an adjective."""
+        """The subjects of the clause itself. The parser attaches some subjects to an auxiliary or an adjective."""
         tree, last = self.tree, self.chain[-1]
         there = tree.children_of(self.verbs, "attr", "dobj") if tree.children_of(self.verbs, "expl") else []
         found = there or tree.children_of(self.verbs[::-1], *SUBJECTS)
         beside = [*tree.children(self.verb, "aux", "auxpass"), *tree.children(last, "acomp", "attr")]
         found = found or tree.children_of(beside, *SUBJECTS)
         if not found and (before := tree.before(self.verb)) is not None and before.dep == "appos":
-            return [before]  # I have a sister her name is Lisa
+            return [before]  # as in "I have a sister her name is Lisa"
         if self._is_copula and self.unknown is not None and (not found or self.unknown.top in found):
             others = found + [word for word in tree.children(last, "attr", "dobj") if word.pos not in ("ADJ", "ADV")]
-            return [word for word in others if word != self.unknown.top][:1] or [self.unknown.top]  # who is your friend
+            # As in "who is your friend".
+            return [word for word in others if word != self.unknown.top][:1] or [self.unknown.top]
         return found
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """The subjects; those of the head clause if the clause has none."""
+        """The subjects of the clause. If it has none, these are the subjects of the head clause."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
         if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
@@ -287,7 +288,7 @@ class Clause:
             return self._unsaid()
         if verb.dep == "acl" or head is None:
             return []
-        him = self.tree.children(above, "dobj", "dative")  # I asked him to come
+        him = self.tree.children(above, "dobj", "dative")  # as in "I asked him to come"
         if verb.dep in ("xcomp", "ccomp") and not self._inherited and him and him[0].index < verb.index:
             return [_WE] if head._is_lets else [part for part, _ in self._written(him)]
         if head._agents:
@@ -297,11 +298,11 @@ class Clause:
     def _unsaid(self) -> list[Part]:
         """Return the implied subject: *you* of a request, *I* of a note such as *am tired*."""
         auxiliaries = [word.low for word in self.tree.children(self.verb, "aux", "auxpass")]
-        if any("?" in word.low for word in self.own):  # like it?
+        if any("?" in word.low for word in self.own):  # as in "like it?"
             return [YOU]
         if self.verb.lemma.lower() == "thank" or self.verb.low == "am" or set(auxiliaries) & {"am", "have"}:
             return [_I]
-        if set(auxiliaries) & {"ca", "can", "could"}:  # can't find it
+        if set(auxiliaries) & {"ca", "can", "could"}:  # as in "can't find it"
             return [_I]
         has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)
         states = lemma_of(self.verb) in _OWN_STATES or has
@@ -325,13 +326,14 @@ class Clause:
         relative = relative and not any(word.low == "whose" or word.dep == "mark" for word in self.own)
         for verb in verbs:
             direct = [word for word in tree.children(verb, *_DIRECT) if self._is_free(word)]
-            if not direct:  # it makes me happy
+            if not direct:  # as in "it makes me happy"
                 small = [word for word in tree.children(verb, "ccomp") if word.index not in self._clauses]
                 direct = tree.children_of(small, *SUBJECTS)
             gives = lemma_of(verb) in _GIVING
-            if gives and [word.dep for word in direct[:2]] == ["dobj", "dobj"]:  # she told her friends the truth
+            # As in "she told her friends the truth".
+            if gives and [word.dep for word in direct[:2]] == ["dobj", "dobj"]:
                 del direct[0]
-            given = gives and direct and direct[0].pos == "PRON"  # the book you gave me
+            given = gives and direct and direct[0].pos == "PRON"  # as in "the book you gave me"
             if direct and not (relative and (given or direct[0].low in _RELATIVE)):
                 strays = [w for w in tree.children(verb, "conj") if w.index not in self._clauses and w.pos in _NOMINAL]
                 return self._written([direct[0], *(word for word in strays if word.index > direct[0].index)], verb)
@@ -343,7 +345,7 @@ class Clause:
             if states or indirect or (verb == self.verb and self._beside):
                 return self._written(states or indirect or self._beside, verb)
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
-        after = tree.after(verbs[0]) if subjects else None  # my name is Tom I live in Berlin
+        after = tree.after(verbs[0]) if subjects else None  # as in "my name is Tom I live in Berlin"
         if after is not None and after.dep in ("npadvmod", "compound") and tree.head(after).pos in VERBAL:
             return [(phrase_of(tree, after, [after]), False)] if tree.head(after).index > after.index else []
         beside = [word for subject in subjects for word in conjuncts(tree, subject, self._clauses)]
@@ -353,7 +355,7 @@ class Clause:
         for word in tree.children_of(verbs, "advmod", "npadvmod", "dep"):
             if word.low in PLACES:
                 return [(phrase_of(tree, word, [word]), False)]
-        for word in tree.children(self.verb, "conj"):  # bought and read the book
+        for word in tree.children(self.verb, "conj"):  # as in "bought and read the book"
             between = tree.words[self.verb.index + 1 : word.index]
             if (other := self._clauses.get(word.index)) and between and all(w.dep in ("cc", "prt") for w in between):
                 return other._objects()
@@ -384,11 +386,12 @@ class Clause:
         return bare and not self.tree.children(self.verb, "mark", "dobj")
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:
-        """Return the noun of the first prepositional phrase after the head, or else before it."""
-        heads = [head, *self.tree.children(head, "advmod")]  # next to the station
+        """Return the noun of the first prepositional phrase after the head. If there is none, look before the head."""
+        heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
-            prepositions = [phrase, *self.tree.children(phrase, "prep", "conj")]  # out of; in Berlin and in Paris
+            # As in "out of", and in "in Berlin and in Paris".
+            prepositions = [phrase, *self.tree.children(phrase, "prep", "conj")]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]
             asked = self.unknown is not None and any(self.unknown.word in self.tree.subtree(noun) for noun in nouns)
             if nouns and not asked:
@@ -418,7 +421,7 @@ class Clause:
     # --------------------------------------------------------------------------------------- writing
 
     def _written(self, heads: Iterable[Word], verb: Word | None = None) -> list[tuple[Part, bool]]:
-        """Return the phrases of `heads` and their conjuncts, and whether *not* precedes each alone."""
+        """Return the phrases of `heads` and their conjuncts. With each comes whether a *not* denies it alone."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._clauses):

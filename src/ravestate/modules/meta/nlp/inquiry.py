@@ -26,7 +26,7 @@ _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote
 _ANY = word_set("any ever anyone anybody anything")
 """Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
 _BEFORE_TAG = word_set("here there me you him her them us")
-"""Words, besides nouns and adjectives, that a statement may end with before a *right* without a comma."""
+"""Words after which a *right* without a comma is a question tag, as it is after nouns and adjectives."""
 _TAGS = word_set("right correct huh eh yes no ok okay")
 
 
@@ -56,7 +56,7 @@ def _sentences(tree: Tree) -> list[list[Word]]:
 def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> QuestionWord | None:
     """Return the kind of the first question in a sentence."""
     asked = any("?" in word.low for word in words)
-    likely = "?" in tree.text[words[0].start : words[-1].end + 1]  # the normal form has added it
+    likely = "?" in tree.text[words[0].start : words[-1].end + 1]  # the normal form adds a mark to a likely question
     parts = _parts(words)
     for part in parts:
         inside = _inside(part, clauses)
@@ -75,9 +75,9 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
     words = [word for word in words if word.pos != "PUNCT"]
     low = [word.low for word in words]
     stated = low[:1] == ["you"] and not any(clause.negated for clause in clauses)
-    if low and low[-1] in QUESTION_WORDS and (asked or (stated and low[1] not in _KNOWING)):  # you live where
+    if low and low[-1] in QUESTION_WORDS and (asked or (stated and low[1] not in _KNOWING)):  # as in "you live where"
         return QUESTION_WORDS[low[-1]]
-    if not words or asked or (stated and "any" in low):  # you know any songs
+    if not words or asked or (stated and "any" in low):  # as in "you know any songs"
         return QuestionWord.YES_NO if low or asked else None
     bare = low[-2:] in (["and", "you"], ["and", "yours"]) or low[0] in _ANY or low[1:2] == ["any"]
     return QuestionWord.YES_NO if bare or _has_tag(tree, words) else None
@@ -119,18 +119,19 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
     addressed = second == "you" or (
         kind_at(part, 0) is QuestionWord.AMOUNT and low[2:3] == ["you"] and "are" not in low
     )
-    exclaimed = clause is not None and clause.tree.text[part[-1].end :].startswith("!")  # how much you have grown!
+    # As in "how much you have grown!".
+    exclaimed = clause is not None and clause.tree.text[part[-1].end :].startswith("!")
     ends = clause is None or clause.verb.dep == "ROOT"
     if addressed and ends and not exclaimed and not (part[2:] and part[2].pos == "AUX"):
-        return True  # where you live
+        return True  # as in "where you live"
     nice = (
         len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) in (QuestionWord.FORM, QuestionWord.OBJECT)
     )
     if asked or nice or (first.low == "what" and second in ("a", "an")):
-        return asked and not (nice and first.low == "what" and part[-1].pos in VERBAL)  # how nice of you
+        return asked and not (nice and first.low == "what" and part[-1].pos in VERBAL)  # as in "how nice of you"
     if clause is None or clause.unknown is None:
         return len(part) < 4
-    begins = clause.verb.dep in ("ROOT", "ccomp") and clause.unknown.top in clause.own_subjects  # what happened
+    begins = clause.verb.dep in ("ROOT", "ccomp") and clause.unknown.top in clause.own_subjects  # as in "what happened"
     return begins or not clause.own_subjects
 
 

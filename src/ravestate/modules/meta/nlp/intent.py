@@ -33,14 +33,14 @@ _RULE = "learn_intents"
 def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path) -> rs.Signal[Match]:
     """Declare a signal for utterances that resemble `examples`; its payload is the `Match`.
 
-    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with sentences of no
-    class. Only the signal of the best match is raised. Two or three examples are enough for a start.
+    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with sentences that
+    belong to no class. Only the signal of the best match is raised. Two or three examples are enough for a start.
 
     Args:
-        module: The module of the signal. It requires ``nlp``.
+        module: The module of the signal, which must require ``nlp``.
         name: The name of the signal within the module.
-        examples: Sentences; or a YAML file relative to the caller's, with a list of sentences, or with a mapping from
-            names of intents to such lists.
+        examples: Sentences; or the path of a YAML file, relative to the caller's file. The YAML file has a list of
+            sentences, or a mapping from names of intents to such lists.
 
     Raises:
         DeclarationError: There are no examples, the file is missing, the name is taken, or `module` lacks ``nlp``.
@@ -54,7 +54,8 @@ def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path
             async def tell_hours(ctx):
                 ctx[rawio.output] = "From ten to six."
     """
-    caller = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # files are relative to it, and messages name it
+    # Paths are relative to the caller's file, and messages name the place of the call.
+    caller = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
     origin = f"{caller.f_code.co_filename}:{caller.f_lineno}"
     where = f"nlp.intent({module.name}, {name!r}) ({origin})"
     if not _requires_nlp(module):
@@ -89,9 +90,10 @@ def intents_of(policy: Policy) -> dict[str, tuple[str, ...]]:
 
 
 def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
-    """Yield the examples that two intents share, and those that resemble another intent's: example, intent, other.
+    """Yield each example of an intent that equals or resembles an example of another intent.
 
-    Without the sentence model, yield only examples that are the same word for word.
+    An item has the example, the name of its intent, and the name of the other intent. Without the sentence model, yield
+    only examples that are the same word for word.
     """
     owners: dict[str, str] = {}
     for name, texts in intents.items():
@@ -107,7 +109,7 @@ def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
 
 
 def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
-    """Return the matcher of all `intents`, shared by all contexts that have the same; None if there are none."""
+    """Return the matcher of all `intents`; None without intents. Contexts with the same intents share a matcher."""
     joined = tuple(item for some in intents for item in some.items())
     return _matcher(joined) if joined else None
 
@@ -116,7 +118,8 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
     """Return a matcher of intents and acts. If an act and an intent share an example, the intent keeps it.
 
-    A designer writes few examples, and an act has hundreds. Only `OF_ACT` of these compete, or acts would always win.
+    A designer writes few examples, and an act has hundreds. If all of them competed, acts would always win. So only
+    `OF_ACT` examples of each act compete.
     """
     taken = {plain(text) for _, texts in intents for text in texts}
     acts = bundled("acts")
@@ -134,7 +137,10 @@ def _requires_nlp(module: rs.Module) -> bool:
 
 
 def _declared(module: rs.Module) -> dict[str, tuple[str, ...]]:
-    """Return the examples of the module's intents, to add to; the first call declares the rule that publishes them."""
+    """Return the examples of the module's intents, so that the caller can add more.
+
+    The first call for a module declares the rule that publishes the examples.
+    """
     for rule in module.rules:
         if rule.name == f"{module.name}:{_RULE}":
             return cast("Any", rule.function).declared
@@ -145,13 +151,13 @@ def _declared(module: rs.Module) -> dict[str, tuple[str, ...]]:
 
     declared: dict[str, tuple[str, ...]] = {}
     cast("Any", publish).declared = declared
-    # Detached, because rules of two modules that write the same slot would otherwise exclude each other (L10).
+    # The rules of all modules write the same slot. Without detachment, they would exclude each other (L10).
     module.rule(when=rs.startup.detached(), writes=names.intents, detached=True, background=True, name=_RULE)(publish)
     return declared
 
 
 def _sentences(examples: Sequence[str] | str | Path, name: str, folder: Path, where: str) -> tuple[str, ...]:
-    """Return the examples, read from a file if they are in one."""
+    """Return the examples as a tuple. If `examples` is a path, read them from that file."""
     found: Any = examples
     source = where
     if isinstance(examples, (str, Path)):

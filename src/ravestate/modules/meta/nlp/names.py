@@ -74,7 +74,7 @@ yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
 """The meaning of the utterance as an answer: yes or no. This slot is written last."""
 
 intents: rs.Collection[Mapping[str, tuple[str, ...]]] = module.collection("intents")
-"""The examples of the intents that `nlp.intent` declares: for each module, the sentences by the name of the signal."""
+"""The examples of the intents that `nlp.intent` declares. For each module: signal's name → sentences."""
 
 is_question = module.signal("is_question", payload=QuestionWord)
 """The user asks something; the payload is the kind of question."""

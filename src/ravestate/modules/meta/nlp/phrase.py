@@ -36,7 +36,7 @@ class Phrase:
     person: Person = "other"
     """``I`` and ``you`` for pronouns; ``other`` for everything else, also for *my sister*."""
     preposition: str = ""
-    """The preposition before it, in lower case: ``in``."""
+    """The preposition before the phrase, in lower case: ``in``."""
 
     @property
     def name(self) -> str:
@@ -44,7 +44,7 @@ class Phrase:
         return self.names[0] if self.names else ""
 
     def of(self, person: Person) -> bool:
-        """Return whether it belongs to `person`: *my sister* and *my mother's name* to ``I``."""
+        """Return whether the phrase belongs to `person`: *my sister* and *my mother's name* belong to ``I``."""
         return self.owner is not None and (self.owner.person == person or self.owner.of(person))
 
 
@@ -60,7 +60,7 @@ _NUMBERS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase:
     """Return the phrase of `words` around `head`; of its noun phrase by default."""
     noun = None if head.pos in ("PRON", "DET") else head
-    if head.pos == "PROPN":  # friend, of my friend Anna
+    if head.pos == "PROPN":  # as in "my friend Anna": the head is "friend"
         noun = next((word for word in tree.children(head, "compound", "nmod") if word.pos == "NOUN"), None)
     of = [word for word in tree.children(noun or head, "prep") if word.low == "of"]
     owned = [*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj"), *tree.children(head, "poss")]
@@ -121,7 +121,8 @@ def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
     """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
     found = [head]
     for word in found:  # the list grows in the loop
-        listed = [child for child in tree.children(word, "appos") if child.pos == word.pos]  # a cat, a dog and a bird
+        # As in "a cat, a dog and a bird".
+        listed = [child for child in tree.children(word, "appos") if child.pos == word.pos]
         joined = [child for child in listed if tree.children(child, "conj")] + tree.children(word, "conj")
         found += [child for child in joined if child.index not in clauses]
     return found
@@ -129,12 +130,12 @@ def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
 
 def _belongs(tree: Tree, child: Word, head: Word) -> bool:
     """Return whether a word with its own dependents is a part of the phrase around `head`."""
-    if child.dep == "appos":  # a name without a comma, perhaps in lower case: my friend tom
+    if child.dep == "appos":  # a name without a comma, perhaps in lower case, as in "my friend tom"
         comma = any(between.pos == "PUNCT" for between in tree.words[head.index : child.index])
         return not comma and (child.pos == "PROPN" or (child.tag == "NN" and child.index == head.index + 1))
     if child.low in DETERMINERS and child.dep not in ("pobj", "pcomp"):
         return (child.low, head.low) in _PRONOUNS
-    after = child.dep == "amod" and child.index > head.index  # are cats nice
+    after = child.dep == "amod" and child.index > head.index  # as in "are cats nice"
     return child.dep in _KEPT and child.pos != "ADV" and not after
 
 

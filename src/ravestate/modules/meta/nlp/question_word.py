@@ -92,7 +92,7 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
         for other in rest:
             if other.pos in ("ADJ", "NUM"):
                 continue
-            if other.pos in ("NOUN", "PROPN", "VERB"):  # without punctuation the tagger mistakes some nouns
+            if other.pos in ("NOUN", "PROPN", "VERB"):  # without punctuation, the tagger takes some nouns for verbs
                 kind = _CLASS_OF.get(other.lemma.lower(), kind)
             break
         if _asks_what_for(rest):

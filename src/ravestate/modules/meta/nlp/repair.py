@@ -1,4 +1,4 @@
-"""Repair what the small pipelines often mistake in a dependency tree: question tags, and nouns that must be verbs."""
+"""Repair common mistakes of the small pipelines in dependency trees: question tags, and nouns that must be verbs."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def tag_at(words: Sequence[Word], index: int) -> int:
 
 
 def _mark_tag(tree: Tree, words: list[Word], word: Word) -> None:
-    """Make the words of a question tag punctuation."""
+    """Turn the words of a question tag into punctuation."""
     tag = range(word.index, word.index + tag_at(tree.words, word.index))
     for other in tree.words if tag else ():
         if other.index in tag:
@@ -56,7 +56,7 @@ def _mark_tag(tree: Tree, words: list[Word], word: Word) -> None:
 
 
 def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
-    """Make the noun after an auxiliary and its subject a verb: *end*, in *did the war end*."""
+    """Turn the noun after an auxiliary and its subject into a verb: *end*, in *did the war end*."""
     before = tree.before(auxiliary)
     if auxiliary.low not in _INVERTING or (
         before and before in tree.children(auxiliary, "nsubj") and before.pos in ("PRON", "NOUN", "PROPN")
@@ -72,7 +72,7 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
     if subject.dep != "compound" or subject.head != verb.index or verb.pos not in ("NOUN", "VERB"):
         return
     if auxiliary.low == "do" and (place > 2 or subject.tag != "NNS"):
-        return  # do your math homework
+        return  # as in "do your math homework"
     if tree.children(verb, *SUBJECTS) or (verb.dep != "ROOT" and tree.head(verb) != auxiliary):
         return
     words[verb.index] = replace(verb, pos="VERB", tag="VB")
@@ -80,7 +80,7 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
 
 
 def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
-    """Make a participle after its noun the verb: *eaten*, in *was the cake eaten by the dog*."""
+    """Turn a participle after its noun into the verb: *eaten*, in *was the cake eaten by the dog*."""
     nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
     for participle in tree.children_of(nouns, "acl"):
         if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
@@ -88,7 +88,7 @@ def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
 
 
 def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
-    """Make *'s* a verb where the sentence has none: *my name's Ada*, but not *my sister's car*."""
+    """Turn *'s* into a verb if the sentence has no verb: *my name's Ada*, but not *my sister's car*."""
     owner = tree.head(short)
     named = tree.head(owner)
     if short.dep != "case" or owner.dep != "poss" or named.dep != "ROOT" or named.pos != "PROPN" or owner.pos != "NOUN":

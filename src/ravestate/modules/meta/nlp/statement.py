@@ -53,17 +53,19 @@ class Statement:
     verb: str
     """The lemma of the last verb of the predicate: ``live``, also for *used to live* and *want to live*."""
     phrases: tuple[Phrase, ...] = ()
-    """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*; and what somebody is
-    called, without a preposition: *Rex*, in *we named our dog Rex*."""
+    """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*. A name that
+    somebody is given is also here, without a preposition: *Rex*, in *we named our dog Rex*."""
     when: str = ""
     """The time that the clause names: ``two years ago``, ``since 2010``, ``next month``."""
     negated: bool = False
     """The statement is denied: *I don't live here*, *I have no sister*, *I no longer smoke*."""
     past: bool = False
-    """It was true, and is not true any more: *I lived in Berlin*, *I used to smoke*. A past event still holds:
-    *I moved to Toronto two years ago*, *I was born in Rome*, *I painted a dragon*; so does *I have lived here since 2010*."""
+    """The statement was true, and is not true any more: *I lived in Berlin*, *I used to smoke*.
+
+    The flag is false for past events, such as *I moved to Toronto two years ago* or *I was born in Rome*. It is also
+    false for *I have lived here since 2010*."""
     hearsay: bool = False
-    """Somebody else says or thinks so: *my mother says I am lazy*, *people say...*."""
+    """Somebody else says or thinks the statement: *my mother says I am lazy*, *people say...*."""
     conditional: bool = False
     """The statement is imagined: *if I lived in Rome*, *I would be happy*, *I wish I were rich*, *maybe he is ill*."""
     plan: bool = False

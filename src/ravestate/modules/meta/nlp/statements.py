@@ -25,7 +25,7 @@ _LASTING = _HABITS | word_set(
     "be live work study have own like love hate enjoy prefer want need know believe speak belong smoke keep collect date share "
     "feel hope think"
 )
-"""Verbs of states and habits. In the past tense, their statements no longer hold; those of other verbs still do."""
+"""Verbs of states and habits. In the past tense, their statements no longer hold; with other verbs, they still do."""
 _KNOWN_AS_TRUE = word_set(
     "know remember see notice forget realise realize find learn discover understand mean show prove"
 )
@@ -68,7 +68,7 @@ def statements_of(
 
 
 class _Assertion:
-    """The flags that all triples of one clause share: whether it is true, past, imagined, wanted, or reported."""
+    """The flags that all triples of one clause share: whether the clause is past, imagined, wanted, reported, asked."""
 
     def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
         self._tree = clause.tree
@@ -79,7 +79,7 @@ class _Assertion:
         dep = clause.verb.dep
         shares = dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not clause.own_subjects)
         self._sharing = self._above if shares else None
-        """The clause above, if this clause shares its flags."""
+        """The clause above, if this clause shares the flags of that clause; else None."""
 
     def statement(self, triple: Triple, subject: Phrase, object: Phrase) -> Statement:
         """Return the statement of a triple of this clause."""
@@ -110,13 +110,13 @@ class _Assertion:
         words = self._tree.subtree(self._clause.verb)
         commas = [place for place, word in enumerate(words) if word.low == ","]
         rest = words[commas[-1] + 1 :] if commas else []
-        elsewhere = bool(rest) and rest[0].low in ("and", "what", "how")  # I live in Rome, and you?
+        elsewhere = bool(rest) and rest[0].low in ("and", "what", "how")  # as in "I live in Rome, and you?"
         after = takewhile(lambda word: word.pos == "PUNCT", self._tree.words[words[-1].index + 1 :])
         return ("?" in words[-1].low and not elsewhere) or any(map(is_tag, (*words, *after)))
 
     @cached_property
     def _hearsay(self) -> bool:
-        """Whether somebody else says so."""
+        """Whether the statement is what somebody else says."""
         if self._above is None or self._low & _REPORTS:
             return bool(self._low & _REPORTS)
         said = self._above._clause
@@ -158,7 +158,7 @@ class _Assertion:
         if len(chain) > 1 and chain[1].tag == "VB" and lemma_of(chain[0]) in _WANTED:
             return True
         if lemma_of(chain[-1]) in _PONDERED and any(word.dep == "pcomp" for word in self._clause.own):
-            return True  # I'm thinking of moving
+            return True  # as in "I'm thinking of moving"
         verbs = [chain[0], *self._tree.children(chain[0], "auxpass")]
         soon = set(self._when.lower().split()) & _SOON or self._clause.lemma in _IMMINENT
         if soon and self._tense == "present" and any(verb.tag == "VBG" for verb in verbs):
@@ -179,7 +179,7 @@ class _Assertion:
             return not (lemma in _HABITS and self._when)
         clauses = self._tree.children(self._clause.verb, "advcl")
         low = self._low | {word.low for word in self._tree.children_of(clauses, "mark")}
-        goes_on = low & {"since", "for", "always", "been", "all"}  # I have lived here since 2010
+        goes_on = low & {"since", "for", "always", "been", "all"}  # as in "I have lived here since 2010"
         return self._tense == "perfect" and lemma in ("live", "work", "study") and not goes_on
 
     # ---------------------------------------------------------------------------------------- reading

@@ -37,7 +37,7 @@ class Word:
 
     @property
     def end(self) -> int:
-        """The position after it, in characters of the text."""
+        """The position after the word, in characters of the text."""
         return self.start + len(self.text)
 
 

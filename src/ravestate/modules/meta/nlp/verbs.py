@@ -29,7 +29,7 @@ _SHORT = {
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:
-    """Return whether `word` heads a clause: a verb, or a predicate whose *be* is missing or is an auxiliary."""
+    """Return whether `word` heads a clause, as verbs do, and predicates whose *be* is missing or is an auxiliary."""
     if word.dep not in _HEADS:
         return False
     if word.pos not in VERBAL:
@@ -59,8 +59,8 @@ def chain_of(tree: Tree, verb: Word) -> list[Word]:
     if mistaken := [
         word for word in tree.children(verb, "aux") if lemma_of(word) in _GERUND_TAKERS and verb.tag == "VBG"
     ]:
-        return mistaken + chain  # I enjoy cooking
-    if lemma_of(verb) == "be":  # it's raining
+        return mistaken + chain  # as in "I enjoy cooking"
+    if lemma_of(verb) == "be":  # as in "it's raining"
         return next((chain_of(tree, child) for child in tree.children(verb, "xcomp") if child.tag == "VBG"), chain)
     while (following := _following(tree, chain[-1])) is not None:
         chain.append(following)
@@ -80,7 +80,7 @@ def _following(tree: Tree, verb: Word) -> Word | None:
             return child
     for child in tree.children(verb, "dobj", "pobj"):
         listed = child.tag == "NN" and not all(word.low.endswith("ing") for word in tree.children(child, "conj"))
-        if listed:  # I like swimming and tennis
+        if listed:  # as in "I like swimming and tennis"
             continue
         if lemma_of(verb) in _GERUND_TAKERS and child.low.endswith("ing") and child.index == verb.index + 1:
             return child if child.tag in ("NN", "VBG") else None

@@ -30,8 +30,8 @@ LIVELY = 5.0
 class BoltStore:
     """A database on a server, accessed through Neo4j's official driver.
 
-    The store has its own thread, and yet uses the asynchronous driver, because a wait for that driver can be cancelled.
-    So a server that stalls costs `timeout` seconds and no thread.
+    The store has its own thread. It still uses the asynchronous driver, because a wait for that driver can be
+    cancelled. So a server that stalls delays the thread for at most `timeout` seconds.
     """
 
     def __init__(self, url: str, user: str, password: str, database: str | None, timeout: float) -> None:

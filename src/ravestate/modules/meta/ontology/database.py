@@ -1,4 +1,7 @@
-"""Opening and copying a ladybug database. A damaged file can crash a process, so a separate one opens it first."""
+"""Opening and copying a ladybug database.
+
+A damaged file can crash the process that opens it, so a separate process opens the file first.
+"""
 
 from __future__ import annotations
 
@@ -46,9 +49,8 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
     )
     connection = ladybug.Connection(database, num_threads=1)
     connection.execute("CALL force_checkpoint_on_close=false")
-    if size > EMPTY and not _rows(
-        connection, "CALL show_tables() RETURN name"
-    ):  # ladybug reads pages of zeros as an empty catalog
+    # Ladybug reads pages of zeros as an empty catalog, so a damaged file may seem to have no tables.
+    if size > EMPTY and not _rows(connection, "CALL show_tables() RETURN name"):
         connection.close()
         database.close()
         raise RuntimeError("it has no tables")

@@ -37,7 +37,7 @@ RESERVE = 16 * 2**20
 """The bytes on the disk that must stay free after a write: ladybug cannot recover from a failed write."""
 
 LOG_LIMIT = 4 * 2**20
-"""The size of the write-ahead log, in bytes, at which the store moves its content into the database file."""
+"""The size of the write-ahead log, in bytes, at which the store moves the log's content into the database file."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -104,7 +104,7 @@ class EmbeddedStore:
         if self._within:
             yield
             return
-        if self._stuck:  # if it is not stuck, each write checks the space
+        if self._stuck:  # a store that is not stuck checks the space at each write
             self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
         self._within, self._purge_due = True, False
@@ -122,7 +122,7 @@ class EmbeddedStore:
             self.purge()
 
     def _acknowledge(self) -> None:
-        """Note that all writes so far are on disk; shorten the log if it is long."""
+        """Note that all writes so far are on disk. If the log is long, shorten it."""
         self._shorten_log()
         self._log_good = self._files.log_size()
 
@@ -210,7 +210,7 @@ class EmbeddedStore:
         return ""
 
     def _set_orphans_aside(self, orphans: list[Path]) -> None:
-        """Rename logs that belong to a database which was deleted without them."""
+        """Rename logs of an earlier database that was deleted without its logs."""
         if not orphans:
             return
         try:
@@ -275,7 +275,7 @@ class EmbeddedStore:
         self._shorten_log(limit=0)
 
     def close(self) -> None:
-        """Move the log's content into the file, and close it. If the move fails, the log waits for the next opening."""
+        """Move the log's content into the file, and close the file. If this fails, the next opening reads the log."""
         if self._stuck and not self._can_write():
             log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
             return
@@ -326,7 +326,8 @@ class EmbeddedStore:
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
             os.truncate(self._files.log, self._log_good)  # an incomplete record would make the log look damaged
-        for held in (self._connection, self._database):  # garbage collection of these would end the process
+        # Keep these objects for ever: their garbage collection would end the process.
+        for held in (self._connection, self._database):
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 
     def _can_write(self) -> bool:

@@ -31,7 +31,7 @@ def is_foreign_log(said: str) -> bool:
 
 
 def is_about_log(said: str) -> bool:
-    """Return whether a damaged log may be the cause of a message of ladybug that the file cannot be opened."""
+    """Return whether a damaged log may be the reason why ladybug, with this message, cannot open the file."""
     return _NO_DAMAGE.search(said) is None
 
 
@@ -43,7 +43,7 @@ def is_damage(error: BaseException) -> bool:
 def reason(said: str) -> str:
     """Return the reason for a failed write, from ladybug's message."""
     found = said.rpartition("Error: ")[2].strip().rstrip(".")
-    # After a partial write, ladybug reports a stale reason; the real one is a full disk.
+    # After a partial write, ladybug reports an outdated reason. The real reason is a full disk.
     return found if found not in ("", "Success", "No such file or directory") else "the disk is full"
 
 

@@ -44,7 +44,7 @@ class MemoryFiles:
         return [file for file in self.present() if (match := self._match(file)) and match["kept"]]
 
     def logs(self) -> list[Path]:
-        """Return the files with data besides the database: logs that are not set aside, and an unfinished rewrite."""
+        """Return the files besides the database that have data, except logs that were set aside."""
         others = {self.path, self.probe, self._sum, *self.kept()}
         return [file for file in self.present() if file not in others and file.stat().st_size]
 
@@ -60,7 +60,7 @@ class MemoryFiles:
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create missing files for the user alone, because everybody can read the files that ladybug creates."""
+        """Create missing files that only the user can read. If ladybug created the files, everybody could read them."""
         for suffix in suffixes:
             with contextlib.suppress(OSError):  # ladybug will report the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))
@@ -82,8 +82,10 @@ class MemoryFiles:
         return moved
 
     def in_use(self) -> bool:
-        """Return whether another process has the database open. On Windows, return False, because removing a file in
-        use fails there."""
+        """Return whether another process has the database open.
+
+        On Windows, return False: the system itself refuses to remove a file in use.
+        """
         try:
             import fcntl
 
@@ -122,7 +124,7 @@ class MemoryFiles:
             self._sum.write_text(self._checksum(), encoding="ascii")
 
     def is_sealed(self) -> bool:
-        """Return whether the database is as `seal` left it, and there is no log to read."""
+        """Return whether the database has not changed since `seal`, and has no log to read."""
         try:
             return not self.log_size() and self._sum.read_text(encoding="ascii") == self._checksum()
         except (OSError, ValueError):

@@ -15,7 +15,7 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of people and robots. Forgetting a node keeps related people and robots that have more than a name."""
+"""The type of people and robots. Forgetting a node keeps those related people and robots that have more than a name."""
 
 
 class Graph:
@@ -37,7 +37,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ nodes
 
     def save(self, node: Node, /, *, of: str | None = None) -> Node:
-        """Set a node's properties in memory, and remove those that are None; memory keeps its other properties.
+        """Set a node's properties in memory, and remove properties that are None. Its other properties in memory stay.
 
         Args:
             node: The node to write.
@@ -101,7 +101,7 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        Keep also a person or robot of whom memory has more than a name.
+        A person or robot of whom memory has more than a name also stays.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
@@ -113,18 +113,18 @@ class Graph:
                 self.forget(other)
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> list[Node]:
-        """Return the targets of a relation from `node`, oldest first; with `back`, the sources of a relation to it."""
+        """Return the targets of a relation from `node`; with `back`, the sources of one to `node`. Oldest first."""
         self._types.check_end(node.type, relation, back=back)
         pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
         return self._nodes(f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id})
 
     def relations(self, node: Node, /) -> list[Relation]:
-        """Return all relations of a node: those from it, then those to it."""
+        """Return all relations of a node: first those from the node, then those to the node."""
         found = [Relation(node, name, other, values) for name, values, other in self._ends(node, back=False)]
         found += [
             Relation(other, name, node, values)
             for name, values, other in self._ends(node, back=True)
-            if other.id != node.id  # a relation to itself is already among those from it
+            if other.id != node.id  # a relation from the node to itself is already in the list
         ]
         return found
 
@@ -155,7 +155,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ merging and forgetting
 
     def merge(self, keep: Node, duplicate: Node, /) -> Node:
-        """Merge two nodes: `keep` gets the duplicate's relations, and the properties that it lacks; return `keep`.
+        """Merge two nodes: give `keep` the duplicate's relations and any missing properties. Return `keep`.
 
         Raises:
             RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype.
@@ -180,13 +180,13 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Copy a relation to other nodes. If they are so related already, that relation keeps its own properties."""
+        """Copy a relation to another pair of nodes. If the pair has such a relation, keep its own properties."""
         ends = self._ends(source, back=False)
         present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))
 
     def only_about(self, node: Node, /) -> list[Node]:
-        """Return the nodes that `forget` would remove, `node` first; an empty list if memory does not have it."""
+        """Return the nodes that `forget` would remove, `node` first; an empty list if memory does not have `node`."""
         start = self.get(node.id)
         if start is None:
             return []
@@ -203,7 +203,7 @@ class Graph:
         return list(going.values())
 
     def forget(self, node: Node, /) -> list[Node]:
-        """Remove a node, its relations, and the nodes that only this node needs. The file keeps no byte of these.
+        """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
 
         A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
         related to them. A person or robot of whom memory has more than a name also stays.
@@ -293,7 +293,7 @@ class Graph:
         """Return the node that a raw node stands for, with its declared properties; None if its type is undeclared."""
         id = raw.values.get("id")
         if raw.label not in self._types or not isinstance(id, str) or not id.startswith(f"{raw.label}:"):
-            return None  # on a damaged page
+            return None  # the node is on a damaged page
         return Node(raw.label, self._types.loaded(raw.label, raw.values), id)
 
     def _must_know(self, node: Node) -> Node:

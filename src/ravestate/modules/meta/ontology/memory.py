@@ -95,7 +95,7 @@ class Memory:
         return self.submit("create", lambda graph: graph.save(Node(type, properties)))
 
     def ensure(self, type: str, /, **properties: Value) -> Reply[Node]:
-        """Return the oldest node that `find` would return, or create a new one."""
+        """Return the oldest node that `find` would return. If `find` would return no node, create one."""
         return self.submit("ensure", lambda graph: graph.ensure(type, properties))
 
     save = _operation(Graph.save)
@@ -135,7 +135,7 @@ class Memory:
     tidy = _operation(Graph.tidy)
 
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
-        """Run several operations as one: all take effect, or none. In a file, no other operation runs between them.
+        """Run several operations as one: all take effect, or none. In a file, no other operation comes in between.
 
         Args:
             operations: A function of the graph, called in memory's thread. The graph has the operations of this class.

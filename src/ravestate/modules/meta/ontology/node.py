@@ -55,7 +55,7 @@ class Node:
             object.__setattr__(self, "id", _next_id(self.type))
 
     def with_properties(self, **properties: Value) -> Node:
-        """Return a copy of the node with new values for some properties; saving it removes those that are None."""
+        """Return a copy of the node with new values for some properties. Saving the copy removes a None property."""
         return Node(self.type, {**self.properties, **properties}, self.id)
 
     def get(self, name: str, default: Any = None) -> Any:

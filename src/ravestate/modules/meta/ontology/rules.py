@@ -13,7 +13,7 @@ from .opening import open_memory
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory at the place that the settings name. The slot gets the memory at once; operations on it wait."""
+    """Open memory at the place that the settings name. The slot gets it at once; operations wait until it is open."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 

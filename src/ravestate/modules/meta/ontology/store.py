@@ -26,9 +26,9 @@ class Raw:
 class Store(Protocol):
     """A graph database; only one thread uses it.
 
-    Statements are Cypher that Neo4j 5, ladybug and ArcadeDB all read. Their functions for labels and types differ, so
-    statements return whole nodes and relations. Values are always parameters. Names of types, properties and relations
-    need no quotes, because they have only letters, digits and ``_``.
+    Statements are Cypher that Neo4j 5, ladybug and ArcadeDB all read. These databases have different functions for
+    labels and types, so statements return whole nodes and relations. Values are always parameters. Names of types,
+    properties and relations need no quotes, because they have only letters, digits and ``_``.
     """
 
     def prepare(self, types: Types) -> None:

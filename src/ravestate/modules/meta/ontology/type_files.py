@@ -36,7 +36,7 @@ OF_A_RELATION = ("to", "has")
 
 
 def read_types(paths: Iterable[Path | Traversable]) -> Types:
-    """Return the types that files declare together, read in the given order.
+    """Read files in the given order, and return the types that they declare together.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another; the message names file and line.
@@ -49,7 +49,7 @@ def read_types(paths: Iterable[Path | Traversable]) -> Types:
 
 
 def types_in(paths: Iterable[Path]) -> Types:
-    """Return the built-in types together with those of files. A file is read once, and again after a change.
+    """Return the built-in types together with the types of files. A file is read once, and again after a change.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another.
@@ -84,7 +84,7 @@ class _Reader:
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """(whether it belongs to a relation, its name in lower case) of a property → spelling, kind and ``file:line``."""
+        """Property (whether it belongs to a relation, name in lower case) → spelling, kind and ``file:line``."""
 
     def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:

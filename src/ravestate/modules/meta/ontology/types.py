@@ -29,7 +29,7 @@ _EXAMPLES: dict[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type of nodes: its supertype, and the kinds of its own properties; `Types` has the inherited properties."""
+    """A type of nodes: its supertype, and the kinds of its own properties. `Types` also knows inherited properties."""
 
     name: str
     parent: str | None = None
@@ -72,7 +72,7 @@ class Types:
         return self._relations
 
     def properties(self, type: str) -> Mapping[str, Kind]:
-        """Return name → kind for all properties of a type, inherited properties first."""
+        """Return all properties of a type as a map from names to kinds, inherited properties first."""
         self._check(type)
         return self._properties[type]
 

@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
-"""Key of a store that is closing → the end of the closing; the next opening of the store waits for it."""
+"""Key of a store that is closing → a future of the end of the closing. The next opening of the store waits for it."""
 _lock = threading.Lock()
 
 
@@ -96,7 +96,7 @@ class StoreWorker:
 
 
 def _settle(future: Future[T], work: Callable[[], T]) -> None:
-    """Run `work`, and set its result or its exception as that of the future."""
+    """Run `work`, and give its result or its exception to the future."""
     try:
         future.set_result(work())
     except BaseException as error:

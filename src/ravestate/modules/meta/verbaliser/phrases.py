@@ -111,7 +111,10 @@ class PhraseBook:
         return tuple(sorted({tag for languages in self._phrases.values() for tag in languages}))
 
     def templates(self, intent: str, language: str | None = None) -> tuple[Template, ...]:
-        """Return the phrases for `intent` in `language` (the book's by default), or in the first fallback with phrases."""
+        """Return the phrases for `intent` in `language`, by default the language of the book.
+
+        If there are none, return the phrases in the first fallback language that has some.
+        """
         languages = self._phrases.get(intent)
         if languages is None:
             known = ", ".join(self._phrases) or "none"

@@ -19,7 +19,7 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Say a phrase for the intent. If there are several, do not repeat the phrase of last time."""
+    """Say a phrase for the intent. If there are several phrases, do not repeat the last one."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:

@@ -52,4 +52,4 @@ felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="lat
 """The agent's last feeling; None before the first."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances of the user for which their last words of sorrow still count."""
+"""The number of further utterances of the user during which their last words of sorrow still count."""

@@ -39,15 +39,17 @@ def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, reads=(interloc.agent, sorrow), writes=sorrow, emits=SIGNALS.values())
 def be_moved(ctx: rs.RuleContext) -> None:
-    """Raise the feeling that fits the user's words, or a spontaneous one. After a sorrow, raise no cheerful feeling.
+    """Raise the feeling that fits the user's words, or a spontaneous feeling.
 
-    The encoder takes a few milliseconds, so this runs in a thread. Without it, only words of an example count."""
+    For some utterances after words of sorrow, raise no cheerful feeling. The encoder takes a few milliseconds, so this
+    rule runs in a thread. Without the encoder, only sentences that equal an example raise a feeling.
+    """
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)
     names = settings.names or (ctx[interloc.agent],)
     feeling: Feeling | None = None
     left = max(0, ctx[sorrow] - 1)
-    with contextlib.suppress(ModelMissing):  # `learn` reports it
+    with contextlib.suppress(ModelMissing):  # `learn` reports the missing model
         feeling = recognise(text, names)
         left = SORROW_LASTS if sorrowful(text, names) else left
     if feeling is None:
@@ -78,7 +80,7 @@ for each in SIGNALS:
 
 
 @module.rule(
-    when=felt.changed.max_age(None).detached(),  # does not compete with answers to the same words (L10, L19)
+    when=felt.changed.max_age(None).detached(),  # detached, so that the emoji does not exclude an answer (L10, L19)
     writes=rawio.output,
     until=rawio.input.changed | felt.changed,  # the user speaks, or a later feeling shows
     detached=True,

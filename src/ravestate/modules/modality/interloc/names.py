@@ -12,7 +12,7 @@ agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""Key that the platform chooses for a present user → the user's name, or None while it is unknown."""
+"""The present users: a key that the platform chooses for the user → the user's name, or None while it is unknown."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """Topic, such as ``home`` or ``sister`` → known facts about the user. A module that learns facts writes them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .line import IN_RATE, OUT_RATE, Line
+from .listener import Listener, carry
 from .names import heard, hearing, hush, input, module, output, picture, piece, reaction, sound, speaking, typing
 
 if TYPE_CHECKING:
@@ -14,6 +15,8 @@ __all__ = [
     "IN_RATE",
     "OUT_RATE",
     "Line",
+    "Listener",
+    "carry",
     "heard",
     "hearing",
     "hush",

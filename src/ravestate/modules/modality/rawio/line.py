@@ -19,6 +19,11 @@ class Line(Protocol):
     synthesises speech uses this line.
     """
 
+    @property
+    def cancels_echo(self) -> bool:
+        """Whether the user's sound comes without the loudspeaker's echo, as from a browser."""
+        ...
+
     def blocks(self) -> AsyncIterator[bytes]:
         """Yield the user's sound at `IN_RATE`, in blocks of about 20 ms, until the line is closed."""
         ...

@@ -17,8 +17,8 @@ output = module.slot("output", "", type=str, always=True)
 """The agent's last utterance. Each write is one whole utterance."""
 
 piece = module.signal("piece", payload=str)
-"""A piece of an unfinished utterance of the agent, for platforms that show it as it grows. Once the utterance is
-complete, the rule that produces it writes it to `output`."""
+"""A piece of an unfinished utterance of the agent, for platforms that show the utterance as it grows. In the end, the
+rule that produces the pieces writes the whole utterance to `output`."""
 
 speaking = module.flag("speaking")
 """True while the agent is producing an utterance piece by piece."""
@@ -33,7 +33,7 @@ picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The picture that the user showed last: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
 
 sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
-"""The line to the user's microphone and loudspeaker, from a platform that carries sound; None if there is none."""
+"""The line to the user's microphone and loudspeaker, from a platform that carries sound; None without one."""
 
 hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
 """The words so far of an utterance that the user is still speaking, for platforms that show captions."""
@@ -42,5 +42,5 @@ hush: rs.Signal[None] = module.signal("hush", input=True, keep="latest")
 """The user asks the agent to stop speaking, for example with a button."""
 
 heard: rs.Slot[str] = module.slot("heard", "", type=str, always=True, input=True)
-"""The part of the agent's last utterance that the user heard. A platform that speaks writes it for each utterance, when its
-sound ends or is cut."""
+"""The part of the agent's last utterance that the user heard. A platform that speaks writes this part for each
+utterance, when the sound ends or is cut."""

@@ -7,7 +7,7 @@ from .chat import Chat
 from .commands import COMMANDS, Command
 from .messages import Carrier, DeliveryError, Incoming, Outgoing, Person
 from .room import Room
-from .rules import Listener, carry, connect
+from .rules import connect
 from .secrecy import secret
 from .sender import back_off
 from .settings import ChatSettings
@@ -21,13 +21,11 @@ __all__ = [
     "Command",
     "DeliveryError",
     "Incoming",
-    "Listener",
     "Outgoing",
     "Person",
     "Room",
     "Store",
     "back_off",
-    "carry",
     "command_in",
     "connect",
     "for_another",

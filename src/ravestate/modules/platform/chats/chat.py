@@ -41,6 +41,9 @@ SLOW = 0.5
 SHOWN = 4.0
 """The seconds for which a chat shows that the agent is writing. Messengers show it for five."""
 
+GROWTH = 1.0
+"""The minimum number of seconds between two views of a growing answer. Messengers allow about one a second."""
+
 FAREWELL = 10.0
 """The seconds that the agent has for a greeting and for a farewell."""
 
@@ -69,6 +72,7 @@ class Chat:
         self._said: list[Answer] = []  # answers that are not in the store yet
         self._repeated: Counter[str] = Counter()  # answers that the store has from before a crash
         self._partial = ""
+        self._grown = asyncio.Event()
         self._mute = False
         self._leave = False
         self._gone = False
@@ -324,8 +328,9 @@ class Chat:
             self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._commit)
 
     def grow(self, piece: str) -> None:
-        """Take a piece of an utterance that is still growing. Messengers get it once it is whole."""
+        """Take a piece of an utterance that is still growing. It becomes a message once it is whole."""
         self._partial += without_controls(piece)
+        self._grown.set()
 
     def fall_silent(self) -> None:
         """End a growing utterance that no rule has written as a whole."""
@@ -356,9 +361,16 @@ class Chat:
     async def _show_work(self) -> None:
         await asyncio.sleep(SLOW)
         while True:
-            with contextlib.suppress(DeliveryError):  # a failure to show it does no harm
-                await self._room.carrier.show_work(self.id)
-            await asyncio.sleep(SHOWN)
+            self._grown.clear()
+            if not self._mute and self._room.sender.pace.spare():  # messages take priority
+                try:
+                    await self._room.carrier.show_work(self.id, printable(self._partial).strip())
+                except DeliveryError as error:  # a failure to show it does no harm
+                    await asyncio.sleep(error.wait)
+            await asyncio.sleep(GROWTH)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(SHOWN - GROWTH):
+                    await self._grown.wait()
 
     def _commit(self, done: Sequence[Entry] = ()) -> None:
         """Keep the answers in the store, and that some messages are done."""

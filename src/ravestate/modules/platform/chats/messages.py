@@ -130,8 +130,16 @@ class Carrier(Protocol):
         """Return the bytes of a picture or a voice note. Raise a `DeliveryError` if that fails."""
         ...
 
-    async def show_work(self, chat: str) -> None:
-        """Show in the chat for some seconds that the agent is writing. Raise a `DeliveryError` if that fails."""
+    async def show_work(self, chat: str, words: str) -> None:
+        """Show in the chat for some seconds that the agent is writing.
+
+        Args:
+            chat: The id of the chat.
+            words: The answer so far, or an empty text. A carrier may show it, but only in a way that leaves no message.
+
+        Raises:
+            DeliveryError: It was not shown.
+        """
         ...
 
     def can_react(self, emoji: str) -> bool:

@@ -36,6 +36,14 @@ class Pace:
         if self._next > now:
             await asyncio.sleep(self._next - now)
 
+    def spare(self) -> bool:
+        """Take a turn if there is one without a wait; return whether there was."""
+        now = asyncio.get_running_loop().time()
+        if self._next + self._gap > now:
+            return False
+        self._next = max(self._next + self._gap, now - 1.0)
+        return True
+
 
 class Sender:
     """Delivers the messages of a store through a carrier. Each chat is a queue: a failure delays only its own chat.
@@ -63,7 +71,8 @@ class Sender:
         self._log = log
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._attempts = asyncio.Semaphore(IN_FLIGHT)
-        self._pace = Pace(carrier.rate)
+        self.pace = Pace(carrier.rate)
+        """The pace of all requests that a messenger counts."""
 
     def wake(self, chat: str) -> None:
         """Deliver the messages to a chat that the store has."""
@@ -113,7 +122,7 @@ class Sender:
     async def _attempt(self, item: Item) -> DeliveryError | None:
         """Try to deliver an item once; return the error of a failure."""
         async with self._attempts:
-            await self._pace.turn()
+            await self.pace.turn()
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:
                 self._store.sent(begun, await self._carrier.send(begun.message, item.begun))

@@ -44,7 +44,7 @@ class Screen(Protocol):
 
 
 class Console:
-    """An async iterator of the lines that the user types; meanwhile, `write` and `stream` print texts.
+    """An async iterator of the lines that the user types; meanwhile, `utter` and `grow` print texts.
 
     If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
     If not, the console reads and writes plain lines. Control characters, and bytes that are not text, are removed in
@@ -56,7 +56,7 @@ class Console:
         ```python
         async with Console() as console:
             async for line in console:
-                console.write(f"You said {line!r}.")
+                console.utter(f"You said {line!r}.")
         ```
     """
 
@@ -73,7 +73,7 @@ class Console:
         """Make a console; it reads and writes nothing yet.
 
         Args:
-            screen: The input and output; by default, a terminal or pipes, whichever the streams are.
+            screen: The input and output. The default depends on the streams: a terminal or pipes.
             prompt: The text before the line that the user types.
             history: The file that keeps typed lines; with None, they are kept for this session only.
             on_key: A function to call when the user presses a key; only a terminal notices keys.
@@ -100,14 +100,14 @@ class Console:
         return self
 
     async def __aexit__(self, *error: object) -> None:
-        self.end()
+        self.fall_silent()
         await self._screen.__aexit__(*error)
 
     def __aiter__(self) -> AsyncIterator[str]:
         return self
 
     async def __anext__(self) -> str:
-        """Return the next line, without its line end. After a cancellation, the next call gets the line."""
+        """Return the next line, without its line end. If this call is cancelled, the next call returns the line."""
         if self.ending is None:
             try:
                 return printable(await self._screen.read())
@@ -119,30 +119,30 @@ class Console:
                 self.ending = "closed"
         raise StopAsyncIteration
 
-    def write(self, text: str) -> None:
+    def utter(self, text: str) -> None:
         """Print `text` and a line end.
 
-        If `text` begins with the streamed pieces, only the rest is printed, after them. If it does not, the streamed
-        line ends first, and later pieces continue on a new line.
+        If `text` begins with the streamed pieces, only the rest is printed, after the pieces. If `text` begins in
+        another way, the streamed line ends first, and later pieces continue on a new line.
         """
         text = printable(text)
         if self._streamed and text.startswith(self._streamed):
-            self.stream(text[len(self._streamed) :])
-            self.end()
+            self.grow(text[len(self._streamed) :])
+            self.fall_silent()
         else:
             self._end_line()
             self._safely(lambda: self._screen.show(text))
 
-    def stream(self, piece: str) -> None:
-        """Print `piece` after the earlier pieces of its text: at once on a terminal, and elsewhere with its whole line."""
+    def grow(self, piece: str) -> None:
+        """Print `piece` after the earlier pieces of its text. Anywhere but on a terminal, print whole lines only."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece
             self._line_is_open = True
             self._safely(lambda: self._screen.stream(piece))
 
-    def end(self) -> None:
-        """End the text whose pieces were streamed; if there is none, do nothing."""
+    def fall_silent(self) -> None:
+        """End the text whose pieces were printed; if there is none, do nothing."""
         self._streamed = ""
         self._end_line()
 

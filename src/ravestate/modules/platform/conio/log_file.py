@@ -24,8 +24,9 @@ def log_file() -> Path:
 def log_to_file(file: Path) -> Generator[None]:
     """Write the log to a file within the ``with`` block, if the chat and the log would share a terminal.
 
-    After the block, the log goes where it went before. If the file got warnings or errors, a line on standard error names
-    the file. If either stream is redirected, or the file cannot be written, the log stays as it is.
+    After the block, the log goes where it went before. If the file got warnings or errors, a line on standard error
+    names the file. If standard output or standard error is redirected, or the file cannot be written, the log stays as
+    it is.
     """
     if not all(stream is not None and stream.isatty() for stream in (sys.stdout, sys.stderr)):
         yield

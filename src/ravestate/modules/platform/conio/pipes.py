@@ -49,7 +49,7 @@ class Pipes:
             raise EOFError
         if self._loop is None:
             self._loop = asyncio.get_running_loop()
-            # The thread is a daemon, because nothing can wake a thread that waits for input when the program ends.
+            # When the program ends, nothing can wake a thread that waits for input. So the thread is a daemon.
             threading.Thread(target=self._read_all, args=(self._stdin,), name="conio", daemon=True).start()
         if self._line is None:
             self._line = self._loop.create_future()
@@ -114,7 +114,7 @@ class Pipes:
                 except (OSError, ValueError):
                     block = b""
                 ended = not block
-                if skipping:  # the tail of a line that was too long
+                if skipping:  # leave out the rest of a line that was too long
                     _, line_end, block = block.partition(b"\n")
                     skipping = not line_end
                 rest += block

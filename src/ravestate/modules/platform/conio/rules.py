@@ -1,4 +1,4 @@
-"""The rules of the console: they read lines, print utterances, and print the pieces of growing utterances."""
+"""The rules of the console: they read lines, and print the agent's words."""
 
 from __future__ import annotations
 
@@ -27,14 +27,13 @@ USER = "conio"  # the key of the user at the console in ``interloc.users``
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Write each typed line to ``rawio.input``; end the agent after the last line."""
-    await asyncio.to_thread(prepare)
+    await asyncio.to_thread(prepare)  # in a thread, because this takes long while other threads load models
     history = history_file() if ctx.settings.history else None
 
     def tell() -> None:
         ctx.emit(rawio.typing)
 
     try:
-        # `prepare` runs in a thread, because it takes long while other threads load models.
         plain = Pipes(sys.stdin, sys.stdout) if ctx.settings.plain else None
         console = await asyncio.to_thread(
             Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell
@@ -47,14 +46,14 @@ async def listen(ctx: rs.RuleContext) -> None:
         await stack.enter_async_context(console)
         ctx[screen] = console
         if is_terminal(sys.stdin, sys.stdout):
-            console.write("Ctrl-D ends the conversation.")
+            console.utter("Ctrl-D ends the conversation.")
         ctx[interloc.users].add(USER, ctx.settings.name)
         try:
             async for line in console:
                 if line.strip():
                     ctx[rawio.input] = line
                 if not console.interactive:
-                    await ctx.quiet()  # all lines may arrive at once, and each needs its own answer
+                    await ctx.quiet()  # wait for the answer to this line: through a pipe, all lines may arrive at once
             if console.ending == "end of input":
                 await ctx.quiet()  # a user who ends the input still gets the last answer
             else:
@@ -66,22 +65,4 @@ async def listen(ctx: rs.RuleContext) -> None:
             ctx.stop(console.failure)
 
 
-@module.rule(when=rawio.output.changed.max_age(None).detached(), reads=screen)
-async def show(ctx: rs.RuleContext) -> None:
-    """Print each utterance of the agent."""
-    if console := ctx[screen]:
-        console.write(ctx.payload(rawio.output.changed))
-
-
-@module.rule(when=rawio.piece.max_age(None).detached(), reads=screen, background=True)
-async def show_piece(ctx: rs.RuleContext) -> None:
-    """Print each piece of an utterance that is still growing."""
-    if console := ctx[screen]:
-        console.stream(ctx.payload(rawio.piece))
-
-
-@module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=screen, background=True)
-async def end_line(ctx: rs.RuleContext) -> None:
-    """End the line of pieces, even if they have not become a whole utterance."""
-    if console := ctx[screen]:
-        console.end()
+rawio.carry(module, screen)

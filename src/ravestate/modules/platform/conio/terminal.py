@@ -90,7 +90,7 @@ class Terminal:
         try:
             return await self._session.prompt_async(handle_sigint=False, set_exception_handler=False)
         finally:
-            # Streamed text stays where it was last seen, above the line that was typed.
+            # The streamed text so far stays above the line that the user typed.
             self._left_open = bool(self._streamed)
             self._streamed = ""
 
@@ -105,7 +105,7 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """Print a piece of a line, as `Screen.stream` describes."""
-        if self._left_open:  # only the last piece shows whether the user's line interrupted the text
+        if self._left_open:  # keep the pieces: the last one will show whether the user's line interrupted the text
             self._late += piece
             return
         *lines, self._streamed = (self._streamed + piece).split("\n")
@@ -121,7 +121,7 @@ class Terminal:
         """End the line of pieces, as `Screen.end` describes."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # if the mark ends them, these pieces came after the interruption
+        if late and not late.endswith(_OPEN):  # pieces that end in the mark belong to an interrupted text: drop them
             line += late
         if line:
             self.show(line)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 import sys
 from collections.abc import Iterable
@@ -23,7 +24,7 @@ from nio import (  # pyright: ignore[reportMissingTypeStubs]
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import Incoming, Person, Room, back_off
 
-from .carrier import LOST, MatrixCarrier
+from .carrier import GONE, LOST, MatrixCarrier
 from .events import incoming
 
 if TYPE_CHECKING:
@@ -32,8 +33,10 @@ if TYPE_CHECKING:
     from .names import Settings
 
 POLL = 30_000  # the milliseconds for which the server holds a request for events, if there are none
+ANSWER = 20.0  # the seconds to wait for the answer to a request
 PAGE = 100  # the number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server knows a message that is repeated after a restart
+JOINS = 12  # the number of attempts to join a room, over six minutes
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -42,7 +45,7 @@ log = logging.getLogger("ravestate.matrixio")
 
 async def run(agent: Agent, settings: Settings) -> None:
     """Serve the account's rooms until cancelled."""
-    config = AsyncClientConfig(max_limit_exceeded=0, max_timeouts=0, request_timeout=20)
+    config = AsyncClientConfig(max_limit_exceeded=0, max_timeouts=0, request_timeout=ANSWER)
     client = AsyncClient(settings.homeserver.rstrip("/"), settings.user, device_id=DEVICE, config=config)
     try:
         await _log_in(client, settings)
@@ -91,16 +94,27 @@ class Inlet:
         self._room = room
         self._settings = settings
         self._warned: set[str] = set()
+        self._joining: dict[str, asyncio.Task[None]] = {}
 
     async def run(self) -> None:
         """Take events until cancelled."""
+        for room in json.loads(self._room.store.noted("invited") or "[]"):
+            self._accept(room)
+        try:
+            await self._sync()
+        finally:
+            for task in self._joining.values():
+                task.cancel()
+
+    async def _sync(self) -> None:
         attempt, first = 0, True
         while True:
             since = self._room.store.noted("since")
             try:
-                answer: Any = await self._client.sync(
-                    timeout=0 if first else POLL, sync_filter=FILTER, since=since, full_state=first
-                )
+                async with asyncio.timeout(POLL / 1000 + ANSWER):  # nio itself waits for ever for the first answer
+                    answer: Any = await self._client.sync(
+                        timeout=0 if first else POLL, sync_filter=FILTER, since=since, full_state=first
+                    )
                 if isinstance(answer, SyncResponse):
                     await self._take(answer, since)
                     attempt, first = 0, False
@@ -129,7 +143,7 @@ class Inlet:
         for id in rooms.leave:
             messages.append(Incoming(key=f"left {answer.next_batch} {id}", chat=id, id="", kind="left", person=nobody))
         for id, invitation in rooms.invite.items():
-            await self._join(id, invitation.invite_state)
+            self._invite(id, invitation.invite_state)
         self._room.receive(messages, ("since", answer.next_batch))
 
     async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
@@ -173,15 +187,38 @@ class Inlet:
                 self._warn(event.sender, "is not in matrixio.allow, and gets no answer")
         return messages
 
-    async def _join(self, room: str, state: Iterable[Any]) -> None:
+    def _invite(self, room: str, state: Iterable[Any]) -> None:
         me = self._client.user_id
         hosts = [e.sender for e in state if isinstance(e, InviteMemberEvent) and e.state_key == me]
-        if not self._settings.allows(room, *hosts):
+        if self._settings.allows(room, *hosts):
+            self._accept(room)
+        else:
             self._warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
-            return
-        answer: Any = await self._client.join(room)
-        if isinstance(answer, ErrorResponse):
-            log.warning("room %s cannot be joined: %s", room, answer)
+
+    def _accept(self, room: str) -> None:
+        """Join a room in a task. The server reports an invitation once, so it is kept until the agent has joined."""
+        if room not in self._joining:
+            self._joining[room] = asyncio.create_task(self._join(room))
+            self._room.store.note("invited", json.dumps(list(self._joining)))
+
+    async def _join(self, room: str) -> None:
+        for attempt in range(JOINS):
+            try:
+                answer: Any = await self._client.join(room)
+            except LOST as error:
+                why: object = repr(error)
+            else:
+                if not isinstance(answer, ErrorResponse):
+                    break
+                why = answer
+                if answer.status_code in GONE:
+                    attempt = JOINS - 1
+            if attempt == JOINS - 1:
+                log.warning("room %s cannot be joined: %s", room, why)
+                break
+            await asyncio.sleep(back_off(attempt))
+        del self._joining[room]
+        self._room.store.note("invited", json.dumps(list(self._joining)))
 
     def _warn(self, concerned: str, what: str) -> None:
         if concerned not in self._warned:

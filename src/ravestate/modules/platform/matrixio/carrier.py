@@ -19,6 +19,7 @@ FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
 LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
 """The failures after which a request may have reached the server."""
 
+FILE = 60.0  # the seconds that a file may take
 WRITING = 5000  # the milliseconds for which a room shows that the agent is writing
 
 
@@ -67,18 +68,20 @@ class MatrixCarrier:
 
     async def _upload(self, data: bytes, type: str) -> str:
         answer: Any
-        answer, _ = await self._client.upload(io.BytesIO(data), content_type=type, filesize=len(data))
+        async with asyncio.timeout(FILE):
+            answer, _ = await self._client.upload(io.BytesIO(data), content_type=type, filesize=len(data))
         return str(_checked(answer).content_uri)
 
     async def fetch(self, file: str) -> bytes:
         """Return the bytes of a file."""
         with _delivery():
             client: Any = self._client
-            answer = await client.download(file)
+            async with asyncio.timeout(FILE):
+                answer = await client.download(file)
         return bytes(_checked(answer).body)
 
-    async def show_work(self, chat: str) -> None:
-        """Show in the room that the agent is writing."""
+    async def show_work(self, chat: str, words: str) -> None:
+        """Show in the room that the agent is writing. Matrix has no way to show the words so far."""
         with _delivery():
             await self._client.room_typing(chat, True, timeout=WRITING)
 
@@ -86,7 +89,9 @@ class MatrixCarrier:
 def _checked(answer: Any) -> Any:
     """Return an answer, or raise the `DeliveryError` that it stands for."""
     if not isinstance(answer, ErrorResponse):
-        return answer
+        if (status := answer.transport_response.status) < 400:
+            return answer
+        raise DeliveryError(f"the server has failed (status {status})", unsure=True)  # nio takes it for a file
     code = str(answer.status_code)
     if code == "M_LIMIT_EXCEEDED":
         raise DeliveryError(str(answer), wait=(answer.retry_after_ms or 5000) / 1000)

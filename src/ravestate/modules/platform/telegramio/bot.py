@@ -27,6 +27,15 @@ if TYPE_CHECKING:
 POLL = 30
 """The seconds for which the server holds a request for updates, if there are none."""
 
+MOST = 100
+"""The maximum number of updates in an answer."""
+
+PATIENCE = 10
+"""The seconds by which an answer to a request for updates may be late."""
+
+ANSWER = 20.0
+"""The seconds to wait for the answer to any other request."""
+
 CONFLICTS = 4
 """The number of conflicts in a row after which the bot gives up: another program polls it all the time."""
 
@@ -44,12 +53,12 @@ log = logging.getLogger("ravestate.telegramio")
 async def run(agent: Agent, settings: Settings, token: str) -> None:
     """Run the bot until cancelled."""
     root = settings.base_url.rstrip("/").removesuffix("/bot")
-    requests = Requests(connection_pool_size=16, read_timeout=20.0, pool_timeout=20.0)
+    requests = Requests(connection_pool_size=16, read_timeout=ANSWER, pool_timeout=ANSWER)
     polls = Requests(connection_pool_size=1)
     bot = Bot(token, f"{root}/bot", f"{root}/file/bot", request=requests, get_updates_request=polls)
     try:
         me = await _log_in(bot, root)
-        carrier = TelegramCarrier(bot, settings.rate)
+        carrier = TelegramCarrier(bot, settings.rate, settings.drafts)
         async with Room(agent, "telegramio", carrier, str(me.id)) as room:
             inlet = Inlet(bot, me, room, carrier, settings)
             sys.stdout.write(f"@{me.username} is on Telegram (Ctrl-C ends it)\n")
@@ -99,6 +108,7 @@ class Inlet:
 
         async def announce() -> None:
             await self._bot.set_webhook(url, secret_token=secret, allowed_updates=KINDS)
+            self._carrier.current.set()
 
         await listen(url, address, SECRET, secret, lambda update: self.take([update]), announce)
 
@@ -112,10 +122,13 @@ class Inlet:
         while True:
             try:
                 ready = ready or await self._bot.delete_webhook()
-                request: dict[str, Any] = {"timeout": POLL, "allowed_updates": KINDS, "offset": offset or None}
-                updates: list[Any] = await post("getUpdates", request, read_timeout=POLL + 10)
+                hold = POLL if self._carrier.current.is_set() else 0
+                request: dict[str, Any] = {"timeout": hold, "allowed_updates": KINDS, "offset": offset or None}
+                updates: list[Any] = await post("getUpdates", request, read_timeout=hold + PATIENCE)
                 self.take(updates)
                 offset = max((int(each["update_id"]) + 1 for each in updates), default=offset)
+                if len(updates) < MOST:
+                    self._carrier.current.set()
                 attempt = conflicts = 0
             except InvalidToken:
                 raise PlatformError("telegramio: the token is no longer valid: @BotFather has the new one") from None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
+from collections import defaultdict, deque
 from collections.abc import Generator
 
 import httpx
@@ -21,6 +23,15 @@ UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)
 AHEAD = 40
 """The number of message ids among which a message is looked for, if the answer to its attempt got lost."""
 
+KNOWN = 1000
+"""The number of newest message ids that the carrier remembers of a count."""
+
+DRAFT = 1
+"""The id of the draft in a chat: one at a time grows there."""
+
+DRAFT_WAIT = 2.0
+"""The seconds to wait until a draft is shown. A message to the same chat waits as long."""
+
 BIGGEST = 20 * 1024 * 1024
 """The number of bytes of the largest file that the server hands out."""
 
@@ -32,25 +43,33 @@ class TelegramCarrier:
 
     Telegram has no id by which it would recognise a repeated message. Therefore `send` looks for a message whose attempt
     has ended without an answer: the ids of a bot's messages grow, and Telegram says which of them the bot may edit.
+
+    Args:
+        bot: The bot.
+        rate: The maximum number of messages per second.
+        drafts: Whether `show_work` shows the words so far.
     """
 
     longest: int = MessageLimit.MAX_TEXT_LENGTH
 
-    def __init__(self, bot: Bot, rate: float) -> None:
+    def __init__(self, bot: Bot, rate: float, drafts: bool) -> None:
         self._bot = bot
+        self._drafts = drafts
+        self._drawing: dict[str, asyncio.Task[bool]] = {}
         self.rate = rate
-        self.newest: dict[str, int] = {}
-        """The newest known message id, by the chat that counts its own ids, or "" for the bot's common count."""
+        self.current = asyncio.Event()
+        """Set once the messages have come that waited for the start of the bot."""
+        # The known message ids, by the chat that counts its own ids, or "" for the bot's common count.
+        self._ids: defaultdict[str, deque[int]] = defaultdict(lambda: deque(maxlen=KNOWN))
 
     def note(self, chat: str, id: str) -> None:
         """Note the id of a message that has come or gone."""
         if id.isdecimal():
-            count = _count(chat)
-            self.newest[count] = max(self.newest.get(count, 0), int(id))
+            self._ids[_count(chat)].append(int(id))
 
     def trace(self, chat: str) -> str:
         """Return the newest message id before an attempt."""
-        return str(self.newest.get(_count(chat), 0) or "")
+        return str(max(self._ids[_count(chat)], default=""))
 
     def can_react(self, emoji: str) -> bool:
         """Return whether Telegram has a reaction of this emoji."""
@@ -58,6 +77,8 @@ class TelegramCarrier:
 
     async def send(self, message: Outgoing, again: bool) -> str:
         """Send a message, unless an earlier attempt has sent it; return its id."""
+        if (drawing := self._drawing.get(message.chat)) is not None:  # a draft that came later would stay for 30 s
+            await asyncio.wait((drawing,))
         with _delivery():
             if again and message.kind in ("text", "voice", "picture"):
                 found = await self._find(message)
@@ -95,8 +116,14 @@ class TelegramCarrier:
         """Return the id of a message that an earlier attempt has sent; None if there is none."""
         if not message.trace:
             return None
-        first = int(message.trace) + 1
-        for id in range(first, first + AHEAD):
+        await self.current.wait()
+        known = self._ids[_count(message.chat)]
+        id, left = int(message.trace), AHEAD
+        while left > 0:
+            id += 1
+            if id in known:  # another message
+                continue
+            left -= 1
             try:
                 await self._bot.edit_message_reply_markup(message.chat, id)
             except BadRequest as error:
@@ -114,10 +141,31 @@ class TelegramCarrier:
                 raise DeliveryError("the file is too big", final=True)
             return bytes(await found.download_as_bytearray())
 
-    async def show_work(self, chat: str) -> None:
-        """Show in the chat that the agent is writing."""
+    async def show_work(self, chat: str, words: str) -> None:
+        """Show in the chat that the agent is writing; in a private chat also the words, as a draft."""
         with _delivery():
+            if words and self._drafts and not chat.startswith("-"):
+                try:
+                    await self._draw(chat, words[: self.longest])
+                    return
+                except BadRequest:
+                    pass
+                except InvalidToken:  # an older server, without this method
+                    self._drafts = False
             await self._bot.send_chat_action(chat, ChatAction.TYPING)
+
+    async def _draw(self, chat: str, words: str) -> None:
+        """Show a draft. Telegram removes it when the next message comes, or after 30 s."""
+
+        def drawn(task: asyncio.Task[bool]) -> None:
+            del self._drawing[chat]
+            if not task.cancelled():
+                task.exception()  # retrieved also if nobody waits any more
+
+        request = self._bot.send_message_draft(int(chat), DRAFT, words, read_timeout=DRAFT_WAIT)
+        task = self._drawing[chat] = asyncio.create_task(request)
+        task.add_done_callback(drawn)
+        await asyncio.shield(task)
 
 
 def _count(chat: str) -> str:

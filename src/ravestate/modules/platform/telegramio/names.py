@@ -26,6 +26,8 @@ class Settings(ChatSettings):
     """The port to listen on for the webhook."""
     rate: float = pydantic.Field(25.0, gt=0, allow_inf_nan=False)
     """The maximum number of messages per second. Telegram allows a bot 30; a server of your own may allow more."""
+    drafts: bool = True
+    """Whether a private chat shows an answer while it grows."""
 
 
 module = rs.Module("telegramio", requires=(rawio, interloc), settings=Settings, serve=serve)

@@ -32,6 +32,9 @@ class DeviceLine:
         PlatformError: PortAudio is missing, or a device cannot be opened.
     """
 
+    cancels_echo = False
+    """Whether the sound comes without the loudspeaker's echo."""
+
     def __init__(self, source: str = "default", sink: str = "default") -> None:
         self._names = source, sink
         self._loop = asyncio.get_running_loop()

@@ -14,7 +14,7 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .activity import CHUNK, Activity
 from .echo import FRAME
 from .leak import Leak
-from .pitch import is_another
+from .pitch import NEEDED, change, is_another, pitch
 from .sound import Samples, samples
 
 BEFORE = 12
@@ -32,8 +32,10 @@ LONGEST = 60.0
 CLIPPED = 0.02
 """The share of samples at the limit above which a second of speech counts as clipped."""
 
-COMPARED = 2.0
-"""The seconds of each of two voices that are compared."""
+COMPARED = round(2.0 * IN_RATE / CHUNK)
+"""The chunks of each of two voices on both sides of a pause that are compared: 2 s."""
+SEARCHED = round(8.0 * IN_RATE / CHUNK)
+"""The last chunks of a turn in which a change of the voice is looked for: 8 s."""
 
 Event = Literal["onset", "articulate", "another", "pause"]
 
@@ -42,6 +44,8 @@ class Canceller(Protocol):
     """The part of an echo canceller that an ear uses."""
 
     def clean(self, near: bytes, far: bytes) -> bytes: ...
+
+    def close(self) -> None: ...
 
 
 @dataclass(slots=True, eq=False)
@@ -60,6 +64,8 @@ class Turn:
     agent_spoke: bool = False
     full: bool = False
     chunks: list[bytes] = field(default_factory=list[bytes])
+    pitches: list[float | None] = field(default_factory=list[float | None])
+    """The pitch (Hz) of each chunk; None without voice."""
     continued: tuple[int, float, float] | None = None
     """The last continuation after a pause: its first chunk, its time, and the time at which speech had ended before."""
 
@@ -127,6 +133,12 @@ class Ear:
         self._before.clear()
         self._activity.reset()
 
+    def close(self) -> None:
+        """Free the memory of the canceller; from now on, echo stays in the sound."""
+        canceller, self._canceller = self._canceller, None
+        if canceller is not None:
+            canceller.close()
+
     # ------------------------------------------------------------------------------- internals
 
     def _without_echo(self, block: bytes, far: bytes) -> bytes:
@@ -151,6 +163,7 @@ class Ear:
         self._lately.append(articulate)
         if self.turn is not None:
             self.turn.chunks.append(chunk)
+            self.turn.pitches.append(self._pitch() if is_speech else None)
         else:
             self._before.append(chunk)
         if not self.speaking:
@@ -173,7 +186,7 @@ class Ear:
         self.turn.full = now - self.turn.start > LONGEST
         if self._silent >= self._pause or self.turn.full:
             self.speaking = False
-            if self._part():
+            if self._part(now):
                 yield "another"
             yield "pause"
 
@@ -182,26 +195,37 @@ class Ear:
         self._silent, self._spoken, self._articulate = 0, ONSET, sum(self._lately)
         if self.turn is None:
             self.turn = Turn(now, now, agent_speaks, chunks=list(self._before))
+            self.turn.pitches = [None] * len(self.turn.chunks)
             self._before.clear()
         else:
             first = max(1, len(self.turn.chunks) - ONSET - 2)
             self.turn.continued = first, now, self.turn.end
 
-    def _part(self) -> bool:
+    def _pitch(self) -> float | None:
+        """Return the pitch of the newest chunk and the end of the one before."""
+        assert self.turn is not None
+        lately = samples(b"".join(self.turn.chunks[-2:]))[-NEEDED:]
+        return pitch(lately) if len(lately) == NEEDED else None
+
+    def _part(self, now: float) -> bool:
         """Part the turn in two if another person has spoken since the last pause; return whether it is so."""
         turn = self.turn
-        if turn is None or turn.continued is None:
+        if turn is None:
             return False
-        first, begun, ended = turn.continued
-        turn.continued = None
-        size = round(COMPARED * IN_RATE / CHUNK)
-        if not is_another(
-            samples(b"".join(turn.chunks[max(0, first - size) : first])),
-            samples(b"".join(turn.chunks[first : first + size])),
+        continued, turn.continued = turn.continued, None
+        if continued is not None and is_another(
+            turn.pitches[max(0, continued[0] - COMPARED) : continued[0]],
+            turn.pitches[continued[0] : continued[0] + COMPARED],
         ):
-            return False
+            first, begun, ended = continued
+        else:
+            searched = max(0, len(turn.chunks) - SEARCHED)
+            if (place := change(turn.pitches[searched:])) is None:
+                return False
+            first = searched + place
+            begun = ended = now - (len(turn.chunks) - first) * CHUNK / IN_RATE
         self.parted = Turn(turn.start, ended, turn.agent_spoke, chunks=turn.chunks[:first])
-        self.turn = Turn(begun, turn.end, turn.agent_spoke, turn.full, turn.chunks[first:])
+        self.turn = Turn(begun, turn.end, turn.agent_spoke, turn.full, turn.chunks[first:], turn.pitches[first:])
         return True
 
     def _note_clipping(self, sound: Samples) -> None:

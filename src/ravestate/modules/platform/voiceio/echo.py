@@ -43,7 +43,7 @@ class EchoCanceller:
         return out.raw
 
     def close(self) -> None:
-        """Free the library's memory."""
+        """Free the library's memory. The canceller is of no use any more."""
         if self._echo:
             self._library.speex_preprocess_state_destroy(self._after)
             self._library.speex_echo_state_destroy(self._echo)

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from time import monotonic
 from typing import IO, Any
@@ -25,6 +25,9 @@ from ravestate.errors import PlatformError
 
 LOADING = 120.0
 """The longest time (seconds) that a model may take to load."""
+
+LINGER = 60.0
+"""The seconds for which an unused process stays loaded, if its last user asks for it."""
 
 CHILDREN = Path(__file__).with_name("children")
 
@@ -213,6 +216,7 @@ def _remedy(kind: str, reason: str) -> str:
 
 _processes: dict[str, ModelProcess] = {}
 _users: dict[str, int] = {}
+_timers: dict[str, threading.Timer] = {}
 _sharing = threading.Lock()
 _unshared = itertools.count()
 
@@ -226,6 +230,8 @@ def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, 
     """
     with _sharing:
         key = json.dumps([kind, dict(config), python, None if shared else next(_unshared)], sort_keys=True)
+        if (timer := _timers.pop(key, None)) is not None:
+            timer.cancel()
         process = _processes.get(key)
         if process is None:
             process = _processes[key] = ModelProcess(kind, config, python)
@@ -233,20 +239,42 @@ def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, 
         return process
 
 
-def drop(process: ModelProcess, *, linger: Callable[[], bool] = bool) -> None:
-    """Remove one user of `process`; without users it ends, unless `linger()` is true."""
+def drop(process: ModelProcess, *, linger: bool = False) -> None:
+    """Remove one user of `process`; without users it ends.
+
+    Args:
+        process: The process.
+        linger: Whether it ends only after `LINGER` seconds without a user, because a user is likely to come back.
+    """
     with _sharing:
         key = next((key for key, known in _processes.items() if known is process), None)
         if key is None:
             return
         _users[key] -= 1
-        if _users[key] or linger():
+        if _users[key]:
+            return
+        if linger:
+            timer = _timers[key] = threading.Timer(LINGER, _end_unused, [key])
+            timer.daemon = True
+            timer.start()
             return
         del _processes[key], _users[key]
     process.close()
 
 
+def _end_unused(key: str) -> None:
+    """End a process that nobody has taken again."""
+    with _sharing:
+        if _timers.get(key) is not threading.current_thread():
+            return  # somebody took it in the last moment
+        del _timers[key], _users[key]
+        process = _processes.pop(key)
+    process.close()
+
+
 @atexit.register
 def _close_all() -> None:
+    for timer in list(_timers.values()):
+        timer.cancel()
     for process in list(_processes.values()):
         process.close()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 HEARD = 0.5
 """The share of a word that must have sounded for the word to count as heard."""
 QUIET = 200
-"""The level of a sample below which the end of a sentence counts as silence."""
+"""The level of a sample below which the end of a word counts as silence: the pause behind it is no part of it."""
 DRIFT = 0.06
 """Seconds by which the play-out may differ from its regular course before the echo's reference jumps there."""
 KEPT = 30.0
@@ -208,11 +208,11 @@ class Mouth:
         """Return the part of the utterance `text` that the user has heard, to the word."""
         position, end = self.position, 0
         for part in self._queue:
-            words = part.spoken.words
-            last = _speech_end(part.spoken.sound)
+            words, sound = part.spoken.words, part.spoken.sound
             for number, word in enumerate(words):
-                over = words[number + 1].time if number + 1 < len(words) else max(last, word.time)
-                if part.start + word.time + HEARD * (over - word.time) <= position:
+                following = words[number + 1].time if number + 1 < len(words) else len(sound) / SECOND
+                length = _speech_end(sound[2 * round(word.time * OUT_RATE) : 2 * round(following * OUT_RATE)])
+                if part.start + word.time + HEARD * length <= position:
                     end = max(end, part.place + word.end)
         return text[:end].strip()
 

@@ -32,11 +32,12 @@ class Conversation:
     melody: Melody | None
     settings: Settings
 
-    def close(self) -> None:
-        """Close the line, and let go of the models."""
+    def close(self, *, linger: bool = False) -> None:
+        """Close the line, and let go of the models, which stay loaded for a while if they may `linger`."""
         self.line.close()
-        self.recogniser.close()
-        self.mouth.voice.close()
+        self.ear.close()
+        self.recogniser.close(linger=linger)
+        self.mouth.voice.close(linger=linger)
 
     async def judge(self, turn: Turn) -> tuple[Recognised, float]:
         """Return the words of a turn, and the seconds of silence after which it is over.
@@ -48,7 +49,7 @@ class Conversation:
         hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
         complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
         found = await hearing
-        return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings)
+        return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
         """Return what a turn is: ``utterance``, ``back_channel`` or ``false_alarm``, and the words or the reason."""
@@ -64,11 +65,11 @@ class Conversation:
         return "utterance", found.text
 
 
-async def open_conversation(line: Line | None, settings: Settings, warn: Callable[[str], None]) -> Conversation:
+async def open_conversation(given: Line | None, settings: Settings, warn: Callable[[str], None]) -> Conversation:
     """Load the models and open the line.
 
     Args:
-        line: A platform's line; None to open the files or devices that the settings name.
+        given: A platform's line; None to open the files or devices that the settings name.
         settings: The module's settings.
         warn: Called with a sentence for each part that is left out.
 
@@ -76,15 +77,17 @@ async def open_conversation(line: Line | None, settings: Settings, warn: Callabl
         PlatformError: A model, a program or a device is missing; the message says how to get it.
     """
     recogniser = await asyncio.to_thread(Recogniser, settings)
-    voice = None
+    voice = line = None
     try:
-        recorded = line is None and is_file(settings.source)  # the same recording gives the same conversation
+        recorded = given is None and is_file(settings.source)  # the same recording gives the same conversation
         voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         melody = await asyncio.to_thread(_melody, warn)
-        ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(settings, warn))
-        line = line or await asyncio.to_thread(_read, settings) or _device(settings)
+        line = given or await asyncio.to_thread(_read, settings) or _device(settings)
+        ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(line, settings, warn))
     except BaseException:
+        if line is not None and given is None:
+            line.close()
         recogniser.close()
         if voice is not None:
             voice.close()
@@ -119,8 +122,8 @@ def _melody(warn: Callable[[str], None]) -> Melody | None:
     return Melody(file)
 
 
-def _canceller(settings: Settings, warn: Callable[[str], None]) -> EchoCanceller | None:
-    if settings.half_duplex or not settings.echo_cancellation:
+def _canceller(line: Line, settings: Settings, warn: Callable[[str], None]) -> EchoCanceller | None:
+    if settings.half_duplex or not settings.echo_cancellation or line.cancels_echo:
         return None
     try:
         return EchoCanceller()

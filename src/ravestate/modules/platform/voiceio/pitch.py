@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ravestate.modules.modality.rawio.line import IN_RATE
@@ -18,30 +20,71 @@ ENOUGH = 8
 """The voiced frames that tell a voice's pitch."""
 ANOTHER = 1.6
 """The ratio of two pitches above which they are two people: one person's voice moves less on average."""
+LASTING = 15
+"""The voiced frames on each side of a change within speech: a person's voice jumps for a shorter time."""
+AGREE = 0.9
+"""The share of the frames on each side of a change that must be on that side."""
+SOFT = 500
+"""The level below which a frame counts as silence."""
+_SHORTEST, _LONGEST = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
+NEEDED = FRAME + _LONGEST + 1
+"""The samples that tell a pitch: a frame, and its comparison one period later."""
+_SIZE = 1 << (NEEDED + FRAME).bit_length()
+
+
+def pitches(sound: Samples, step: int = FRAME) -> list[float | None]:
+    """Return the pitch (Hz) at each `step` of a sound (16 kHz); None where there is no voice."""
+    return [pitch(sound[at : at + NEEDED]) for at in range(0, len(sound) - NEEDED + 1, step)]
 
 
 def pitch(sound: Samples) -> float | None:
-    """Return the median pitch (Hz) of the voiced parts of a sound (16 kHz); None if there is too little voice."""
-    found: list[float] = []
-    wave = sound.astype(np.float64)
-    shortest, longest = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
-    for at in range(0, len(wave) - FRAME - longest, FRAME):
-        frame = wave[at : at + FRAME]
-        if np.abs(frame).max() < 500:
+    """Return the pitch (Hz) at the beginning of a sound of at least `NEEDED` samples; None if there is no voice."""
+    wave = sound[:NEEDED].astype(np.float64)
+    frame = wave[:FRAME]
+    if np.abs(frame).max() < SOFT:
+        return None
+    spectrum = np.fft.rfft(wave, _SIZE) * np.conj(np.fft.rfft(frame, _SIZE))
+    later = np.fft.irfft(spectrum, _SIZE)[_SHORTEST : _LONGEST + 1]
+    energy = np.concatenate([[0.0], np.cumsum(wave**2)])
+    powers = energy[_SHORTEST + FRAME : _LONGEST + FRAME + 1] - energy[_SHORTEST : _LONGEST + 1]
+    alike = later / np.sqrt(float(frame @ frame) * powers + 1e-9)
+    best = float(alike.max())
+    if best <= PERIODIC:
+        return None
+    first = int(np.flatnonzero(alike > 0.9 * best)[0])  # not a multiple of the period
+    while first + 1 < len(alike) and alike[first + 1] > alike[first]:
+        first += 1
+    return IN_RATE / (first + _SHORTEST)
+
+
+def is_another(first: Sequence[float | None], second: Sequence[float | None]) -> bool:
+    """Return whether two rows of pitches are the voices of two people, as far as pitches tell."""
+    one, other = _voiced(first), _voiced(second)
+    if len(one) < ENOUGH or len(other) < ENOUGH:
+        return False
+    low, high = sorted((float(np.median(one)), float(np.median(other))))
+    return high > ANOTHER * low
+
+
+def change(found: Sequence[float | None]) -> int | None:
+    """Return the place in a row of pitches at which another person goes on; None if one person speaks.
+
+    A person's voice also jumps, but seldom for long. So nearly all pitches on each side must be on that side.
+    """
+    places = [place for place, each in enumerate(found) if each is not None]
+    logs = np.log(np.array(_voiced(found), np.float64))
+    best, chosen = 0, None
+    for split in range(LASTING, len(logs) - LASTING + 1):
+        one, other = float(np.median(logs[:split])), float(np.median(logs[split:]))
+        if abs(one - other) <= np.log(ANOTHER):
             continue
-        power = float(frame @ frame)
-        later = np.lib.stride_tricks.sliding_window_view(wave[at + shortest : at + FRAME + longest], FRAME)
-        alike = later @ frame / np.sqrt(power * (later**2).sum(axis=1) + 1e-9)
-        best = float(alike.max())
-        if best > PERIODIC:
-            first = int(np.flatnonzero(alike > 0.9 * best)[0])  # not a multiple of the period
-            while first + 1 < len(alike) and alike[first + 1] > alike[first]:
-                first += 1
-            found.append(IN_RATE / (first + shortest))
-    return float(np.median(found)) if len(found) >= ENOUGH else None
+        low = logs < (one + other) / 2
+        first = int((low[:split] == (one < other)).sum())
+        second = int((low[split:] == (other < one)).sum())
+        if min(first / split, second / (len(logs) - split)) >= AGREE and first + second > best:
+            best, chosen = first + second, places[split]
+    return chosen
 
 
-def is_another(first: Samples, second: Samples) -> bool:
-    """Return whether two sounds are the voices of two people, as far as their pitches tell."""
-    one, other = pitch(first), pitch(second)
-    return one is not None and other is not None and max(one, other) > ANOTHER * min(one, other)
+def _voiced(found: Sequence[float | None]) -> list[float]:
+    return [each for each in found if each is not None]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -25,10 +26,17 @@ _PHANTOMS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Recognised:
-    """The recognised words of a sound, with the confidence from 0 to 1; empty words if there are none."""
+    """The recognised words of a sound.
+
+    Attributes:
+        text: The words; empty if there are none.
+        confidence: The recogniser's confidence, from 0 to 1.
+        last: The words that the last one may be, with their probabilities. Empty if the recogniser does not tell.
+    """
 
     text: str
     confidence: float
+    last: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 class Recogniser:
@@ -56,7 +64,7 @@ class Recogniser:
                 raise PlatformError("voiceio needs faster-whisper: pip install 'ravestate[voice]'")
             config = {
                 "path": str(whisper_model(settings.model)),
-                "threads": settings.threads or max(1, min(4, os.cpu_count() or 1)),
+                "threads": settings.threads or min(4, _cores()),
                 "exact": False,
             }
             self._process = model_process.take("whisper", config)
@@ -92,11 +100,18 @@ class Recogniser:
             if partial:
                 raise
             answer, _ = self._process.request(header, pcm, seconds=self._patience)
-        return _cleaned(answer["text"], answer["confidence"], answer["no_speech"])
+        found = _cleaned(answer["text"], answer["confidence"], answer["no_speech"])
+        return replace(found, last=answer.get("last", {})) if found.text else found
 
-    def close(self) -> None:
-        """Let go of the model; its last user ends the process."""
-        model_process.drop(self._process)
+    def close(self, *, linger: bool = False) -> None:
+        """Let go of the model; its last user ends the process, after a while if it may `linger`."""
+        model_process.drop(self._process, linger=linger)
+
+
+def _cores() -> int:
+    """Return the number of cores that this process may use. More threads than cores wait for each other."""
+    allowed = getattr(os, "sched_getaffinity", None)  # Linux alone has it
+    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
 
 
 def _cleaned(text: str, confidence: float, no_speech: float) -> Recognised:

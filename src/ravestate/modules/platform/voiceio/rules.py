@@ -82,7 +82,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         ctx[user_speaking] = False
         ctx[conversation] = None
-        talk.close()
+        talk.close(linger=line is not None)  # a page may open its microphone again
     if line is None:
         ctx.stop()
     return None

@@ -91,9 +91,9 @@ class Synthesiser:
         reference = resample(sound, OUT_RATE, IN_RATE)
         return Spoken(text, sound, reference, _words(text, answer, seconds(sound, OUT_RATE)))
 
-    def close(self) -> None:
-        """Let go of the voice; its last user ends the process."""
-        model_process.drop(self._process)
+    def close(self, *, linger: bool = False) -> None:
+        """Let go of the voice; its last user ends the process, after a while if it may `linger`."""
+        model_process.drop(self._process, linger=linger)
 
 
 def _words(text: str, answer: dict[str, Any], length: float) -> tuple[Word, ...]:

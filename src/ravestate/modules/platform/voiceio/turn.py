@@ -22,8 +22,13 @@ WINDOW = 8.0
 UNFINISHED = 0.3
 """The part of the setting `complete` below which the melody alone says that the turn goes on."""
 
-_SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+-?)+")
-"""Laughter, and hums as a recogniser writes them: "hahaha", "mm-hmm", "m-h-m"."""
+ANOTHER = 0.03
+"""The probability of another last word that needs more, above which the written last word proves nothing."""
+UNCLEAR = 0.3
+"""The probability of the last word below which it is unclear, like a word that breaks off."""
+
+_SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+[-.]?)+|m(?:[-.][a-z]{1,2})*[-.][mnh]+")
+"""Laughter, and hums as a recogniser writes or spells them: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""
 _EDGES = ".,!?…;:\"'“”‘’()-–— "
 
 
@@ -56,15 +61,20 @@ class Melody:
         return float(found.reshape(-1)[0])
 
 
-def wanted_silence(text: str, complete: float | None, settings: Settings) -> float:
+def wanted_silence(
+    text: str, complete: float | None, settings: Settings, last: Mapping[str, float] | None = None
+) -> float:
     """Return the seconds of silence after which a turn is over.
 
     Args:
         text: The words so far.
         complete: The probability of a complete melody; None without the model.
         settings: The limits.
+        last: The words that the last one may be, with their probabilities, as far as the recogniser tells.
     """
     words = completeness(text, settings.language)
+    if words == "complete" and last and _may_go_on(text, last, settings.language):
+        words = "doubtful"
     if words == "open" or (complete is not None and complete < UNFINISHED * settings.complete):
         return settings.longest_pause
     sure = words == "complete" and complete is not None and complete >= settings.complete
@@ -85,6 +95,17 @@ def completeness(text: str, language: str = "en") -> Literal["open", "doubtful",
     if text.endswith((",", "...", "…", "-", "—", ":")) or (last in known["open"] and not text.endswith(("?", "!"))):
         return "open"
     return "doubtful" if last in known["doubtful"] and not text.endswith(("?", "!")) else "complete"
+
+
+def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
+    """Return whether the last word may as well be one that needs more, or is unclear.
+
+    A recogniser has learnt whole sentences, and so hears "a photograph of mine" in "a photograph of my".
+    """
+    known, written = _words(language), _bare(text.split()[-1])
+    more = known["open"] | known["doubtful"]
+    others = sum(share for word, share in last.items() if word in more and word != written)
+    return others >= ANOTHER or max(last.values()) < UNCLEAR
 
 
 def is_back_channel(text: str, language: str = "en") -> bool:

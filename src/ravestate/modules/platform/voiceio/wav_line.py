@@ -26,6 +26,9 @@ class WavLine:
         PlatformError: The recording cannot be read.
     """
 
+    cancels_echo = False
+    """Whether the sound comes without the loudspeaker's echo."""
+
     def __init__(self, source: Path | None, sink: Path | None = None) -> None:
         self._sound = b"" if source is None else decode(source, IN_RATE)
         self._sink = sink

@@ -9,9 +9,11 @@ from starlette.websockets import WebSocket
 
 from ravestate.runtime.run import until_first_ends
 
-from . import protocol
+from . import frames
 from .channel import Bucket, Channel
-from .protocol import CLIENT, VERSION, ProtocolError, parse, serialise, sound_of
+from .fields import VERSION, ProtocolError
+from .frames import CLIENT
+from .protocol import parse, serialise, sound_of
 from .session import Ending, Session
 
 if TYPE_CHECKING:
@@ -57,8 +59,8 @@ class Connection:
         self._suggestions = suggestions
         self._note = note
         self._channel = Channel(socket, REPLIES)
-        self._stream: object = None  # the stream of sound that the client knows
-        self._listens: object = None  # the line of which the client knows that the agent listens
+        self._stream: object = None  # the line and the stream of the client's last `Flush`
+        self._listens: object = None  # the line of the client's last `Listening`
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
 
     async def run(self) -> None:
@@ -86,16 +88,16 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
-            await self._send(protocol.Welcome(*begin, self._suggestions, self._note, session.hears or None))
+            await self._send(frames.Welcome(*begin, self._suggestions, self._note, session.hears or None))
             await until_first_ends(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             if session.line is not None:
                 session.line.leave(self)
             self._sessions.exit(session, self)
 
-    async def _hello(self) -> protocol.Hello:
+    async def _hello(self) -> frames.Hello:
         frame = parse(await self._channel.first(HELLO), CLIENT)
-        if not isinstance(frame, protocol.Hello):
+        if not isinstance(frame, frames.Hello):
             raise ProtocolError("malformed", f"begin with {HELLO}")
         bearer = self._socket.headers.get("authorization", "").removeprefix("Bearer ")
         await self._access.check_token(frame.token or bearer)
@@ -116,46 +118,46 @@ class Connection:
                     await asyncio.sleep(0)
                     continue
                 frame = parse(text, CLIENT)
-                if isinstance(frame, protocol.Played) and session.hears:
+                if isinstance(frame, frames.Played) and session.hears:
                     if reports.take(now()) and session.line is not None:
                         session.line.report(self, frame.n, frame.samples)
                     await asyncio.sleep(0)
                     continue
-                if isinstance(frame, protocol.Writing):
+                if isinstance(frame, frames.Writing):
                     if writing.take(now()):
                         session.notice_writing()
                     await asyncio.sleep(0)  # let other tasks run between many such frames
                     continue
                 self._take(frame, session)
             except ProtocolError as error:
-                self._reply(protocol.Error(error.code, str(error), error.id))
+                self._reply(frames.Error(error.code, str(error), error.id))
             await asyncio.sleep(others.wait(now()))
 
-    def _take(self, frame: protocol.ClientFrame, session: Session) -> None:
-        if isinstance(frame, protocol.Say):
+    def _take(self, frame: frames.ClientFrame, session: Session) -> None:
+        if isinstance(frame, frames.Say):
             if not session.hear(frame.id, frame.text):
                 raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
-        elif isinstance(frame, protocol.Ping):
-            self._reply(protocol.Pong())
-        elif isinstance(frame, protocol.Microphone | protocol.Played | protocol.Hush):
+        elif isinstance(frame, frames.Ping):
+            self._reply(frames.Pong())
+        elif isinstance(frame, frames.Microphone | frames.Played | frames.Hush):
             self._take_sound(frame, session)
-        elif isinstance(frame, protocol.Bye):
+        elif isinstance(frame, frames.Bye):
             self._sessions.leave(session, Ending.BYE)
         else:
             raise ProtocolError("malformed", "hello is said once, at the beginning")
 
-    def _take_sound(self, frame: protocol.Microphone | protocol.Played | protocol.Hush, session: Session) -> None:
+    def _take_sound(self, frame: frames.Microphone | frames.Played | frames.Hush, session: Session) -> None:
         if not session.hears:
             raise ProtocolError("deaf", "this agent neither hears nor speaks: it needs a module such as voiceio")
-        if isinstance(frame, protocol.Hush):
+        if isinstance(frame, frames.Hush):
             session.hush()
-        elif isinstance(frame, protocol.Microphone) and frame.on:
+        elif isinstance(frame, frames.Microphone) and frame.on:
             self._taken = self._listens = None
             session.take_line(self)
-        elif isinstance(frame, protocol.Microphone) and session.line is not None:
+        elif isinstance(frame, frames.Microphone) and session.line is not None:
             session.line.leave(self)
 
-    def _reply(self, frame: protocol.ServerFrame) -> None:
+    def _reply(self, frame: frames.ServerFrame) -> None:
         self._channel.reply(serialise(frame))
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
@@ -167,7 +169,7 @@ class Connection:
             await self._channel.send_replies()
             if (name := self._name_of(session)) != agent:
                 agent = name
-                await self._send(protocol.Renamed(agent))
+                await self._send(frames.Renamed(agent))
             for message in session.history.since(last):
                 if message.n != last + 1:
                     raise ProtocolError("behind", f"message {last + 1} is no longer kept: connect again")
@@ -177,40 +179,40 @@ class Connection:
             if session.partial != shown and last == session.history.last:
                 same = _common(shown, session.partial)
                 shown = session.partial
-                await self._send(protocol.Piece(_units(shown[:same]), shown[same:]))
+                await self._send(frames.Piece(_units(shown[:same]), shown[same:]))
             if session.typing != typing:
                 typing = session.typing
-                await self._send(protocol.Typing(typing))
+                await self._send(frames.Typing(typing))
             if session.paused != paused:
                 paused = session.paused
-                await self._send(protocol.Paused(paused))
+                await self._send(frames.Paused(paused))
             if session.caption != caption:
                 caption = session.caption
-                await self._send(protocol.Caption(caption))
+                await self._send(frames.Caption(caption))
             marks, marked = session.history.marks_since(marked), session.history.marked
             for mark in marks:
                 if mark.n <= last:  # a later message carries its mark
                     await self._send(mark)
             await self._write_sound(session)
             if session.ended is not None and last == session.history.last:
-                await self._send(protocol.Ended(session.ended.for_visitor))
+                await self._send(frames.Ended(session.ended.for_visitor))
                 await self._channel.end()
                 return
             await woken.wait()
 
     async def _write_sound(self, session: Session) -> None:
-        """Send the agent's sound, if this window has the line, or the loss of the line."""
+        """Send the agent's sound if this window has the line. If it has just lost the line, tell the client so."""
         if self._taken is not None:
             why, self._taken = self._taken, None
-            await self._send(protocol.Taken(why))
+            await self._send(frames.Taken(why))
         line = session.line
         while line is not None and line.window is self:
             if (line, line.stream) != self._stream:
                 self._stream = line, line.stream
-                await self._send(protocol.Flush(line.stream))
+                await self._send(frames.Flush(line.stream))
             elif line.listens and self._listens is not line:
                 self._listens = line
-                await self._send(protocol.Listening())
+                await self._send(frames.Listening())
             elif (sound := line.fetch(self)) is not None:
                 await self._channel.send_sound(sound)
             else:
@@ -220,7 +222,7 @@ class Connection:
         """Return the agent's name for the page of a conversation."""
         return session.agent if self._title is None else self._title
 
-    async def _send(self, frame: protocol.ServerFrame) -> None:
+    async def _send(self, frame: frames.ServerFrame) -> None:
         await self._channel.send(serialise(frame))
 
 

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats.rules import carry
 
 from .names import module, page
 
 SLOW = 0.3  # the seconds of waiting after which the page shows that the agent is working
 
-
-carry(module, page)
+rawio.carry(module, page)
 
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), reads=page)
 async def show_input(ctx: rs.RuleContext) -> None:
-    """Show the visitor's words on the page if they came in another way, such as by voice."""
+    """Show the visitor's words on the page if they were not typed there."""
     if session := ctx[page]:
         session.note_input(ctx.payload(rawio.input.changed))
 

@@ -1,7 +1,8 @@
 """The backend of speech recognition by faster-whisper. `serve` runs this file.
 
 Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So sounds of up to 28 seconds
-are not filled up with silence: a sentence then takes a quarter of the time.
+are not filled up with silence: a sentence then takes a fifth of the time. In such a short window, the model often does not
+notice the end, and writes the same words again. The repetition is cut off.
 """
 
 # pyright: basic
@@ -13,8 +14,14 @@ from typing import Any
 
 WINDOW = 28.0
 """The longest sound (seconds) that is recognised in one shortened window."""
-TAIL = 0.6
-"""The seconds of silence behind the sound. Without silence, the last word suffers."""
+TAIL = 5.0
+"""The seconds of silence behind the sound. With less silence, the model repeats itself more often."""
+MOST = 8
+"""The maximum number of tokens in a second of speech. People say at most five words."""
+PHRASE = 3
+"""The words of a phrase that nobody says twice on end. Shorter ones, such as "no, no", may be meant."""
+PLAUSIBLE = 0.02
+"""The probability above which another last word is reported."""
 POOR = -1.0
 """The mean log probability of a token below which the sound is recognised once more, in the usual window."""
 REPEATED = 2.4
@@ -42,6 +49,7 @@ def load(config: dict[str, Any]) -> Any:
         return tokenizers[language]
 
     def quick(sound: Any, language: str) -> dict[str, Any]:
+        most = 16 + int(MOST * len(sound) / 16000)
         features = model.feature_extractor(sound, padding=int(TAIL * 16000))
         features = pad_or_trim(features, features.shape[-1] // 2 * 2)
         encoded = model.encode(features)
@@ -55,16 +63,25 @@ def load(config: dict[str, Any]) -> Any:
             encoded,
             [model.get_prompt(tokenizer, [], without_timestamps=True)],
             beam_size=1,
-            max_length=224,
-            return_scores=True,
+            max_length=min(224, most),
+            return_logits_vocab=True,
             return_no_speech_prob=True,
             suppress_tokens=suppressed(tokenizer, [-1]),
         )[0]
         tokens = result.sequences_ids[0]
+        steps = [_log_probabilities(np, step) for step in result.logits[0]]
+        parts = [tokenizer.decode([token]) for token in tokens]
+        begins = [at for at, part in enumerate(parts) if at == 0 or part.startswith(" ")]
+        words = [_bare("".join(parts[at:end])) for at, end in zip(begins, [*begins[1:], len(parts)], strict=True)]
+        kept = _once(words, at_limit=len(tokens) >= len(steps))
+        count = begins[kept] if kept < len(begins) else len(tokens)
+        spoken = [number for number in range(kept) if words[number]]
+        text = tokenizer.decode(tokens[:count]).strip()
         return {
-            "text": tokenizer.decode(tokens).strip(),
-            "logprob": result.scores[0] * len(tokens) / (len(tokens) + 1),
+            "text": text if count == len(tokens) else text.rstrip(" ,-"),  # the comma was before the repetition
+            "logprob": float(sum(steps[at][tokens[at]] for at in range(count))) / (count + 1),
             "no_speech": result.no_speech_prob,
+            "last": _plausible(np, tokenizer, steps[begins[spoken[-1]]]) if spoken else {},
         }
 
     def whole(sound: Any, language: str) -> dict[str, Any]:
@@ -74,13 +91,14 @@ def load(config: dict[str, Any]) -> Any:
         )  # fmt: skip
         segments = list(found)
         if not segments:
-            return {"text": "", "logprob": -10.0, "no_speech": 1.0}
+            return {"text": "", "logprob": -10.0, "no_speech": 1.0, "last": {}}
         lengths = [max(1, len(segment.tokens)) for segment in segments]
         mean = sum(s.avg_logprob * n for s, n in zip(segments, lengths, strict=True)) / sum(lengths)
         return {
             "text": " ".join(segment.text.strip() for segment in segments),
             "logprob": mean,
             "no_speech": min(segment.no_speech_prob for segment in segments),
+            "last": {},
         }
 
     def handle(header: dict[str, Any], data: bytes) -> tuple[dict[str, Any], bytes]:
@@ -98,6 +116,34 @@ def load(config: dict[str, Any]) -> Any:
 
     handle({"language": "en", "partial": True}, bytes(32000))  # the first run is slow
     return handle
+
+
+def _once(words: list[str], *, at_limit: bool) -> int:
+    """Return the number of words without the repetition of a phrase."""
+    for length in range(1 if at_limit else PHRASE, len(words)):
+        if all(words[at] == words[at - length] for at in range(length, len(words))):
+            return length if at_limit or len(words) >= 2 * length else len(words)
+    return len(words)
+
+
+def _plausible(np: Any, tokenizer: Any, step: Any) -> dict[str, float]:
+    """Return the plausible words at one place with their probabilities."""
+    likely = [int(token) for token in np.flatnonzero(step > math.log(PLAUSIBLE)) if token < tokenizer.eot]
+    found: dict[str, float] = {}
+    for token in likely:
+        word = _bare(tokenizer.decode([token]))
+        found[word] = found.get(word, 0.0) + math.exp(float(step[token]))
+    return found
+
+
+def _log_probabilities(np: Any, step: Any) -> Any:
+    scores = np.array(step).reshape(-1).astype(np.float32)
+    scores -= scores.max()
+    return scores - math.log(float(np.exp(scores).sum()))
+
+
+def _bare(word: str) -> str:
+    return "".join(c for c in word.casefold() if c.isalnum() or c == "'")
 
 
 def _repeats(text: str) -> bool:

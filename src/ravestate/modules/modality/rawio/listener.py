@@ -1,0 +1,47 @@
+"""The listener: the user's side of a conversation, and the rules that carry the agent's words to it."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import ravestate as rs
+
+from .names import output, piece, speaking
+
+
+class Listener(Protocol):
+    """The user's side of a conversation: it gets the agent's words."""
+
+    def utter(self, text: str) -> None:
+        """Take a whole utterance of the agent."""
+        ...
+
+    def grow(self, piece: str) -> None:
+        """Take a piece of an utterance that is still growing."""
+        ...
+
+    def fall_silent(self) -> None:
+        """End a growing utterance that no rule has written as a whole."""
+        ...
+
+
+def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
+    """Declare the rules that carry ``output`` and ``piece`` to the `Listener` in a slot of the module."""
+
+    @module.rule(when=output.changed.max_age(None).detached(), reads=slot)
+    async def show(ctx: rs.RuleContext) -> None:
+        """Show each utterance of the agent to the user."""
+        if listener := ctx[slot]:
+            listener.utter(ctx.payload(output.changed))
+
+    @module.rule(when=piece.max_age(None).detached(), reads=slot, background=True)
+    async def show_piece(ctx: rs.RuleContext) -> None:
+        """Show each piece of a growing utterance to the user."""
+        if listener := ctx[slot]:
+            listener.grow(ctx.payload(piece))
+
+    @module.rule(when=speaking.false.max_age(None).detached(), reads=slot, background=True)
+    async def end_piece(ctx: rs.RuleContext) -> None:
+        """End a growing utterance that no rule has written as a whole."""
+        if listener := ctx[slot]:
+            listener.fall_silent()

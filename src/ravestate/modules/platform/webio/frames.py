@@ -1,0 +1,297 @@
+"""The frames of the web protocol, as records. ``docs/reference/web-protocol.md`` describes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import Field, TypeAdapter
+
+from .fields import Id, Name, Number, Speaker, Spoken, String, Text, Truth, Version
+
+# ------------------------------------------------------------------------------------ from a client
+
+
+@dataclass(frozen=True, slots=True)
+class Hello:
+    """The first frame: it asks for a conversation.
+
+    Attributes:
+        v: The version of the protocol.
+        session: The id of the conversation to resume; if it is missing, a new conversation begins.
+        last: The number of the last message that the client has; 0 if it has none.
+        token: The server's token, if the server asks for one.
+        name: The visitor's name, if it is known.
+    """
+
+    v: Version
+    session: Id | None = None
+    last: Number = 0
+    token: String | None = None
+    name: Name | None = None
+    type: Literal["hello"] = "hello"
+
+
+@dataclass(frozen=True, slots=True)
+class Say:
+    """The visitor says something. A text that arrives twice under one `id` counts once."""
+
+    id: Id
+    text: Spoken
+    type: Literal["say"] = "say"
+
+
+@dataclass(frozen=True, slots=True)
+class Writing:
+    """The visitor is typing; the client repeats this frame while they type."""
+
+    type: Literal["writing"] = "writing"
+
+
+@dataclass(frozen=True, slots=True)
+class Bye:
+    """The visitor leaves for good."""
+
+    type: Literal["bye"] = "bye"
+
+
+@dataclass(frozen=True, slots=True)
+class Ping:
+    """A request for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings."""
+
+    type: Literal["ping"] = "ping"
+
+
+@dataclass(frozen=True, slots=True)
+class Microphone:
+    """The visitor's microphone goes on or off in this window.
+
+    While it is on, binary frames carry its sound, and this window plays the agent's sound. At most one window of a
+    conversation has it: the last one that turned it on.
+    """
+
+    on: Truth
+    type: Literal["microphone"] = "microphone"
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """The loudspeaker's position. While sound plays, the client sends this frame every 100 ms, and at the sound's end.
+
+    Attributes:
+        n: The number of the stream, from the last `Flush`.
+        samples: The number of samples of this stream that the loudspeaker has played.
+    """
+
+    n: Number
+    samples: Number
+    type: Literal["played"] = "played"
+
+
+@dataclass(frozen=True, slots=True)
+class Hush:
+    """The visitor asks the agent to stop speaking."""
+
+    type: Literal["hush"] = "hush"
+
+
+# ------------------------------------------------------------------------------------ from the server
+
+
+@dataclass(frozen=True, slots=True)
+class Welcome:
+    """The answer to `Hello`.
+
+    Attributes:
+        v: The version of the protocol.
+        session: The conversation's secret id; a client sends it to resume.
+        resumed: Whether this resumes the conversation that the client asked for.
+        first: The number of the oldest message that the server keeps.
+        agent: The agent's name.
+        inside: The address of the board for this conversation, relative to the page; None without a board.
+        last: The number of the newest message; 0 before the first message.
+        writing: Whether the server accepts `Writing` frames. Early server releases did not.
+        suggestions: A few things that the visitor could say first.
+        note: A line of text that the page shows until the visitor has said something; None for no line.
+        voice: Whether the agent can hear and speak: the server accepts `Microphone` and sound.
+    """
+
+    v: Version
+    session: Id
+    resumed: Truth
+    first: Number
+    agent: Text
+    inside: Text | None = None
+    last: Number = 0
+    writing: Truth = False
+    suggestions: tuple[Text, ...] = ()
+    note: Text | None = None
+    voice: Truth | None = None
+    type: Literal["welcome"] = "welcome"
+
+
+@dataclass(frozen=True, slots=True)
+class Renamed:
+    """The agent's new name."""
+
+    agent: Text
+    type: Literal["renamed"] = "renamed"
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """An utterance.
+
+    Attributes:
+        n: The message's number: the first message of a conversation has 1, and no number is left out.
+        speaker: The side that said the utterance.
+        text: Plain text.
+        time: The time of the utterance, in milliseconds since 1970 (UTC).
+        id: The `id` of the client's `Say`, if the utterance came from a `Say`.
+        heard: The part of the utterance that the visitor heard, if the agent's speech was cut.
+    """
+
+    n: Number
+    speaker: Speaker
+    text: Text
+    time: Number
+    id: Id | None = None
+    heard: Text | None = None
+    type: Literal["message"] = "message"
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A piece of an utterance that is still growing: `text` replaces everything from character `at` on.
+
+    Attributes:
+        at: The position in the utterance where `text` begins, in UTF-16 units as JavaScript counts.
+        text: The utterance from `at` to its new end.
+    """
+
+    at: Number
+    text: Text
+    type: Literal["piece"] = "piece"
+
+
+@dataclass(frozen=True, slots=True)
+class Typing:
+    """Whether the agent is working on an answer."""
+
+    on: Truth
+    type: Literal["typing"] = "typing"
+
+
+@dataclass(frozen=True, slots=True)
+class Paused:
+    """Whether the agent's clock is paused, for example by the board."""
+
+    on: Truth
+    type: Literal["paused"] = "paused"
+
+
+@dataclass(frozen=True, slots=True)
+class Caption:
+    """The words so far of an utterance that the visitor is still speaking; empty once it has become a `Message`."""
+
+    text: Text
+    type: Literal["caption"] = "caption"
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """The part of a message of the agent that the visitor heard: all of it, unless the agent's speech was cut.
+
+    Attributes:
+        n: The message's number.
+        text: The part that was heard.
+    """
+
+    n: Number
+    text: Text
+    type: Literal["heard"] = "heard"
+
+
+@dataclass(frozen=True, slots=True)
+class Flush:
+    """The client drops all sound that it has not played. The sound after this frame is a new stream.
+
+    Attributes:
+        n: The number of the new stream.
+    """
+
+    n: Number
+    type: Literal["flush"] = "flush"
+
+
+@dataclass(frozen=True, slots=True)
+class Listening:
+    """The agent takes the sound of this window's microphone. The agent may have had to load its models first."""
+
+    type: Literal["listening"] = "listening"
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """This window no longer has the microphone; `text` says why."""
+
+    text: Text
+    type: Literal["taken"] = "taken"
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """The conversation is over; `text` says why. The server then closes the connection."""
+
+    text: Text
+    type: Literal["ended"] = "ended"
+
+
+@dataclass(frozen=True, slots=True)
+class Error:
+    """A fault in a frame from the client, or in the connection.
+
+    Attributes:
+        code: One word for programs.
+        text: An explanation for people.
+        id: The refused frame's `id`, if that frame is a `Say`.
+    """
+
+    code: Text
+    text: Text
+    id: Id | None = None
+    type: Literal["error"] = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Pong:
+    """The answer to `Ping`."""
+
+    type: Literal["pong"] = "pong"
+
+
+ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush
+ServerFrame = (
+    Welcome
+    | Renamed
+    | Message
+    | Piece
+    | Typing
+    | Paused
+    | Caption
+    | Heard
+    | Flush
+    | Listening
+    | Taken
+    | Ended
+    | Error
+    | Pong
+)
+
+_BY_TYPE = Field(discriminator="type")
+CLIENT: TypeAdapter[ClientFrame] = TypeAdapter(Annotated[ClientFrame, _BY_TYPE])
+"""The frames that a client sends."""
+SERVER: TypeAdapter[ServerFrame] = TypeAdapter(Annotated[ServerFrame, _BY_TYPE])
+"""The frames that the server sends."""
+FRAMES: TypeAdapter[ClientFrame | ServerFrame] = TypeAdapter(Annotated[ClientFrame | ServerFrame, _BY_TYPE])
+"""The frames of both sides."""

@@ -1,0 +1,166 @@
+"""Halves: a first spike costs no activation, and all happens as if it did."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from ravestate.engine.effects import Run
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Emit, Event, Finish, Wipe
+from ravestate.engine.explain import explain
+
+
+def declared(module: rs.Module, name: str, **options: Any) -> None:
+    """Declare a rule; a bare engine calls no function."""
+
+    async def function(ctx: Any) -> None:
+        raise NotImplementedError
+
+    module.rule(name=name, **options)(function)
+
+
+def runs(engine: Engine, *given: Event, now: float = 0.0, end: bool = True) -> list[Run]:
+    """Receive events at one time; return the runs, which end at once unless `end` is false."""
+    for event in given:
+        engine.receive(event, now)
+    found: list[Run] = []
+    while effects := engine.effects():
+        for effect in effects:
+            if isinstance(effect, Run):
+                found.append(effect)
+                if end:
+                    engine.receive(Finish(effect.run, "done"), now)
+    return found
+
+
+def payloads(found: list[Run]) -> list[tuple[Any, ...]]:
+    """Return the payloads of each run."""
+    return [tuple(run.payloads.values()) for run in found]
+
+
+def pair(**options: Any) -> Engine:
+    """Return an engine with one rule `a & b`."""
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    declared(m, "both", when=a & b, **options)
+    return Engine(rs.compile(m))
+
+
+def activations(engine: Engine) -> int:
+    """Return the number of activations."""
+    return sum(len(each) for each in engine.active.values())
+
+
+def test_a_first_spike_makes_no_activation_and_counts_as_activity() -> None:
+    engine = pair()
+    assert not runs(engine, Emit("m:a", 1))
+    assert activations(engine) == 0
+    assert engine.read(engine.policy.slot_of["core:activity"].index) is True
+    runs(engine, now=5.0)
+    engine.advance(5.0)
+    runs(engine, now=5.0)
+    assert engine.read(engine.policy.slot_of["core:activity"].index) is False
+    assert not engine.live
+    assert not engine.halves
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_the_oldest_spikes_meet(together: bool) -> None:
+    engine = pair()
+    firsts: list[Event] = [Emit("m:a", n) for n in range(3)]
+    seconds: list[Event] = [Emit("m:b", n) for n in range(3)]
+    found = (
+        runs(engine, *firsts, *seconds) if together else [run for e in (*firsts, *seconds) for run in runs(engine, e)]
+    )
+    assert payloads(found) == [(0, 0), (1, 1), (2, 2)]
+    assert activations(engine) == 0
+
+
+def test_a_pair_is_one_activation_however_many_spikes_wait() -> None:
+    engine = pair()
+    runs(engine, *(Emit("m:a", n) for n in range(20)))
+    engine.receive(Emit("m:b", 0), 0.0)
+    assert activations(engine) == 1
+
+
+def test_the_next_in_line_steps_in_for_a_wiped_spike() -> None:
+    m = rs.Module("m")
+    a, b, root = m.signal("a"), m.signal("b"), m.signal("root")
+    declared(m, "raises", when=root, emits=a)
+    declared(m, "both", when=a & b)
+    engine = Engine(rs.compile(m))
+    [first] = runs(engine, Emit("m:root"), end=False)
+    runs(engine, Emit("m:a", "wiped", first.run), Finish(first.run, "done"))
+    runs(engine, Emit("m:a", "stays"))
+    found = runs(engine, Emit("m:b", 1), Wipe("m:root"))
+    assert payloads(found) == [("stays", 1)]
+
+
+def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
+    m = rs.Module("m")
+    utterance, out = m.signal("utterance"), m.slot("out", "")
+    topics = [m.signal(f"topic{n}") for n in range(50)]
+    declared(m, "classifier", when=utterance, emits=topics)
+    for n, topic in enumerate(topics):
+        declared(m, f"about{n}", when=utterance & topic, writes=out)
+    engine = Engine(rs.compile(m))
+    [classifier] = runs(engine, Emit("m:utterance"), end=False)
+    assert activations(engine) == 1
+    engine.receive(Emit("m:topic7", None, classifier.run), 0.0)
+    assert activations(engine) == 2
+    # The classifier may yet raise the topic of a rule that was declared before.
+    assert not runs(engine, end=False)
+    [run] = runs(engine, Finish(classifier.run, "done"))
+    assert run.rule.name == "m:about7"
+    assert activations(engine) == 0
+    assert not engine.halves
+
+
+def test_a_rival_in_a_half_is_kept_waiting_for_with_patience() -> None:
+    m = rs.Module("m")
+    speech, point, out = m.signal("speech"), m.signal("point"), m.slot("out", "")
+    declared(m, "fused", when=speech & point, writes=out)
+    declared(m, "plain", when=speech, writes=out)
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, Emit("m:speech"))
+    engine.advance(1.0)
+    [run] = runs(engine, now=1.0)
+    assert run.rule.name == "m:plain"
+    assert not runs(engine, Emit("m:point"), now=1.0)
+
+
+def test_a_rule_that_resigned_leaves_the_spike_to_the_others() -> None:
+    m = rs.Module("m")
+    a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
+    declared(m, "first", when=a & b, writes=out, weight=2.0)
+    declared(m, "second", when=a & b, writes=out)
+    engine = Engine(rs.compile(m))
+    [run] = runs(engine, Emit("m:a"), Emit("m:b"), end=False)
+    [other] = runs(engine, Finish(run.run, "resigned", "no"))
+    assert (run.rule.name, other.rule.name) == ("m:first", "m:second")
+
+
+def test_an_explanation_shows_a_first_spike() -> None:
+    engine = pair()
+    runs(engine, Emit("m:a", 1))
+    [state] = explain(engine, engine.policy.rule_plan("m:both")).activations
+    assert (state.state, state.holds, state.lacks) == ("gathering", (("m:a", 0.0),), ("m:b",))
+    assert payloads(runs(engine, Emit("m:b", 2))) == [(1, 2)]
+
+
+def test_activations_without_consent_start_in_batches() -> None:
+    m = rs.Module("m")
+    declared(m, "each", when=m.signal("a", limit=1000))
+    engine = Engine(rs.compile(m))
+    for n in range(250):
+        engine.receive(Emit("m:a", n), 0.0)
+    sizes = list[int]()
+    while effects := engine.effects():
+        sizes.append(len(effects))
+        for effect in effects:
+            if isinstance(effect, Run):
+                engine.receive(Finish(effect.run, "done"), 0.0)
+    assert sizes == [100, 100, 50]
