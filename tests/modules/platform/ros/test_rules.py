@@ -48,7 +48,7 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
                 at(131)  # a minute in an instant: any speed
                 await until(lambda: waited)
                 assert waited == [pytest.approx(begun + 31)]
-                at(3)  # a simulation that begins anew does not set the clock back
+                at(3)
                 at(5)
                 await until(lambda: context.now == pytest.approx(begun + 33))
             await world.close()

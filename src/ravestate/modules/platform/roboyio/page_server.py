@@ -48,6 +48,7 @@ class PageServer:
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._listener.bind(("127.0.0.1", self._port))
+            self._listener.listen()  # a visitor who comes before the server runs waits
         except OSError as error:
             self._listener.close()
             raise PlatformError(
