@@ -31,7 +31,7 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
 """The acts for which nlp has a signal, with the signal's name."""
 
-MATCHERS = ("acts", "feelings")
+MATCHERS = ("acts", "feelings", "asks")
 """The files of examples whose classes an analysis names."""
 
 
@@ -57,6 +57,9 @@ class Analysis:
     """The user's acts, by the classes of ``acts.yaml``: greeting, thanks... each with its best sentence."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The feelings, by the classes of ``feelings.yaml``, each with its best sentence."""
+
+    asks: Mapping[str, Match] = field(default_factory=dict[str, Match])
+    """The kinds of questions and requests, by the classes of ``asks.yaml``, each with its best sentence."""
 
     move: Move | None = None
     """The move: what a good listener does next, such as rejoice, console, advise..."""
@@ -119,14 +122,15 @@ def analyse(
         statements=statements,
         acts=acts(sentences),
         feelings=feelings(sentences, names),
+        asks=_by_name(bundled_matcher("asks").match_all(sentences)),
         move=bundled_moves().move(sentences, asks=question is not None or "?" in text),
-        intents=_intents(designed, sentences) if designed else {},
+        intents=_by_name(designed.match_all(sentences), ":") if designed else {},
     )
 
 
-def _intents(matcher: Matcher, sentences: Iterable[str]) -> dict[str, Match]:
-    """Return the designer's intents of the sentences, each with the best of its sentences."""
-    found = [match for match in matcher.match_all(tuple(sentences)) if match is not None and ":" in match.name]
+def _by_name(matches: Iterable[Match | None], part: str = "") -> dict[str, Match]:
+    """Return the best match of each class whose name contains `part`."""
+    found = [match for match in matches if match is not None and part in match.name]
     return {match.name: match for match in sorted(found, key=lambda match: match.score)}
 
 

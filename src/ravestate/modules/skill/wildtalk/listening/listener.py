@@ -202,6 +202,11 @@ class Listener:
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
             yield _Source(moment.lines(*groups, "say", "again"), moment)
 
+    def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the answers to a question or request, by its kind and its area of life."""
+        if hearing.asked is not None:
+            yield _Source(hearing.asked.lines(self._phrases, state.tone))
+
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
         tags, replies = hearing.tags, self._phrases.replies
