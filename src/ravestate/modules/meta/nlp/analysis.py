@@ -35,6 +35,27 @@ MATCHERS = ("acts", "feelings", "asks")
 """The files of examples whose classes an analysis names."""
 
 
+ADVICE = frozenset(
+    (
+        "recommend",
+        "how_to",
+        "should",
+        "guess",
+        "say_what",
+        "predict",
+        "what_if",
+        "okay",
+        "judge_me",
+        "write",
+        "pick",
+        "permit",
+    )
+)
+"""Classes of ``asks.yaml`` that want advice or an opinion, and no fact."""
+ADVISED = 0.8
+"""The least confidence in such a class."""
+
+
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """The analysis of a text; the README explains each part."""
@@ -66,6 +87,13 @@ class Analysis:
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """The designer's intents (`nlp.intent`) by the names of their signals, each with its best sentence."""
+
+    @property
+    def advised(self) -> bool:
+        """Whether the user asks for advice, an opinion or a choice, and not for a fact."""
+        sure = {name for name, match in self.asks.items() if match.score >= ADVISED}
+        ours = any(said.subject_person in ("I", "you") or said.request for said in self.statements)
+        return bool(sure & ADVICE) or ("choose" in sure and ours)
 
     @property
     def acted(self) -> tuple[str, ...]:

@@ -20,8 +20,8 @@ from .material import Line, Material, Moment
 from .roles import turned
 from .state import State
 
-SURE, UNASKED = 0.4, 0.8
-"""The least confidence in a kind, for a question or request and for any other utterance."""
+SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
+"""The least confidence in a kind, for a question, for an order, and for any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
     "you_think": ("you_think", "should", "worth"),
@@ -39,7 +39,17 @@ _BARE = word_set("not what something anything so else whatever")
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
 """The relations of a noun that a question is about, the likeliest first."""
 _PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
-LONGEST = 32
+WEIGHTS = {
+    "dobj": 1.3,
+    "attr": 1.3,
+    "ROOT": 1.2,
+    "xcomp": 1.2,
+    "ccomp": 1.2,
+    "nsubj": 0.9,
+    "npadvmod": 0.5,
+    "acomp": 1.4,
+}
+"""How much a word with a relation counts for the area; other words have the weight 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +64,18 @@ class Asked:
     groups: tuple[str, ...]
     """The groups of asked.yaml to try, the most specific first."""
 
+    @property
+    def own(self) -> list[Sequence[Line]]:
+        """The answers of the area."""
+        if self.area is None or (self.kind == "choose" and "first" in self.values):
+            return []
+        return [self.area.groups[kind] for kind in ALIKE.get(self.kind, (self.kind,)) if kind in self.area.groups]
+
     def lines(self, phrases: Material, tone: str) -> list[Sequence[Line]]:
         """Return the groups of answers, the most specific first."""
         general = phrases.asked[self.kind]
-        own = [self.area.groups.get(kind, ()) for kind in ALIKE.get(self.kind, (self.kind,))] if self.area else []
         named = [self.area.name] if self.area else []
-        if self.kind == "choose" and "first" in self.values:
-            own = []
-        return [*own, *general.lines(*named, tone, *self.groups, "say")]
+        return [*self.own, *general.lines(*named, tone, *self.groups, "say")]
 
 
 def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, request: bool) -> Asked | None:
@@ -76,16 +90,19 @@ def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, re
     """
     words = _words_of(seen.tree, asking)
     options = _options(seen.tree, words)
-    least = SURE if asking or request else UNASKED
+    least = SURE if asking else ORDERED if request else UNASKED
     found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
     best = max(found, key=lambda one: one.score, default=None)
     kind = "" if best is None else best.name
     if options and (
-        kind in ("", "recommend", "should", "worth", "favourite", "would_you", "fact", "choose", "predict")
+        kind in ("", "recommend", "should", "worth", "favourite", "would_you", "fact", "choose", "predict", "permit")
     ):
         kind = "choose" if asking or kind == "choose" else ""
     if not kind and asking:
         kind = "fact"
+    area = area_of(phrases, seen.tree, words, state.before, kind)
+    if kind in ("another", "meant") and state.asked:
+        kind, area = state.asked[0], area or phrases.areas.get(state.asked[1])
     if not kind:
         return None
     last = state.said[-1] if state.said else ""
@@ -105,10 +122,10 @@ def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, re
     groups = (["act"] if verbal else ["two"]) if options else []
     groups += ["picked"] * (kind in ("pick", "recommend") and "picked" in values)
     groups += ["can"] * able + ["wh", "about", "last", "short", "word"]
-    return Asked(kind, area_of(phrases, seen.tree, words, state.before), values, tuple(groups))
+    return Asked(kind, area, values, tuple(groups))
 
 
-def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str) -> Moment | None:
+def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, kind: str) -> Moment | None:
     """Return the area of life of a question: that of its main verb and nouns, else of the words around it.
 
     Args:
@@ -116,21 +133,26 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str) -
         tree: The parse of the utterance.
         words: The words of the question.
         before: The previous utterance of the user.
+        kind: The kind of the question. A poem *about rain* has the area of the rain.
     """
+    weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
     inside = {word.index for word in words}
     scores: dict[str, float] = {}
     for word in tree.words:
         area = phrases.area_by_word.get(word.lemma.lower()) or phrases.area_by_word.get(word.low)
         if area and word.pos not in ("PRON", "AUX", "ADP", "DET"):
             near = 1.0 if word.index in inside else 0.45
-            near *= 1.2 if word.dep in ("dobj", "ROOT", "attr", "xcomp") and word.index in inside else 1.0
+            near *= weights.get(word.dep, 1.0)
             scores[area] = max(scores.get(area, 0.0), near - 0.001 * word.index)
     if not scores:
         for text in re.findall(r"[a-z]+", before.lower()):
-            area = phrases.area_by_word.get(text) or phrases.area_by_word.get(text.removesuffix("s"))
+            area = next(
+                filter(None, (phrases.area_by_word.get(text.removesuffix(end)) for end in ("", "s", "ing", "ed"))), ""
+            )
             if area:
                 scores.setdefault(area, 0.1)
-    return phrases.areas[max(scores, key=lambda area: scores[area])] if scores else None
+    ranked = [phrases.areas[name] for name in sorted(scores, key=lambda name: -scores[name])]
+    return next((one for one in ranked if one.groups.keys() & ALIKE.get(kind, {kind})), next(iter(ranked), None))
 
 
 def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:

@@ -12,9 +12,7 @@ from dataclasses import dataclass, field
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
-from ravestate.language.matcher import Match
-from ravestate.language.normal import plain
-from ravestate.language.shape import shape
+from ravestate.language.matcher import Match, bundled_matcher
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
@@ -114,6 +112,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.moves = likely(phrases, seen)
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
+    request = is_request(seen) and seen.question is None
+    found.asked = asked_in(phrases, seen, asking, state, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
@@ -134,8 +134,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
-    request = is_request(seen) and seen.question is None
-    found.asked = asked_in(phrases, seen, asking, state, request=request)
     tags = {
         kind: True,
         "pending": pending is not None,
@@ -156,6 +154,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         and not statement.conditional and "thing" in roles.values,
         "request": request and len(seen.sentences) == 1,
         "asked": found.asked is not None,
+        found.asked.kind if found.asked else "": True,
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
@@ -282,11 +281,19 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
             continue
         found = phrases.moments[match.name]
         few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry" beside another sentence
-        told = asking != "" and shape(plain(match.example))[3] == 0
-        fits = match.score >= EXACT or (not told and _fits(found, heard.moves) and not imagined)
+        asked = heard.asked
+        better = asked is not None and (asked.own or (heard.tags >= {"sad"} and found.tone != "sad"))
+        alike = asked is None or (not better and asked.kind == kind_of(match.example))
+        fits = match.score >= EXACT or (alike and _fits(found, heard.moves) and not imagined)
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
+
+
+def kind_of(sentence: str) -> str:
+    """Return the kind of a question or request; empty for a statement."""
+    match = bundled_matcher("asks").match(sentence)
+    return "" if match is None else match.name
 
 
 def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:

@@ -52,6 +52,8 @@ class _Source:
     """Whether the phrases fit nearly every utterance. After two questions, such a source asks no third question."""
     stance: str = ""
     """The opinion that the phrases express."""
+    asked: tuple[str, str] | None = None
+    """The kind and the area of the question that the phrases answer."""
 
 
 class Listener:
@@ -156,6 +158,7 @@ class Listener:
             after = state.toned(moment.tone, moment.lasts) if moment is not None else state.toned("")
             after = replace(after, being=roles.being or state.being, moment="" if moment is None else moment.name)
             after = replace(after, asks=after.asks and after.moment != "no_questions")
+            after = replace(after, asked=source.asked or after.asked)
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
             return _said(line, roles, after)
@@ -204,8 +207,10 @@ class Listener:
 
     def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question or request, by its kind and its area of life."""
-        if hearing.asked is not None:
-            yield _Source(hearing.asked.lines(self._phrases, state.tone))
+        asked = hearing.asked
+        if asked is not None:
+            about = asked.kind, "" if asked.area is None else asked.area.name
+            yield _Source(asked.lines(self._phrases, state.tone), asked=about)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
