@@ -45,6 +45,7 @@ ADVICE = frozenset(
         "predict",
         "what_if",
         "okay",
+        "normal",
         "judge_me",
         "write",
         "pick",

@@ -20,7 +20,7 @@ from .material import Line, Material, Moment
 from .roles import turned
 from .state import State
 
-SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
+SURE, ORDERED, UNASKED = 0.4, 0.6, 0.7
 """The least confidence in a kind, for a question, for an order, and for any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
@@ -95,7 +95,20 @@ def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, re
     best = max(found, key=lambda one: one.score, default=None)
     kind = "" if best is None else best.name
     if options and (
-        kind in ("", "recommend", "should", "worth", "favourite", "would_you", "fact", "choose", "predict", "permit")
+        kind
+        in (
+            "",
+            "recommend",
+            "should",
+            "worth",
+            "favourite",
+            "would_you",
+            "fact",
+            "choose",
+            "predict",
+            "permit",
+            "explain",
+        )
     ):
         kind = "choose" if asking or kind == "choose" else ""
     if not kind and asking:
@@ -103,8 +116,8 @@ def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, re
     area = area_of(phrases, seen.tree, words, state.before, kind)
     if kind in ("another", "meant") and state.asked:
         kind, area = state.asked[0], area or phrases.areas.get(state.asked[1])
-    if not kind:
-        return None
+    if not kind or (kind in ("fact", "why") and seen.move is not None and seen.move.listens):
+        return None  # "but who takes me at 52?" asks for nothing
     last = state.said[-1] if state.said else ""
     values = {
         "first": options[0] if options else "",

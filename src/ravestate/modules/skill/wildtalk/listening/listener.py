@@ -156,7 +156,11 @@ class Listener:
                 continue
             moment = source.moment
             after = state.toned(moment.tone, moment.lasts) if moment is not None else state.toned("")
-            after = replace(after, being=roles.being or state.being, moment="" if moment is None else moment.name)
+            after = replace(
+                after,
+                being=roles.being or state.being,
+                moment=(source.asked or ("",))[0] if moment is None else moment.name,
+            )
             after = replace(after, asks=after.asks and after.moment != "no_questions")
             after = replace(after, asked=source.asked or after.asked)
             if source.stance:
