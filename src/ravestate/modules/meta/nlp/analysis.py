@@ -53,7 +53,7 @@ ADVICE = frozenset(
     )
 )
 """Classes of ``asks.yaml`` that want advice or an opinion, and no fact."""
-ADVISED = 0.8
+ADVISED = 0.6
 """The least confidence in such a class."""
 
 

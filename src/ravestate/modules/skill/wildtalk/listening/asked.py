@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
+from ravestate.language.moves import LISTENING
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
@@ -30,6 +31,16 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
     "say_what": ("say_what",),
 }
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
+OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
+"""Kinds that are a choice if options are named."""
+OWN = word_set("about_you would_you favourite")
+"""Kinds that ask about the agent."""
+_POINTING = word_set("it its that this he him his she her they them there")
+_YOU = word_set("you your yours yourself u ur")
+BRIEF = 4
+"""The maximum number of words of a choice without a verb: *tea or coffee*."""
+CALM = ("fact", "why", "about_you")
+"""Kinds that count only if the user does not want to be heard: *but who takes me at 52*, *are you even listening*."""
 MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
 _SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
@@ -45,7 +56,7 @@ WEIGHTS = {
     "ROOT": 1.2,
     "xcomp": 1.2,
     "ccomp": 1.2,
-    "nsubj": 0.9,
+    "nsubj": 1.05,
     "npadvmod": 0.5,
     "acomp": 1.4,
 }
@@ -75,10 +86,13 @@ class Asked:
         """Return the groups of answers, the most specific first."""
         general = phrases.asked[self.kind]
         named = [self.area.name] if self.area else []
-        return [*self.own, *general.lines(*named, tone, *self.groups, "say")]
+        first = general.lines("picked") if "picked" in self.groups else []
+        return [*first, *self.own, *general.lines(*named, tone, *self.groups, "say")]
 
 
-def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, request: bool) -> Asked | None:
+def asked_in(
+    phrases: Material, seen: Analysis, asking: str, state: State, moves: Sequence[str], *, request: bool
+) -> Asked | None:
     """Return the question or request of an utterance; None if it has none.
 
     Args:
@@ -86,6 +100,7 @@ def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, re
         seen: The analysis of the utterance.
         asking: The sentence that asks something, or an empty text.
         state: The state of the talk, for *say that again*.
+        moves: The agent's likely next moves.
         request: Whether the utterance is an order.
     """
     words = _words_of(seen.tree, asking)
@@ -94,29 +109,17 @@ def asked_in(phrases: Material, seen: Analysis, asking: str, state: State, *, re
     found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
     best = max(found, key=lambda one: one.score, default=None)
     kind = "" if best is None else best.name
-    if options and (
-        kind
-        in (
-            "",
-            "recommend",
-            "should",
-            "worth",
-            "favourite",
-            "would_you",
-            "fact",
-            "choose",
-            "predict",
-            "permit",
-            "explain",
-        )
-    ):
-        kind = "choose" if asking or kind == "choose" else ""
-    if not kind and asking:
+    if options and (not kind or kind in OPEN):
+        kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
+    if asking and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
         kind = "fact"
     area = area_of(phrases, seen.tree, words, state.before, kind)
     if kind in ("another", "meant") and state.asked:
-        kind, area = state.asked[0], area or phrases.areas.get(state.asked[1])
-    if not kind or (kind in ("fact", "why") and seen.move is not None and seen.move.listens):
+        last = phrases.areas.get(state.asked[1])
+        area = last or area if kind == "another" else area or last
+        kind = state.asked[0]
+    heard = len(moves) == 1 and moves[0] in LISTENING
+    if not kind or (kind in CALM and heard) or (best is None and moves[:1] == ("apologise",)):
         return None  # "but who takes me at 52?" asks for nothing
     last = state.said[-1] if state.said else ""
     values = {
@@ -157,7 +160,7 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, k
             near = 1.0 if word.index in inside else 0.45
             near *= weights.get(word.dep, 1.0)
             scores[area] = max(scores.get(area, 0.0), near - 0.001 * word.index)
-    if not scores:
+    if not scores and not _POINTING.isdisjoint(word.low for word in words):
         for text in re.findall(r"[a-z]+", before.lower()):
             area = next(
                 filter(None, (phrases.area_by_word.get(text.removesuffix(end)) for end in ("", "s", "ing", "ed"))), ""
@@ -183,9 +186,7 @@ def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
 
 
 def _left(tree: Tree, part: Word, noun: Word) -> bool:
-    return part.index < noun.index and all(
-        one is noun or one.dep in _PART for one in (part, *tree.ancestors(part)) if one.index <= noun.index
-    )
+    return part.index < noun.index and part.dep in _PART and noun.index in (part.head, tree.head(part).head)
 
 
 def _words_of(tree: Tree, sentence: str) -> list[Word]:
@@ -242,7 +243,7 @@ def _wh(tree: Tree, words: Sequence[Word]) -> str:
     alone = len(found) == 1
     if (alone and found[0].low not in ("who", "when", "where")) or (found[0].low == "how" and found[-1].low == "come"):
         return ""
-    return turned(tree, found)
+    return turned(tree, found).lower()
 
 
 def _word(seen: Analysis) -> str:

@@ -113,7 +113,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
-    found.asked = asked_in(phrases, seen, asking, state, request=request)
+    found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
@@ -154,6 +154,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         and not statement.conditional and "thing" in roles.values,
         "request": request and len(seen.sentences) == 1,
         "asked": found.asked is not None,
+        "advised": seen.advised,
+        "again": found.asked is not None and bool({"another", "meant"} & seen.asks.keys()) and state.asked is not None,
+        "wording": found.asked is not None and found.asked.kind in ("repeat", "shorter", "say_word"),
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
         found.asked.kind if found.asked else "": True,
         "broken": _is_broken(seen, size),
@@ -193,7 +196,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
     return {
         "question": True,
         "offer": _OFFER.match(asking) is not None,
-        "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
+        "are_you": polar and not modal and subject == "you" and asked is not None and asked.verb == "be",
         "told": (not polar and (mine or subject == "I") and subject != "you" and not modal)
         or bool({"remember", "recall"} & low and "you" in low)
         or ("know" in low and subject == "you" and "my" in low),

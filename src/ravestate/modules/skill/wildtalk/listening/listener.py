@@ -96,7 +96,8 @@ class Listener:
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
         hearing = hear(self._phrases, heard, state)
-        played = self._play(heard, state, chance, hearing.moment)
+        own = hearing.asked is not None and "wording" in hearing.tags  # "say that again" starts no other performance
+        played = self._play(heard, state, chance, "" if own or state.asked else hearing.moment)
         if played is not None:
             text, after = played
             after = after.toned("").having_said(text, text)
