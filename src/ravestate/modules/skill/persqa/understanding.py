@@ -118,7 +118,7 @@ class _Hearing:
             return Meaning("declined", topic=topic, aloud=not asks and not self.sum)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
-        if (asks and not seen.advised) or "ask_everything" in self.acts:
+        if (asks and (not seen.advised or self.reader.asks())) or "ask_everything" in self.acts:
             inquiry = self.inquiry()
             if inquiry and (not inquiry.facts[0].topic or inquiry.facts[0].topic in (EVERYTHING, *self.known)):
                 return inquiry
