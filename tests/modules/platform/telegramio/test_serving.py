@@ -298,8 +298,13 @@ async def test_a_voice_note_is_understood_and_answered_by_voice(bot: Bot, tmp_pa
         file = await bot.do("upload", hexed=note.hex())
         await bot.say(7, voice={**file, "duration": 2})
         [answer] = await bot.do("said", count=1)
+        why = "Bad Request: VOICE_MESSAGES_FORBIDDEN"
+        await bot.do("fault", method="sendVoice", kind="400", why=why)
+        await bot.say(7, voice={**file, "duration": 2})
+        [_, text] = await bot.do("said", count=2)
     assert "how are you" in answer["caption"].lower()
     assert answer["voice"]["file_size"] > 1000
+    assert "how are you" in text["text"].lower()
 
 
 @live

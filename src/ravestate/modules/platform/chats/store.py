@@ -225,6 +225,12 @@ class Store:
         with self._transaction():
             self._db.execute("UPDATE outbox SET state = 'queued' WHERE n = ?", (item.n,))
 
+    def write_out(self, item: Item) -> None:
+        """Turn a voice note that was refused into a text."""
+        message = replace(item.message, kind="text", trace="")
+        with self._transaction():
+            self._db.execute("UPDATE outbox SET state = 'queued', message = ? WHERE n = ?", (_json(message), item.n))
+
     def sent(self, item: Item, id: str) -> None:
         """Note that a message is delivered, and its id on the messenger."""
         with self._transaction():
