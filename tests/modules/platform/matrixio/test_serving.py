@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import logging
+import sqlite3
 from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from modules.platform.matrixio.proxy import Proxy
 from modules.platform.telegramio.test_serving import host, parrot
 from ravestate.errors import PlatformError
 from ravestate.modules import matrixio, rawio
+from ravestate.modules.platform.chats import Incoming, Store
 from ravestate.modules.platform.matrixio.account import JOINS
 from ravestate.runtime.agent import Agent
 
@@ -259,6 +261,30 @@ def test_nothing_is_lost_or_doubled_after_failed_requests(
             assert mine == ["one", "1004 bytes", "two"] + ["the last"] * (room == rooms[0])
 
     test(homeserver, tmp_path)
+
+
+@pytest.mark.usefixtures("_short_waits")
+def test_events_that_cannot_be_kept_come_again(
+    homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take, failures = Store.take, [sqlite3.OperationalError("database or disk is full")] * 2
+
+    def take_if_there_is_space(store: Store, message: Incoming) -> Any:
+        if failures:
+            raise failures.pop()
+        return take(store, message)
+
+    monkeypatch.setattr(Store, "take", take_if_there_is_space)
+
+    @live("Robin", "Ada")
+    async def test(folder: Path, robin: Account, ada: Account) -> None:
+        async with running(robin, folder):
+            room = await ada.room(robin.id)
+            await ada.say(room, "Hello")
+            assert await ada.listen(1) == [f"{room}: Hello"]
+
+    test(homeserver, tmp_path)
+    assert not failures
 
 
 # Synapse itself refuses worse ones.

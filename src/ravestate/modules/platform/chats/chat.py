@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Literal
 
 from ravestate.errors import PlatformError, RavestateError
 from ravestate.modules import interloc, rawio
-from ravestate.modules._text import printable, without_controls
+from ravestate.modules._text import printable
 
 from . import people
 from .commands import COMMANDS, FORGOTTEN, NOT_FORGOTTEN, UNCLEAR, UNHEARD, UNSEEN, Command, explanation
+from .draft import Draft
+from .files import fetched
 from .leaving import agent_left
 from .messages import DeliveryError, Outgoing, Person
 from .sender import back_off
@@ -36,20 +38,8 @@ GRACE = 0.05
 TURN = 1.0
 """The seconds for which a message waits for the answer to the message before it. Slow answers may be interrupted."""
 
-SLOW = 0.5
-"""The seconds of work after which the chat shows that the agent is writing."""
-
-SHOWN = 4.0
-"""The seconds for which a chat shows that the agent is writing. Messengers show it for five."""
-
-GROWTH = 1.0
-"""The minimum number of seconds between two views of a growing answer. Messengers allow about one a second."""
-
 FAREWELL = 10.0
 """The seconds that the agent has for a greeting and for a farewell."""
-
-FETCHES = 4
-"""The number of attempts to fetch a file."""
 
 
 class Chat:
@@ -72,8 +62,7 @@ class Chat:
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
         self._repeated: Counter[str] = Counter()  # answers that the store has from before a crash
-        self._partial = ""
-        self._grown = asyncio.Event()
+        self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
         self._news = asyncio.Event()
@@ -270,7 +259,7 @@ class Chat:
         """Show the agent a picture, or let it hear a voice note."""
         message = entry.message
         try:
-            data = await self._fetch(message.file)
+            data = await fetched(self._room.carrier, message.file)
         except DeliveryError as error:
             self._room.log.warning("a file was not fetched: %s", error)
             self._reply(UNSEEN)
@@ -290,21 +279,11 @@ class Chat:
         if text.strip():
             context.put(rawio.input, printable(text))
 
-    async def _fetch(self, file: str) -> bytes:
-        for attempt in range(FETCHES):
-            try:
-                return await self._room.carrier.fetch(file)
-            except DeliveryError as error:
-                if error.final or attempt == FETCHES - 1:
-                    raise
-                await asyncio.sleep(error.wait or back_off(attempt))
-        raise AssertionError("the last attempt raises")
-
     # ------------------------------------------------------------------------------------ from the agent
 
     def utter(self, text: str) -> None:
         """Take a whole utterance of the agent."""
-        self._partial = ""
+        self._draft.text = ""
         self._speak(printable(text).strip(), self._cause())
 
     def _reply(self, text: str) -> None:
@@ -355,13 +334,12 @@ class Chat:
 
     def grow(self, piece: str) -> None:
         """Take a piece of an utterance that is still growing. It becomes a message once it is whole."""
-        self._partial += without_controls(piece)
-        self._grown.set()
+        self._draft.grow(piece)
 
     def fall_silent(self) -> None:
         """End a growing utterance that no rule has written as a whole."""
-        if self._partial:
-            self.utter(self._partial)
+        if self._draft.text:
+            self.utter(self._draft.text)
 
     # ------------------------------------------------------------------------------------ to the store
 
@@ -372,7 +350,7 @@ class Chat:
 
     async def _until_answered(self) -> None:
         assert self.context is not None  # the conversation runs
-        work = asyncio.create_task(self._show_work())
+        work = asyncio.create_task(self._draft.show(self._room, lambda: self._silent))
         try:
             while self._open and self._state != "gone":
                 heard = tuple(self._open)
@@ -385,20 +363,6 @@ class Chat:
             if self._following is asyncio.current_task():
                 self._following = None
         self._room.make_room()
-
-    async def _show_work(self) -> None:
-        await asyncio.sleep(SLOW)
-        while True:
-            self._grown.clear()
-            if not self._silent and self._room.sender.pace.spare():  # messages take priority
-                try:
-                    await self._room.carrier.show_work(self.id, printable(self._partial).strip())
-                except DeliveryError as error:  # a failure to show it does no harm
-                    await asyncio.sleep(error.wait)
-            await asyncio.sleep(GROWTH)
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(SHOWN - GROWTH):
-                    await self._grown.wait()
 
     def _flush_said(self, attempt: int = 0) -> None:
         """Keep the answers now, though the agent may still work; if the file fails, later."""
