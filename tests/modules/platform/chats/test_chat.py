@@ -10,7 +10,7 @@ import ravestate as rs
 from modules.platform.chats.messenger import Post, letter, parrot, room
 from modules.platform.webio.visit import in_virtual_time, past
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import DeliveryError, Person, Room
+from ravestate.modules.platform.chats import DeliveryError, Outgoing, Person, Room
 
 ADA, BOB = Person("1", "Ada"), Person("2", "Bob")
 
@@ -74,6 +74,26 @@ async def test_a_user_who_leaves_and_returns_at_once_is_answered(tmp_path: Path)
     async with room(tmp_path, post, slow):
         await past(10.0)
         assert len(post.sent) == 2
+
+
+class Leisurely(Post):
+    """A messenger that takes 2 s to say that the chat is closed."""
+
+    async def send(self, message: Outgoing, again: bool) -> str:
+        if message.text == "one":
+            await past(2.0)
+            raise DeliveryError("blocked", gone=True)
+        return await super().send(message, again)
+
+
+@in_virtual_time
+async def test_a_late_refusal_does_not_close_the_chat_of_a_user_who_has_returned(tmp_path: Path) -> None:
+    post = Leisurely()
+    async with room(tmp_path, post, slow) as opened:
+        opened.receive([letter("one")])
+        await past(4.0)
+        opened.receive([letter(kind="left"), letter("I am back")])
+        assert await post.said(1) == ["a: I am back"]
 
 
 # ------------------------------------------------------------------------------------ groups

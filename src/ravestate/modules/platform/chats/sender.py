@@ -107,7 +107,11 @@ class Sender:
             try:
                 item = self._store.next(chat)
                 error = None if item is None else await self._attempt(item)
-                if item is None or (error is not None and self._is_elsewhere(chat, error)):
+                if item is None:
+                    return
+                if error is not None and not self._store.has(item):  # the chat was closed meanwhile
+                    error = None
+                if error is not None and self._is_elsewhere(chat, error):
                     return
                 if error is not None and error.final:
                     self._give_up(item, error)

@@ -213,6 +213,10 @@ class Store:
             return Item(n, _outgoing(message, data, chat), state == "begun")
         return None
 
+    def has(self, item: Item) -> bool:
+        """Return whether a message is still to be delivered."""
+        return bool(self._all("SELECT 1 FROM outbox WHERE n = ?", item.n))
+
     def begin(self, item: Item, trace: str) -> Item:
         """Note that an attempt to deliver begins, with the carrier's trace; return the item with the trace."""
         message = replace(item.message, trace=trace)
