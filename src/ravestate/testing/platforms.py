@@ -24,6 +24,9 @@ PATIENCE = 60.0
 
 USERS = ("ada", "bob", "cleo", "dora", "emil")
 
+LAST = "the last message"
+"""The message with which each check ends, so that a doubled answer before it is seen."""
+
 echo = rs.Module("echo", requires=(rawio,))
 """The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""
 
@@ -75,8 +78,8 @@ async def check_answer(driver: Driver) -> None:
     async with _limited(driver):
         for n, text in enumerate(texts, start=1):
             await driver.say("ada", text)
-            said = await driver.read("ada", n)
-            _agree(said, texts[:n])
+            _agree(await driver.read("ada", n), texts[:n])
+        await _end(driver, "ada", texts)
 
 
 async def check_order(driver: Driver) -> None:
@@ -85,7 +88,7 @@ async def check_order(driver: Driver) -> None:
     async with _limited(driver):
         for text in texts:
             await driver.say("ada", text)
-        _agree(await driver.read("ada", len(texts)), texts)
+        await _end(driver, "ada", texts)
 
 
 async def check_users(driver: Driver) -> None:
@@ -94,9 +97,10 @@ async def check_users(driver: Driver) -> None:
         for n in range(3):
             await asyncio.gather(*(driver.say(user, f"{n} of {user}") for user in USERS))
         for user in USERS:
-            _agree(await driver.read(user, 3), [f"{n} of {user}" for n in range(3)])
+            texts = [f"{n} of {user}" for n in range(3)]
+            _agree(await driver.read(user, 3), texts)
             await driver.say(user, "count")
-            _agree((await driver.read(user, 4))[3:], ["4"])
+            await _end(driver, user, [*texts, "4"])
 
 
 async def check_restart(driver: Driver) -> None:
@@ -117,7 +121,7 @@ async def check_restart(driver: Driver) -> None:
             await driver.restart()
         await say_all("after")
         for user in USERS:
-            _agree(await driver.read(user, len(texts[user])), texts[user])
+            await _end(driver, user, texts[user])
 
 
 CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (check_answer, check_order, check_users, check_restart)
@@ -129,6 +133,12 @@ async def _limited(driver: Driver) -> AsyncGenerator[None]:
     """Enter a driver, for at most `PATIENCE` seconds."""
     async with driver, asyncio.timeout(PATIENCE):
         yield
+
+
+async def _end(driver: Driver, user: str, wanted: list[str]) -> None:
+    """Check that a user has received these messages and no others: the answer to one more message comes next."""
+    await driver.say(user, LAST)
+    _agree(await driver.read(user, len(wanted) + 1), [*wanted, LAST])
 
 
 def _agree(found: list[str], wanted: list[str]) -> None:
