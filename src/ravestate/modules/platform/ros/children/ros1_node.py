@@ -122,10 +122,10 @@ class Ros1Node:
                 return
             outlet.put(message._buff)
 
+        # Subscribers of one topic share rospy's queue, so it may not be short for the sake of one: the outlet skips messages.
         return rospy.Subscriber(
-            binding["name"], rospy.AnyMsg, take, queue_size=1 if binding["latest"] else None, buff_size=1 << 24,
-            tcp_nodelay=True,
-        )  # fmt: skip
+            binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 24, tcp_nodelay=True
+        )
 
     def _service_class(self, type_, md5):
         class Service:
