@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from ravestate.testing import CHECKS, Driver
+from ravestate.testing import CHECKS, Driver, platforms
 from ravestate.testing.platforms import check_answer, check_order, check_restart, check_users
 
 
@@ -76,3 +76,17 @@ def test_a_doubled_last_message_is_a_fault(
             await check(platform(last))
 
     asyncio.run(test())
+
+
+class Silent(Memory):
+    """A platform that answers nobody."""
+
+    async def read(self, user: str, count: int) -> list[str]:
+        await asyncio.Event().wait()
+        return []
+
+
+def test_an_answer_that_never_comes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(platforms, "PATIENCE", 0.01)
+    with pytest.raises(AssertionError, match=r"ada has not received message 1 within 0\.01 s: see whether the agent"):
+        asyncio.run(check_answer(Silent()))

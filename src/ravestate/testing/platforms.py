@@ -20,7 +20,7 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 PATIENCE = 60.0
-"""The seconds that a check may take."""
+"""The seconds that a check waits for a message."""
 
 USERS = ("ada", "bob", "cleo", "dora", "emil")
 
@@ -78,7 +78,7 @@ async def check_answer(driver: Driver) -> None:
     async with _limited(driver):
         for n, text in enumerate(texts, start=1):
             await driver.say("ada", text)
-            _agree(await driver.read("ada", n), texts[:n])
+            _agree(await _read(driver, "ada", n), texts[:n])
         await _end(driver, "ada", texts)
 
 
@@ -98,7 +98,7 @@ async def check_users(driver: Driver) -> None:
             await asyncio.gather(*(driver.say(user, f"{n} of {user}") for user in USERS))
         for user in USERS:
             texts = [f"{n} of {user}" for n in range(3)]
-            _agree(await driver.read(user, 3), texts)
+            _agree(await _read(driver, user, 3), texts)
             await driver.say(user, "count")
             await _end(driver, user, [*texts, "4"])
 
@@ -115,7 +115,7 @@ async def check_restart(driver: Driver) -> None:
     async with _limited(driver):
         for n in range(2):
             await say_all(f"before {n}")
-            await driver.read(USERS[n], 2 * n + 1)
+            await _read(driver, USERS[n], 2 * n + 1)
             await driver.kill()
             await say_all(f"during {n}")
             await driver.restart()
@@ -130,15 +130,27 @@ CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (check_answer, check_o
 
 @contextlib.asynccontextmanager
 async def _limited(driver: Driver) -> AsyncGenerator[None]:
-    """Enter a driver, for at most `PATIENCE` seconds."""
-    async with driver, asyncio.timeout(PATIENCE):
+    """Enter a driver, for a limited time."""
+    async with driver, asyncio.timeout(5 * PATIENCE):
         yield
+
+
+async def _read(driver: Driver, user: str, count: int) -> list[str]:
+    """Wait until a user has received `count` messages; return all that they have received."""
+    try:
+        async with asyncio.timeout(PATIENCE):
+            return await driver.read(user, count)
+    except TimeoutError:
+        raise AssertionError(
+            f"{user} has not received message {count} within {PATIENCE:g} s: see whether the agent still runs, and what "
+            "it logs"
+        ) from None
 
 
 async def _end(driver: Driver, user: str, wanted: list[str]) -> None:
     """Check that a user has received these messages and no others: the answer to one more message comes next."""
     await driver.say(user, LAST)
-    _agree(await driver.read(user, len(wanted) + 1), [*wanted, LAST])
+    _agree(await _read(driver, user, len(wanted) + 1), [*wanted, LAST])
 
 
 def _agree(found: list[str], wanted: list[str]) -> None:
