@@ -217,8 +217,8 @@ class Conversation:
 
     def _utter(self, text: str) -> None:
         growing = self._growing
-        if growing is not None and text.startswith(growing.text):
-            growing.grow(text[len(growing.text) :])
+        if growing is not None and (rest := rawio.rest(text, growing.text)) is not None:
+            growing.grow(rest)
             self._fall_silent()
         elif text.strip():
             utterance = Utterance()

@@ -58,12 +58,8 @@ class Speech:
         self.text += piece
         self._grown.set()
 
-    def finish(self, text: str | None = None) -> None:
-        """End the text; `text` is the complete one."""
-        if text is not None:
-            if not text.startswith(self.text[: self._given]):
-                self._given = 0  # the complete text is another text: speak it from its beginning
-            self.text = text
+    def finish(self) -> None:
+        """End the text."""
         self.whole = True
         self._grown.set()
 

@@ -248,7 +248,7 @@ async def speak_early(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=rawio.output.changed.max_age(None).detached(),
-    reads=conversation,
+    reads=(conversation, rawio.speaking),
     writes=rawio.heard,
     emits=speech,
     background=True,
@@ -262,12 +262,14 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
     if (talk := ctx[conversation]) is None:
         return rs.Resign("the line is closed")
     growing = talk.mouth.growing
-    if growing is not None and text.startswith(growing.text):
+    rest = None if growing is None else rawio.rest(text, growing.text)
+    if growing is not None and (rest is not None or not ctx[rawio.speaking]):
         talk.mouth.growing = None
-        growing.finish(text)
-        if growing.over:  # it was cut while it grew: its history is complete only now
+        growing.grow(rest or "")
+        growing.finish()  # without the flag, another utterance is the only sign that this one was given up
+        if growing.over and rest is not None:  # it was cut while it grew: its history is complete only now
             ctx[rawio.heard] = growing.heard
-    elif speakable(text):
+    if rest is None and speakable(text):
         ctx.emit(speech, Speech(text, whole=True))
     return None
 
@@ -314,10 +316,10 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                     while (lead := mouth.lead) > LEAD:
                         await ctx.sleep(max(0.05, lead - LEAD))
                 await mouth.played_out()
-                saying.heard = saying.text
+                saying.heard = saying.text.strip()
             except PlatformError as error:
                 ctx.log.error("%s", error)
-                saying.heard = saying.text  # the text is on the screen, if there is one
+                saying.heard = saying.text.strip()  # the text is on the screen, if there is one
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)
                 raise
