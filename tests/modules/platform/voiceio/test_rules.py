@@ -336,6 +336,22 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
     assert opened[0] is opened[1]
 
 
+def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the conversation, or at its end if the file is lost only then."""
+    script(monkeypatch, "Hello.")
+    file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
+    with pytest.raises(PlatformError, match=r"ends in \.wav"):
+        talk(file, tmp_path / "out", storyteller(), settings=FAST)
+
+    def lose(_: Said) -> None:
+        if out.is_file():
+            out.unlink()
+            out.mkdir()
+
+    with pytest.raises(PlatformError, match="cannot write"):
+        talk(file, out, storyteller(), settings=FAST, show=lose)
+
+
 def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:
     file = wav(tmp_path / "in.wav", spoken("Hello."))
     with pytest.raises(PlatformError, match="ravestate voice get huge"):

@@ -30,7 +30,7 @@ class Settings(rs.Settings):
     source: str = "default"
     """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` comes first."""
     sink: str = "default"
-    """The loudspeaker: ``default``, a device's name, or a WAV file."""
+    """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
     """Whether the agent is deaf while it speaks: for a loud loudspeaker beside the microphone. Nothing then interrupts it."""
     echo_cancellation: bool = True

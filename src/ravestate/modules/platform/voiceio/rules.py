@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 DEAF = 0.25
 """half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
-LEAD = 4.0
-"""Seconds of sound in the loudspeaker's queue that are enough: no more text is made into sound."""
 LONGEST_END = 300.0
 """The greatest number of seconds for which an agent may go on after the end of a recording."""
 
@@ -82,9 +80,14 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         ctx[user_speaking] = False
         ctx[conversation] = None
-        talk.close(linger=line is not None)  # a page may open its microphone again
-    if line is None:
-        ctx.stop()
+        fault = None
+        try:
+            talk.close(linger=line is not None)  # a page may open its microphone again
+        except PlatformError as error:
+            fault = error
+            ctx.log.error("%s", fault)
+        if line is None:
+            ctx.stop(fault)
     return None
 
 
@@ -110,7 +113,7 @@ async def _follow(ctx: rs.RuleContext, talk: Conversation) -> None:
             if ear.clipped and not clipped:
                 clipped = True
                 ctx.log.warning("the microphone's sound is too loud and is clipped: lower its level")
-            if getattr(line, "ended", False):
+            if line.ended:
                 ended_at = min(ended_at, ctx.now)
                 if quiet is None and ctx.now - ended_at > settings.longest_pause + 0.5:
                     quiet = asyncio.ensure_future(ctx.quiet())
@@ -313,8 +316,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                             ctx[held] = True
                         else:
                             ctx[agent_speaking] = True
-                    while (lead := mouth.lead) > LEAD:
-                        await ctx.sleep(max(0.05, lead - LEAD))
+                    await mouth.room()
                 await mouth.played_out()
                 saying.heard = saying.text.strip()
             except PlatformError as error:
