@@ -1,5 +1,7 @@
 """Opening a conversation: the parts that a line needs, and what is closed with it."""
 
+import asyncio
+import threading
 from pathlib import Path
 
 import pytest
@@ -8,7 +10,9 @@ from modules.platform.voiceio.speech import FAST, Scripted, wav
 from modules.platform.voiceio.test_wav_line import run
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.voiceio import Settings, opening, sound
+from ravestate.modules.platform.voiceio.ear import Turn
 from ravestate.modules.platform.voiceio.echo import EchoCanceller
+from ravestate.modules.platform.voiceio.recogniser import Recognised
 from ravestate.modules.platform.voiceio.wav_line import WavLine
 from ravestate.modules.platform.webio.line import PageLine
 
@@ -80,6 +84,45 @@ def test_all_parts_are_closed_if_the_sound_cannot_be_written(monkeypatch: pytest
 
     run(talk)
     assert closed == ["recogniser", "voice"]
+
+
+def test_words_of_a_turn_that_goes_on_are_unwanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The user speaks again while the words of the first part are recognised."""
+    scripted, begun, asked = Scripted("Hello."), threading.Event(), list[threading.Event]()
+
+    def recognise(_: bytes, *, partial: bool = False, unwanted: threading.Event) -> Recognised:
+        asked.append(unwanted)
+        begun.set()
+        assert unwanted.wait(20.0)
+        return Recognised("", 0.0)
+
+    monkeypatch.setattr(scripted, "recognise", recognise)
+    monkeypatch.setattr(opening, "Recogniser", scripted)
+
+    async def talk() -> None:
+        conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+        judging = asyncio.create_task(conversation.judge(Turn(0.0, 1.0, chunks=[bytes(32000)])))
+        await asyncio.to_thread(begun.wait)
+        judging.cancel()
+        await asyncio.wait([judging])
+        assert judging.cancelled() and asked[0].is_set()
+        conversation.close()
+
+    asyncio.run(talk())
+
+
+def test_the_model_of_melodies_stays_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))
+
+    async def talk() -> None:
+        found: list[object] = []
+        for _ in range(2):
+            conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+            found.append(conversation.melody)
+            conversation.close()
+        assert found[0] is found[1] is not None
+
+    run(talk)
 
 
 class Devices(WavLine):

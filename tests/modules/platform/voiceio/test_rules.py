@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import wave
 from pathlib import Path
 from typing import Any
@@ -350,6 +351,12 @@ def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeyp
 
     with pytest.raises(PlatformError, match="cannot write"):
         talk(file, out, storyteller(), settings=FAST, show=lose)
+
+
+def test_the_names_in_the_readme_are_there() -> None:
+    readme = (Path(voiceio.__file__).parent / "README.md").read_text(encoding="utf-8")
+    names = re.findall(r"^\| `voiceio\.(\w+)", readme, re.MULTILINE)
+    assert len(names) > 10 and set(names) <= set(voiceio.__all__)
 
 
 def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ class Settings(rs.Settings):
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """Seconds after which a recogniser counts as stuck, and starts again."""
+    """Seconds for a piece of at most 28 s of sound, after which a recogniser counts as stuck, and starts again."""
     captions: Seconds = 1.0
     """Seconds between two captions (``rawio.hearing``) while the user speaks; 0 for none."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from .names import Settings
 from .pair import Pair
 from .recogniser import Recognised, Recogniser
 from .synthesiser import Synthesiser
-from .turn import Melody, is_back_channel, is_echo, wanted_silence
+from .turn import Melody, is_back_channel, is_echo, melody_of, wanted_silence
 from .wav_line import WavLine
 
 
@@ -45,6 +46,22 @@ class Conversation:
             parts.callback(self.ear.close)
             parts.callback(self.line.close)
 
+    async def words(self, sound: bytes, *, partial: bool = False) -> Recognised:
+        """Return the words of a sound. If the call is cancelled, its request no longer keeps later ones waiting.
+
+        Args:
+            sound: The sound (16 kHz).
+            partial: Whether the sound is the beginning of an utterance, for a caption.
+
+        Raises:
+            PlatformError: The recogniser fails.
+        """
+        unwanted = threading.Event()
+        try:
+            return await asyncio.to_thread(self.recogniser.recognise, sound, partial=partial, unwanted=unwanted)
+        finally:
+            unwanted.set()
+
     async def judge(self, turn: Turn) -> tuple[Recognised, float]:
         """Return the words of a turn, and the seconds of silence after which it is over.
 
@@ -52,9 +69,12 @@ class Conversation:
             PlatformError: The recogniser fails.
         """
         sound, melody = turn.sound, self.melody
-        hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
-        complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
-        found = await hearing
+        hearing = asyncio.create_task(self.words(sound))
+        try:
+            complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
+            found = await hearing
+        finally:
+            hearing.cancel()
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
@@ -88,7 +108,8 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
         recorded = given is None and is_file(settings.source)  # the same recording gives the same conversation
         voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
-        melody = await asyncio.to_thread(_melody, warn)
+        if (melody := await asyncio.to_thread(_melody)) is None:
+            warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")
         line = given or await _line(settings)
         ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(line, settings, warn))
     except BaseException:
@@ -130,12 +151,9 @@ def _devices(source: str, sink: str) -> Line:
     return DeviceLine(source, sink)
 
 
-def _melody(warn: Callable[[str], None]) -> Melody | None:
+def _melody() -> Melody | None:
     file = smart_turn()
-    if file is None:
-        warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")
-        return None
-    return Melody(file)
+    return None if file is None else melody_of(file)
 
 
 def _canceller(line: Line, settings: Settings, warn: Callable[[str], None]) -> EchoCanceller | None:

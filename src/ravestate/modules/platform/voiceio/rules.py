@@ -148,7 +148,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
         if (turn := talk.ear.turn) is None or talk.recogniser.busy:
             continue
         try:
-            found = await asyncio.to_thread(talk.recogniser.recognise, turn.sound, partial=True)
+            found = await talk.words(turn.sound, partial=True)
         except PlatformError as error:
             ctx.log.warning("%s", error)
             continue
