@@ -76,4 +76,3 @@ def _length(samples: sound.Samples) -> int:
         return len(samples)
     power = (frames**2).mean(axis=1)
     return FRAME * (int(np.flatnonzero(power >= power.max() / 100)[-1]) + 1)
-

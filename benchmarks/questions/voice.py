@@ -62,9 +62,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
     for model in WHOLE:
         cuts, missed, count = ends_of_turns(model, bench.several(30, 8))
         for name, share in ((f"false cuts of {count} pauses", cuts), (f"missed ends of {count} sentences", missed)):
-            yield measured(
-                "voice", f"{model}: {name}", [share], unit="core", target="<= 10%", reach=lambda x: x <= 0.1
-            )
+            yield measured("voice", f"{model}: {name}", [share], unit="core", target="<= 10%", reach=lambda x: x <= 0.1)
     bench.progress("interruptions")
     delays, exact, near = interruptions(bench.several(20, 4))
     worst = statistics.quantiles(delays, n=20, method="inclusive")[-1]

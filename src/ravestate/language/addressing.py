@@ -10,7 +10,9 @@ _AGREEING = {"is": "are", "does": "do", "has": "have", "was": "were"}
 
 
 def addressed(sentence: str, names: Collection[str]) -> str:
-    """Replace the agent's names and *this robot* by *you*. If there is a *you* already, drop names that only call.
+    """Replace the agent's names and *this robot* by *you*.
+
+    If the sentence has a *you* already, drop names that only address the agent.
 
     Example:
         >>> addressed("What are Robin's hobbies?", ["Robin"]), addressed("Robin, how are you?", ["Robin"])

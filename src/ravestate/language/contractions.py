@@ -33,7 +33,7 @@ def _written(table: Any) -> dict[str, str]:
 _TABLE: Any = load_yaml((files("ravestate.language") / "slips.yaml").read_text(encoding="utf-8"), "slips.yaml")
 
 CONTRACTIONS = _contractions(_TABLE["contractions"])
-"""The contractions of written English, in lower case, with their words."""
+"""Contractions of written English, in lower case → the words that they stand for."""
 
 WRITTEN = _written(_TABLE)
-"""Short forms and common slips of one to three words, in lower case, as written English has them."""
+"""Short forms and common slips, of one to three words in lower case → their form in written English."""

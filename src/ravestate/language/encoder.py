@@ -48,7 +48,7 @@ class Encoder:
         self._running: dict[str, threading.Event] = {}
 
     def load(self) -> None:
-        """Load the model now. Without this call, the first use of another method loads it, with the same errors.
+        """Load the model now, not at the first use of another method. That use would raise the same errors.
 
         Raises:
             PlatformError: A package or the model is missing or broken. The message says how to mend that.
@@ -131,9 +131,8 @@ class Encoder:
         if self._mean is None:
             self._mean = _pools_by_mean(model.folder)
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
-        for number, text in enumerate(
-            texts
-        ):  # one text per run: a quantised model scales over a batch, so each text would change the others' vectors
+        # One text per run: a quantised model scales over a batch, so each text would change the others' vectors.
+        for number, text in enumerate(texts):
             _, hidden, mask = next(model.run([text]))
             rows[number] = _pooled(hidden, mask, self._mean)[0]
         norms = np.linalg.norm(rows, axis=1, keepdims=True)
@@ -151,7 +150,7 @@ def _pooled(hidden: NDArray[Any], mask: NDArray[Any], mean: bool) -> NDArray[Any
 
 
 def _pools_by_mean(folder: Path) -> bool:
-    """Return whether the vector of a text is the mean over its tokens. If not, it is the first token's, as in bge."""
+    """Return whether the vector of a text is the mean over its tokens. If not, it is the vector of the first token."""
     try:
         config = json.loads((folder / "1_Pooling" / "config.json").read_text(encoding="utf-8"))
         return bool(config["pooling_mode_mean_tokens"])

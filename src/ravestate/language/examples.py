@@ -43,7 +43,7 @@ def parse_examples(found: Any, source: str) -> Examples:
     """Return the examples of a YAML value.
 
     Raises:
-        DeclarationError: It is not a mapping from names to lists of texts.
+        DeclarationError: The value is not a mapping from names to lists of texts.
     """
     if not isinstance(found, Mapping):
         raise DeclarationError(f"{source}: write a mapping from a class to its sentences: greeting: [hello, hi there]")

@@ -6,7 +6,7 @@ import ctypes
 
 
 def give_back() -> None:
-    """Return freed memory from the C library to the system; without glibc, do nothing.
+    """Return freed memory from the C library to the system; if the library is not glibc, do nothing.
 
     Loading a model leaves tens of megabytes in the heap of its thread.
     """

@@ -135,7 +135,7 @@ class Lexicon:
 
 
 def _dictionary() -> tuple[frozenset[str], dict[str, str], dict[str, str]]:
-    """Return the dictionary's ordinary words, its names, and the words that are both; lower case maps to names."""
+    """Return the dictionary's ordinary words, its names, and the words that are both. Names have keys in lower case."""
     spec = find_spec("spylls")
     if spec is None or spec.origin is None:
         raise ImportError("No module named 'spylls'")

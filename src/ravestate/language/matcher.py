@@ -39,7 +39,7 @@ COMMON = 0.1
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
-"""The least margin by which the other examples put an example into a wrong class, for `confusions` to list it."""
+"""`confusions` lists an example if the other examples put it into a wrong class by at least this margin."""
 NONE = ""
 REMEMBERED = 256
 """The number of sentences whose classes a matcher keeps, because all skills ask for the same sentences."""
@@ -66,7 +66,7 @@ class Match:
 class Matcher:
     """A classifier that puts a sentence into one of several classes, or into none. Thread-safe.
 
-    Without a loaded model, only sentences that equal an example word for word are recognised.
+    Until `load` is called, it recognises only sentences that equal an example word for word.
 
     Example:
         ::
@@ -86,7 +86,7 @@ class Matcher:
         centre: float | None = None,
         encoder: Encoder | None = None,
     ) -> None:
-        """Take the examples; nothing is loaded yet.
+        """Take the examples; load nothing yet.
 
         Args:
             examples: Sentences by class.
@@ -142,7 +142,7 @@ class Matcher:
         return self._learnt.confusions
 
     def prepare(self, sentences: Sequence[str]) -> None:
-        """Encode sentences in one run, so that this matcher and others then find their vectors ready."""
+        """Encode sentences in one run, so that all matchers then find the vectors ready."""
         if self._learnt is not None:
             self._encoder.encode([plain(sentence) for sentence in sentences])
 
@@ -167,7 +167,7 @@ class Matcher:
         return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
 
     def match_exactly(self, sentence: str) -> Match | None:
-        """Return the class of the example that a sentence equals word for word; its name is empty for `NONE`."""
+        """Return the class of the example that a sentence equals word for word; None if it equals no example."""
         text = plain(sentence)
         name = self.exact.get(text)
         return None if name is None else Match(1.0, text, 1.0, name=name, text=sentence)
@@ -240,7 +240,7 @@ class _Learnt:
         }
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:
-        """Return the `most` best classes of each sentence, best first; all if it is None."""
+        """Return the `most` best classes of each sentence, best first; all if `most` is None."""
         import numpy as np
 
         if not sentences:
@@ -286,7 +286,7 @@ def margins_of(scores: NDArray[Any]) -> NDArray[Any]:
 
 
 def calibrated(margins: NDArray[Any], right: NDArray[Any]) -> tuple[float, float]:
-    """Return the slope and centre of a logistic curve: from a margin to the share of right answers (Platt scaling)."""
+    """Return the slope and centre of the logistic curve from margins to shares of right answers (Platt scaling)."""
     import numpy as np
 
     features: NDArray[Any] = np.stack([margins, np.ones_like(margins)], axis=1)

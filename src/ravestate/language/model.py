@@ -47,7 +47,7 @@ def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
 
 
 def folder_of(folder: Path | str | None, bundled: str) -> Path:
-    """Return the absolute path of `folder`; without one, the folder of the model `bundled`.
+    """Return the absolute path of `folder`. If it is None or empty, return the folder of the model `bundled`.
 
     Raises:
         PlatformError: The folder is missing, or the package with the bundled models is not installed.

@@ -24,7 +24,7 @@ class Normal:
     """A text in its normal form."""
 
     text: str
-    """The normal form: short forms written out, typing errors mended, names and *I* in capitals, a mark at the end."""
+    """The normal form: short forms written out, typing errors mended, capitals for names and *I*, a mark at the end."""
     original: str
     """The text as typed."""
     origin: tuple[int, ...]
@@ -94,11 +94,11 @@ _STATING = word_set(
 """Words that begin statements."""
 _INTERJECTION = word_set("hi hello hey yes yeah yep no nope ok okay thanks sorry wow oh well bye")
 _OPENING = _INTERJECTION | word_set("and but so then now")
-"""Words after which a clause may begin as at the beginning of a sentence."""
+"""Words after which a clause may begin like a sentence."""
 _GOVERNING = _AUX | word_set(
     "know tell me ask wonder see say guess remember forget forgot about of and or but so nor neither as than that if"
 )
-"""Words after which a clause needs no full stop before it: *I know who you are*."""
+"""Words before a clause that belongs to the same sentence: *know* in *I know who you are*."""
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
 _INTRODUCING = ("name is", "name's", "this is")
@@ -251,7 +251,7 @@ def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:
 
 
 def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lexicon | None) -> str | None:
-    """Return the form of a word in `WRITTEN`; None if it has none, or means something else here."""
+    """Return the form of a word in `WRITTEN`; None if the word is not there, or means something else here."""
     word, low = piece.text, piece.low
     opens = piece.first or last in _OPENING
     asks = any("?" in other.gap for other in following)
@@ -324,7 +324,7 @@ def _end(sentence: Sequence[_Piece], following: _Piece, mark: str = "") -> None:
 
 
 def _asks_anew(sentence: Sequence[_Piece], following: str) -> bool:
-    """Return whether a question without any mark begins after a statement."""
+    """Return whether a question begins after a statement, with no mark between them."""
     before = [piece.low for piece in sentence]
     if len(before) < 2 or before[-1] in _GOVERNING or before[0] in _AUX - _BE or not _WH.isdisjoint(before):
         return False

@@ -38,7 +38,7 @@ class Reranker:
         self._folder = folder
 
     def load(self) -> None:
-        """Load the model now; otherwise the first `score` does."""
+        """Load the model now, not at the first `score`."""
         model_in(self._folder, BUNDLED)
 
     def score(self, query: str, passages: Sequence[str]) -> NDArray[np.float32]:
@@ -47,7 +47,8 @@ class Reranker:
         Scores are logits. Those of the bundled model go from about -11 (unrelated) to +11 (an answer). A pair of short
         sentences takes about 3 ms. The model reads the first 512 tokens of a pair.
         """
-        model = model_in(self._folder, BUNDLED)  # before numpy: its error says what to install
+        # Load the model before numpy is imported: the model's error says what to install.
+        model = model_in(self._folder, BUNDLED)
         import numpy as np
 
         scores = np.zeros(len(passages), dtype=np.float32)

@@ -27,7 +27,7 @@ _AUXILIARIES = word_set("do does did am is are was were have has had can could w
 def shape(text: str) -> tuple[bool, bool, bool, int]:
     """Return features of a plain text: whether it mentions the agent, the user, others; and its word order.
 
-    The word order is 2 with a question word, 1 if a verb precedes its subject, and 0 otherwise.
+    The word order is 2 if there is a question word, 1 if a verb precedes its subject, or else 0.
 
     Example:
         >>> shape("what are my hobbies"), shape("you have a father")

@@ -156,6 +156,14 @@ def test_a_long_recording_is_understood_in_pieces(monkeypatch: pytest.MonkeyPatc
     small.close()
 
 
+def test_a_sound_of_the_greatest_length_fits_into_the_models_window() -> None:
+    small = Recogniser(Settings(model="tiny.en"))
+    pcm = bytes(16000) + spoken("Dinner is ready.")
+    found = small.recognise(pcm.ljust(round(32000 * recogniser.LONGEST), b"\0"))
+    assert plain(found.text) == ["dinner", "is", "ready"]
+    small.close()
+
+
 def test_unwanted_words_are_not_recognised(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither the pieces that are left, nor a second time."""
     one, unwanted, asked = Recogniser(Settings(model="tiny.en")), threading.Event(), list[bytes]()

@@ -125,7 +125,7 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("facts:\n  a: 1\n  a: 2", "mine.yaml:3: 'a' is here a second time"),
         ("facts:\n  my thing!: 1", "is not a name"),
         ("facts:\n  likes: [[a]]", "this must be a text, not a sequence"),
-        ("facts:\n  likes: [a, ~]", "this must be a text, and it is empty"),
+        ("facts:\n  likes: [a, ~]", "this must be a text, but it is empty"),
         ("topics:\n  shoes: {phrases: No.}", "mine.yaml:2: the topic shoes has no questions"),
         ("topics:\n  shoes: {questions: do you wear shoes}", "the topic shoes has no phrases"),
         ("topics:\n  shoes: {question: x}", "'question' means nothing here; did you mean 'questions'"),

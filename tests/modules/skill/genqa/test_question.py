@@ -8,7 +8,7 @@ from ravestate.modules.skill.genqa.question import as_question
 @pytest.mark.parametrize(
     ("heard", "reason"),
     [
-        ("What is your name?", "it is about the two who talk"),
+        ("What is your name?", "it is about the user or the agent"),
         ("What time is it?", "moment"),
         ("Should people eat meat?", "it asks for an opinion"),
         ("What is it?", "it has no word to look for"),

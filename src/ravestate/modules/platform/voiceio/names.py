@@ -45,7 +45,7 @@ class Settings(rs.Settings):
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """Seconds for a piece of at most 28 s of sound, after which a recogniser counts as stuck, and starts again."""
+    """Seconds for a piece of at most 25 s of sound, after which a recogniser counts as stuck, and starts again."""
     captions: Seconds = 1.0
     """Seconds between two captions (``rawio.hearing``) while the user speaks; 0 for none."""
 
@@ -78,7 +78,7 @@ class Settings(rs.Settings):
 module = rs.Module("voiceio", requires=[rawio, verbaliser], settings=Settings)
 
 another_speaks: rs.Signal[Turn] = module.signal("another_speaks", payload=cast("type[Turn]", object))
-"""Another person has gone on in a pause of the first person. The payload is the first person's turn."""
+"""Another person has gone on after the first person. The payload is the first person's turn."""
 
 utterance: rs.Signal[Utterance] = module.signal("utterance", payload=Utterance)
 """The user has finished a turn. The words also go to ``rawio.input`` if the recogniser is confident enough."""

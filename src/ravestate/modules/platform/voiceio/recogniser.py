@@ -18,8 +18,8 @@ from .models import whisper_model
 from .names import Settings
 from .sound import pieces
 
-LONGEST = 28.0
-"""The seconds of sound that are recognised at once. A whisper model reads windows of 30 s."""
+LONGEST = 25.0
+"""The seconds of sound that are recognised at once. A whisper model reads 30 s, with the silence that follows."""
 
 _MARKS = re.compile(r"\[[^\]]*\]|\([^)]*\)|\*[^*]*\*|[♪♫]+")
 """Notes of a recogniser about sounds other than speech, such as ``[Music]`` or ``(coughs)``."""

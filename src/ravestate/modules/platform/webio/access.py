@@ -55,7 +55,7 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request with these headers may not reach the board; None if it may. Only the own page may."""
+        """Return why a request may not reach the board; None if it may. Only the agent's own page may."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (
@@ -65,9 +65,9 @@ class Access:
         return None
 
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
-        """Return the origin of the site whose request tries to embed the page without permission; None if none does.
+        """Return the origin of a site that tries to embed the page without permission; None if no site does.
 
-        Browsers send the necessary headers only over HTTPS or to this machine, and because widget.js permits them.
+        Browsers send the necessary headers only over HTTPS or to this machine, and only if widget.js permits them.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None

@@ -68,7 +68,7 @@ def _settings_of(agent: Agent) -> Settings:
     names = [module.name for module in agent.policy.modules]
     if "webio" not in names:
         raise PlatformError(f"the agent has no webio: write Agent(webio, ...); it has {', '.join(names)}")
-    if "conio" in names:  # each visitor's context would contain it
+    if "conio" in names:  # the context of each visitor would contain conio
         raise PlatformError("webio has many users, conio has one: leave conio out")
     return agent.settings["webio"]  # type: ignore[return-value]  # the settings class of webio
 
@@ -76,7 +76,7 @@ def _settings_of(agent: Agent) -> Settings:
 class AccessMiddleware:
     """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
-    The log names sites that try to embed the page without permission: such a site's visitors see only an empty frame.
+    The log names sites that try to embed the page without permission, because their visitors see only an empty frame.
     One instance guards the whole application; a second one, `inside`, guards the board, which no other site may reach.
     """
 

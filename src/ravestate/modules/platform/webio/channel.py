@@ -69,7 +69,7 @@ class Channel:
         await self._socket.send_bytes(bytes(sound))
 
     def reply(self, text: str) -> None:
-        """Queue a frame for the task that writes; it calls `send_replies`."""
+        """Queue a frame. The task that writes sends it with `send_replies`."""
         if len(self._replies) >= self._most:
             raise WebSocketDisconnect(1008, "it does not read")
         self._replies.append(text)
@@ -105,13 +105,13 @@ class Bucket:
         self._time = now
 
     def wait(self, now: float) -> float:
-        """Count an event, even beyond the limit; return the seconds until the limit allows it, 0 if it does now."""
+        """Count an event, even beyond the limit; return the seconds until the limit allows it, or 0."""
         self._fill(now)
         self._level -= 1
         return max(0.0, -self._level / self._rate)
 
     def take(self, now: float, amount: float = 1) -> bool:
-        """Count an event, or a greater amount, if the limit allows it; return whether it does."""
+        """Count an event, or `amount` events, if the limit allows them; return whether it does."""
         self._fill(now)
         if self._level < amount:
             return False

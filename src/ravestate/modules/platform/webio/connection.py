@@ -59,8 +59,8 @@ class Connection:
         self._suggestions = suggestions
         self._note = note
         self._channel = Channel(socket, REPLIES)
-        self._stream: object = None  # the stream of sound that the client knows
-        self._listens: object = None  # the line of which the client knows that the agent listens
+        self._stream: object = None  # the line and the stream of the client's last `Flush`
+        self._listens: object = None  # the line of the client's last `Listening`
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
 
     async def run(self) -> None:
@@ -201,7 +201,7 @@ class Connection:
             await woken.wait()
 
     async def _write_sound(self, session: Session) -> None:
-        """Send the agent's sound, if this window has the line, or the loss of the line."""
+        """Send the agent's sound if this window has the line. If it has just lost the line, tell the client so."""
         if self._taken is not None:
             why, self._taken = self._taken, None
             await self._send(frames.Taken(why))

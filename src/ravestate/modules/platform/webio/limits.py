@@ -33,7 +33,7 @@ FOREIGN = (
     "Invalid UTF-8 sequence received from client.",
     "Unsupported upgrade request.",
 )
-"""Uvicorn's messages about faults of clients. The log leaves them out, or strangers could fill the disk with it."""
+"""Uvicorn's messages about faults of clients. The log leaves them out, so that strangers cannot fill the disk."""
 
 log = logging.getLogger("ravestate.webio.limits")
 log.setLevel(logging.WARNING)
@@ -72,7 +72,7 @@ class LimitedHTTP(H11Protocol):
         return sum(1 for address in addresses if address and address[0] == here)
 
     def _refuse(self, why: str) -> None:
-        self.connections.discard(self)  # stop counting this connection, though closing it takes a moment
+        self.connections.discard(self)  # do not count this connection any more: closing it takes a moment
         self.transport.write(FULL % (len(why), why.encode()))
         self.transport.close()
 
@@ -113,7 +113,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         self.logger = log
 
     async def send(self, message: Any) -> None:
-        """Send a message to the client, unless its connection was closed for a fault."""
+        """Send a message to the client, unless the server has closed the connection because of a fault."""
         if self.close_sent:
             raise ClientDisconnected
         await super().send(message)

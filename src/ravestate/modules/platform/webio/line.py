@@ -18,7 +18,7 @@ BLOCK = rawio.IN_RATE // 50 * SAMPLE
 """The bytes of a block of the visitor's sound: 20 ms."""
 
 MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
-"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. Beyond that, the oldest go."""
+"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. The oldest bytes are dropped."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
 """The silence that the agent hears when the microphone goes off, so that the visitor's utterance ends: 2 s."""
@@ -27,7 +27,7 @@ CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame: 0.2 s."""
 
 AHEAD = rawio.OUT_RATE
-"""The maximum number of samples that a window gets before it has played them: 1 s. So little is left to drop."""
+"""The maximum number of samples that a window has and has not played: 1 s, so that `stop` drops little sound."""
 
 BETWEEN = 0.2
 """The seconds after a report for which `played` assumes that the loudspeaker goes on."""
@@ -61,9 +61,9 @@ def hears(policy: Policy) -> bool:
 class PageLine:
     """A `rawio.Line` whose microphone and loudspeaker are in at most one window of the visitor at a time.
 
-    The agent's sound is a row of streams: dropping the sound, and giving the line to a window, begin a new one. The
-    window reports how much of the present stream it has played. Without a window, sound counts as played at once: the
-    visitor reads the words.
+    The agent's sound consists of streams. A new stream begins when sound is dropped, and when a window gets the line.
+    The window reports how much of the present stream it has played. While no window has the line, sound counts as
+    played at once, because the visitor reads the words.
 
     Args:
         on_left: Called when no window has the line any more.
@@ -88,9 +88,9 @@ class PageLine:
         """Whether a rule has begun to take the visitor's sound. Its models may take a while to load."""
         self._waiting: deque[memoryview] = deque()
         self._queued = self._sent = self._reported = 0  # samples of the present stream
-        self._earlier = 0  # samples played of the earlier streams
-        self._most = 0  # the greatest number of samples that `played` has told
-        self._moved: float | None = None  # the time of the last report, if the loudspeaker played since the one before
+        self._earlier = 0  # samples of earlier streams that were played
+        self._most = 0  # the greatest number of samples that `played` has returned
+        self._moved: float | None = None  # the time of the last report; None if it reports nothing new
         self._drained = asyncio.Event()
         self._drained.set()
         self._watch: asyncio.TimerHandle | None = None
@@ -101,7 +101,7 @@ class PageLine:
     # -------------------------------------------------------------------------------- the agent's side
 
     async def blocks(self) -> AsyncGenerator[bytes]:
-        """Yield the visitor's sound in blocks of 20 ms, until the line is closed; while the microphone is off, none."""
+        """Yield the visitor's sound in blocks of 20 ms, until the line is closed. Wait while the microphone is off."""
         self.listens = True
         if self.window is not None:
             self.window.wake()
@@ -143,7 +143,7 @@ class PageLine:
 
     @property
     def played(self) -> float:
-        """The seconds of sound that the loudspeaker has played. Between two reports of the window, an estimate."""
+        """The seconds of sound that the loudspeaker has played; an estimate between two reports of the window."""
         since = 0.0
         if self._moved is not None:
             since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
@@ -156,7 +156,7 @@ class PageLine:
         await self._drained.wait()
 
     def close(self) -> None:
-        """Close the line; the window that has it loses it."""
+        """Close the line, and take it away from its window."""
         self.closed = True
         self._arrived.set()
         self._lose("the agent does not listen any more")
@@ -164,7 +164,7 @@ class PageLine:
     # -------------------------------------------------------------------------------- the window's side
 
     def take(self, window: Window) -> None:
-        """Give the line to a window; the window that had it loses it."""
+        """Give the line to a window, and take it away from any other window."""
         if self.window is window:
             return
         if self.window is not None:
@@ -175,7 +175,7 @@ class PageLine:
             self._expect(DEAF, self._find_deaf)
 
     def leave(self, window: Window) -> None:
-        """Take the line from a window, if it has it; its queued sound is dropped."""
+        """If a window has the line, take the line away, and drop the queued sound."""
         if self.window is not window:
             return
         self.window = None
@@ -184,7 +184,7 @@ class PageLine:
         self._on_left()
 
     def hear(self, window: Window, sound: bytes) -> None:
-        """Take sound of the visitor; ignore it if the window does not have the line (any longer)."""
+        """Take sound of the visitor; ignore it if the window does not have the line."""
         if self.window is window:
             self._listen(sound)
 
@@ -195,7 +195,7 @@ class PageLine:
         self._arrived.set()
 
     def fetch(self, window: Window) -> memoryview | None:
-        """Return the next sound for a window: at most `CHUNK` bytes, and none while it is `AHEAD`."""
+        """Return the next sound for a window, at most `CHUNK` bytes; None while it has not played `AHEAD` samples."""
         if self.window is not window or not self._waiting or self._sent - self._reported >= AHEAD:
             return None
         first = self._waiting.popleft()

@@ -25,7 +25,7 @@ def _origin(text: str) -> str:
 
 
 class Settings(rs.Settings):
-    """The settings of webio: where the server listens, who may connect, and how much it takes."""
+    """The settings of webio: where the server listens, who may connect, and the limits."""
 
     host: str = "127.0.0.1"
     """The address to listen on. Any address that others can reach needs a token."""
@@ -40,7 +40,7 @@ class Settings(rs.Settings):
     suggestions: tuple[Annotated[str, pydantic.Field(min_length=1, max_length=80)], ...] = pydantic.Field(
         ("Hello!", "Who are you?", "What can you do?"), max_length=6
     )
-    """Things to say that the page offers until the visitor has said something."""
+    """Utterances that the page suggests until the visitor has said something."""
     note: Annotated[str, pydantic.Field(min_length=1, max_length=300)] | None = None
     """A line that the page shows once in each browser, until the visitor has said something."""
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)

@@ -24,7 +24,7 @@ COMPRESSED = {".woff2"}
 
 
 async def refuse(socket: WebSocket, answer: Response) -> None:
-    """Refuse a WebSocket's handshake with a response. Servers without that ASGI extension answer with status 403."""
+    """Refuse a WebSocket's handshake with a response. Servers that lack the ASGI extension for it send status 403."""
     if "websocket.http.response" in (socket.scope.get("extensions") or {}):
         await socket.send_denial_response(answer)
     else:
@@ -32,7 +32,7 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
 
 
 class Pages:
-    """An ASGI application that serves the files of a folder as they are now, with ``index.html`` for folders."""
+    """An ASGI application that serves the files of a folder, read once, and ``index.html`` for the folder itself."""
 
     def __init__(self, folder: Path) -> None:
         self._files: dict[str, tuple[bytes, bytes | None, str, str]] = {}

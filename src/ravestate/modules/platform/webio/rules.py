@@ -14,7 +14,7 @@ rawio.carry(module, page)
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), reads=page)
 async def show_input(ctx: rs.RuleContext) -> None:
-    """Show the visitor's words on the page if they came in another way, such as by voice."""
+    """Show the visitor's words on the page if they were not typed there."""
     if session := ctx[page]:
         session.note_input(ctx.payload(rawio.input.changed))
 

@@ -45,12 +45,12 @@ COLLECT = (10_000, 10, 10)
 several hundred conversations every few seconds, and hold up all answers meanwhile."""
 
 
-_before: list[tuple[float, tuple[int, int, int]]] = []  # one item for each running server: the settings before it
+_before: list[tuple[float, tuple[int, int, int]]] = []  # for each running server: the settings to restore
 
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
-    """Tune the interpreter for quick answers in the body, until the last server that does so has ended."""
+    """Tune the interpreter for quick answers while the body runs. The last body to end restores the settings."""
     _before.append(_before[0] if _before else (sys.getswitchinterval(), gc.get_threshold()))
     sys.setswitchinterval(SWITCH)
     gc.set_threshold(*COLLECT)
@@ -144,7 +144,7 @@ class Server:
         return f"{self.address}{path}{secret}"
 
     def announce(self, pages: Mapping[str, str] = MappingProxyType({"agent": ""})) -> None:
-        """Print the address of each page, given its path by its name.
+        """Print the address of each page. `pages` maps names of pages to their paths.
 
         The token appears only on a terminal: other outputs are often kept in files that others can read.
         """

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
 GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
-RECENT = 5  # the number of the agent's newest messages that `rawio.heard` can mean
+RECENT = 5  # the number of the agent's newest messages among which `mark_heard` searches
 LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
 WORD = re.compile(r"\S+")
 LINGER = 30.0  # the seconds for which the line stays in ``rawio.sound`` after the microphone went off
@@ -89,7 +89,7 @@ class History:
             self.marked += 1
 
     def marks_since(self, number: int) -> list[Heard]:
-        """Return the newest marks, without the first `number` ones."""
+        """Return the marks that came after the first `number` marks and are still kept."""
         new = self.marked - number
         return list(self._marks)[-new:] if new > 0 else []
 
@@ -163,7 +163,8 @@ class Session:
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
         self._put: deque[str] = deque()  # words that `show_input` will see, and that the history has already
-        self._heard_part: str | None = None  # the part heard of a growing utterance whose speech was cut
+        # The part that the visitor heard of a growing utterance whose speech was cut.
+        self._heard_part: str | None = None
         self._hanging_up: asyncio.TimerHandle | None = None
         self._working = False
         self._following: asyncio.Task[None] | None = None
@@ -198,7 +199,7 @@ class Session:
             self.notify()
 
     def leave(self, reason: Ending) -> None:
-        """End the conversation for good, for a reason."""
+        """End the conversation for good. The first reason counts."""
         if not self.leaving:
             self._reason = reason
             self._left.set()
@@ -216,7 +217,7 @@ class Session:
         return self._left.is_set()
 
     def hear(self, id: str, text: str) -> bool:
-        """Take the visitor's words, checked by `heard_text`. Words that came before under the same `id` are ignored.
+        """Take the visitor's words, checked by `heard_text`. Ignore them if words with this `id` came before.
 
         Returns:
             Whether the session took the words, now or before; False if the session is `leaving`.
@@ -270,7 +271,7 @@ class Session:
                 return
 
     def take_line(self, window: Window) -> None:
-        """Give the line to a window; a line that was not there goes into ``rawio.sound``."""
+        """Give the line to a window. If there is no line yet, make one, and put it into ``rawio.sound``."""
         self._stay_on_line()
         if self.line is None or self.line.closed:
             self.line = PageLine(self._linger)

@@ -19,8 +19,8 @@ ONLOOKERS = 8  # the maximum number of windows that may show one conversation at
 class Sessions:
     """All conversations with one agent, which makes a context for each.
 
-    Beyond `limit`, a new conversation ends a conversation without a window. If all have windows, it is refused.
-    A conversation without a window is kept for `keep` seconds.
+    If there are `limit` conversations already, a new one ends a conversation that has no window. If all of them have
+    windows, the new one is refused. A conversation that has no window is kept for `keep` seconds.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -42,7 +42,7 @@ class Sessions:
         return iter(tuple(self._tasks))
 
     def get(self, id: str) -> Session | None:
-        """Return the conversation with this secret id; None if it does not exist, or is about to end."""
+        """Return the conversation with this secret id; None if there is none, or if it is about to end."""
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
@@ -60,7 +60,7 @@ class Sessions:
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Add an onlooker, such as a window, to a conversation, unless it has too many already."""
+        """Add an onlooker, such as a window, to a conversation, unless the conversation has too many."""
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)
@@ -75,7 +75,7 @@ class Sessions:
             self._abandon(session)
 
     def leave(self, session: Session, reason: Ending) -> None:
-        """End a conversation for good, for a reason."""
+        """End a conversation for good."""
         self._sessions.pop(session.id, None)
         timer = self._timers.pop(session, None)
         if timer is not None:
@@ -94,7 +94,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation without a window: preferably of a silent visitor, else the one left earliest."""
+        """End a conversation that has no window. Silent visitors come first, then those who left earliest."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

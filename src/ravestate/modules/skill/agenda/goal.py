@@ -1,4 +1,4 @@
-"""The declaration of a goal. A goal is an ordinary rule of its module, with further rules that end the goal."""
+"""The declaration of a goal. A goal is an ordinary rule of its module; further rules end the goal."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Goal:
     Attributes:
         name: The name of the goal's rule, ``module:name``; `agenda.goals` has the goal's state under this name.
         rule: The rule that pursues the goal; the rule retires when the goal is over.
-        pursued: A constraint for your own rules: the goal has just been pursued. Example:
-            ``when=offer.pursued.max_age(60) & rawio.input.changed`` is the user's answer to the goal `offer`.
+        pursued: A constraint for your own rules. A spike of it means that the goal has just been pursued. Example:
+            ``when=offer.pursued.max_age(60) & rawio.input.changed`` reacts to the user's answer to the goal `offer`.
     """
 
     name: str
@@ -60,9 +60,9 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    The agent pursues a goal by saying something, when it is bored and no other goal has just had its turn. The goal is
-    over when `done` or `refused` comes, or after the last try. The user has priority: their words interrupt a pursuit,
-    and end the opportunity.
+    When the agent is bored, and has not just pursued another goal, it says the words of this goal. The goal is over
+    when `done` or `refused` happens, or after the last try. The user has priority: their words interrupt a pursuit, and
+    end the opportunity.
 
     The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
@@ -74,12 +74,12 @@ def goal(
         intent: An intent for the verbaliser, instead of `say`.
         reads: The slots that the function `say` reads.
         when: A further condition for a pursuit, e.g. ``interloc.users.holds(bool)``.
-        unless: A condition that prevents a pursuit; it consists of ``slot.holds(...)`` alone.
+        unless: A condition that prevents a pursuit. It may contain only ``slot.holds(...)``.
         priority: A factor on the utility of the goal's rule (L9); the goal with the greatest utility goes first.
         cooldown: Seconds from one try to the next; also the seconds that the user has for an answer.
         done: The event that makes the goal a success, at any time: a signal, a condition, or a regular expression of
-            whole words for the user's answer. Without it, one try is a success.
-        refused: The event that makes the agent drop the goal, in the same forms: the user's "no".
+            whole words for the user's answer. If it is None, the first try makes the goal a success.
+        refused: The event that makes the agent drop the goal, such as the user's "no". It has the same forms as `done`.
         tries: The maximum number of tries; the goal is dropped after the last one.
 
     Raises:
@@ -122,7 +122,7 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # a `cooldown` would not hold the rule back, so the rule rests by resigning
+        weight=priority,  # the rule rests by resigning, because a `cooldown` would not hold it back
         until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say()` runs
         detached=True,  # a new causal group begins, so that rules can react to the user's answer
         name=name,
@@ -182,7 +182,7 @@ async def _worded(ctx: rs.RuleContext, say: Any, tries: int) -> str:
 
 
 def _condition(event: Condition | str, words: re.Pattern[str] | None, unless: re.Pattern[str] | None) -> Condition:
-    """Return a condition that ends a goal and consumes nothing: `event`, or words that fit `words` and not `unless`."""
+    """Return a condition that consumes nothing: `event`, or an input that fits `words` but not `unless`."""
     if words is None:
         assert not isinstance(event, str)  # if `event` is a text, `words` is its pattern
         return watching(event)

@@ -30,9 +30,9 @@ async def yield_to_the_user(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.startup.detached(), background=True)
 def adopt_wishes(ctx: rs.RuleContext) -> None:
-    """Add the goals in the settings to this context, and to no other context that shares the policy.
+    """Add the goals in the settings to this context only. Other contexts may share its policy, but not these goals.
 
-    This function runs in a thread, because each rule would hold up the event loop for a few milliseconds.
+    This function runs in a thread, because adding a rule takes a few milliseconds and would hold up the event loop.
     """
     settings: Settings = ctx.settings
     own = rs.Module(module.name)

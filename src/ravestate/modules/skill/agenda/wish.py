@@ -48,9 +48,9 @@ class Wish(BaseModel):
     tries: Annotated[int, Field(ge=1)] = 2
     """The maximum number of tries."""
     done: Expression | None = None
-    """A regular expression for the user's words that mean success; without it, one try is a success."""
+    """A regular expression for the user's words that mean success. If it is None, the first try is a success."""
     refused: Expression | None = None
-    """A regular expression for the user's words that refuse."""
+    """A regular expression for the user's words that mean a refusal."""
 
 
 def _no_twins(wishes: tuple[Wish, ...]) -> tuple[Wish, ...]:

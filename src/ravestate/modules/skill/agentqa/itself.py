@@ -1,4 +1,4 @@
-"""The agent in its own memory: a node with the facts of its life file as properties and relations."""
+"""The agent's node in memory. Its properties and relations are facts from the agent's life file."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ RELATIONS: Mapping[str, tuple[str, str]] = {
     "membership": ("member_of", "Organisation"),
     "makers": ("made_by", "Organisation"),
 }
-"""Facts with a relation in memory, and the type of the nodes at its other end. Other facts stay in the file."""
+"""Fact → its relation in memory, and the type of the nodes at the other end. All other facts stay in the file."""
 
 
 async def settle(life: Life, memory: Memory) -> Node:
-    """Update the agent's node in memory to match the file. Facts that the file does not mention stay.
+    """Update the agent's node in memory to match the file. Memory keeps facts that the file does not mention.
 
     Raises:
         PlatformError: Memory failed.
@@ -52,12 +52,12 @@ async def settle(life: Life, memory: Memory) -> Node:
                 changed = True
                 await memory.relate(node, relation, await memory.ensure(type, name=text))
     if changed:
-        await memory.tidy()  # the first call writes a whole life
+        await memory.tidy()  # the first call adds many nodes
     return node
 
 
 async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
-    """Return the agent's facts from its node in memory, and the rest from the file.
+    """Return the agent's facts. The birthday and the facts in `RELATIONS` come from memory, all others from the file.
 
     Raises:
         PlatformError: Memory failed.
@@ -79,7 +79,7 @@ async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
 
 
 def texts(fact: Fact) -> tuple[str, ...]:
-    """Return a fact as texts; from each pair, only the first text."""
+    """Return the texts of a fact. If it consists of pairs, return the first text of each pair."""
     if isinstance(fact, str):
         return (fact,)
     return tuple(part if isinstance(part, str) else part[0] for part in fact)

@@ -1,4 +1,4 @@
-"""The life of an agent: facts, and topics that people may ask about. `read_life` reads a life from files."""
+"""An agent's life: facts about the agent, and topics that people may ask it about. `read_life` reads a life."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Topic:
     phrases: tuple[str, ...]
     """Answers, with facts in braces. The agent chooses one whose facts are known."""
     otherwise: tuple[str, ...] = ()
-    """Answers for the case that every phrase lacks a fact. If there are none, other modules answer."""
+    """Answers to use if each phrase needs an unknown fact. If `otherwise` is empty, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """For each fact, answers to a question that names one of its values. ``{it}`` is that value, and ``{that}`` the
-    other text of a pair."""
+    """Pairs of a fact and the answers to a question that names one of its values. In the answers, ``{it}`` is that
+    value, and ``{that}`` is the second text if the value is a pair."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
@@ -54,7 +54,7 @@ class Life:
 
     @property
     def born(self) -> date | None:
-        """The agent's birthday, if it is known."""
+        """The agent's date of birth; None if it is not known."""
         born = self.facts.get("born")
         return None if born is None else date.fromisoformat(str(born))
 

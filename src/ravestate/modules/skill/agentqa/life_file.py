@@ -1,4 +1,4 @@
-"""A life in YAML files that users may edit. The module's own ``life.yaml`` shows the format."""
+"""Read the agent's life, its facts and topics, from YAML files. The module's own ``life.yaml`` shows the format."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     import yaml
 
 COUNTED = ("age", "mood", "time", "date", "memory")
-"""Parameters of phrases that come from the clock or from slots."""
+"""Parameters of phrases whose values come from the clock or from slots, not from the file."""
 KNOWN = ("name", "born", *COUNTED)
 """Parameters that any phrase may have."""
 NAMED = ("it", "that")
-"""Parameters of phrases for a question that names a value."""
+"""Parameters of the phrases under ``named``: answers to a question that names a value of a fact."""
 
 _PARTS = ("facts", "topics", "others")
 _ADDED = ("questions", "remarks", "acts")
@@ -37,7 +37,7 @@ _TOLD = ("phrases", "otherwise", "unnamed")
 
 
 def read_life(own: Path | None = None) -> Life:
-    """Read the agent's life: the module's file, changed by the user's `own`.
+    """Read the agent's life from the module's file, with the changes in the user's file `own`.
 
     A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions
     and remarks to the module's topic, and replaces its phrases; ``~`` removes the topic. All other topics are new.
@@ -62,7 +62,7 @@ def _parsed(name: str, text: str, base: Life | None) -> Life:
 
 
 class _Reader:
-    """A reader of a file. Its messages about mistakes give the file's name."""
+    """A reader of one file. Its messages about mistakes name the file."""
 
     def __init__(self, file: str) -> None:
         self._file = file
@@ -72,9 +72,9 @@ class _Reader:
     def life(self, root: yaml.Node, base: Life) -> Life:
         """Return the life `base` with the changes of the file."""
         facts, topics, others = dict(base.facts), dict(base.topics), base.others
-        parts = dict(self._entries(root, _PARTS, "the file has facts, topics and others, and"))
+        parts = dict(self._entries(root, _PARTS, "the file has facts, topics and others, but"))
         if "facts" in parts:
-            for key, value in self._entries(parts["facts"], None, "facts have names: hobbies: [chess], and"):
+            for key, value in self._entries(parts["facts"], None, "facts have names: hobbies: [chess], but"):
                 fact = self._fact(key, value)
                 facts.pop(key, None)
                 if fact is not None:
@@ -85,7 +85,7 @@ class _Reader:
             others += self._texts(parts["others"], "questions")
         if "topics" in parts:
             self._known = (*facts, *base.facts, *KNOWN)
-            meaning = "topics have names: shoes: {questions: ...}, and"
+            meaning = "topics have names: shoes: {questions: ...}, but"
             for key, value in self._entries(parts["topics"], None, meaning):
                 before = topics.pop(key, None) if _is_null(value) else topics.get(key)
                 if not _is_null(value):
@@ -101,7 +101,7 @@ class _Reader:
         if key in ("name", "born") and kind_of(node) != "scalar":
             raise self._fault(node, f"{key} is one text, not a {kind_of(node)}")
         if kind_of(node) == "mapping":
-            return tuple((other, self._text(value)) for other, value in self._entries(node, None, "it has pairs, and"))
+            return tuple((other, self._text(value)) for other, value in self._entries(node, None, "it has pairs, but"))
         if kind_of(node) == "sequence":
             return self._texts(node, "texts", empty=True)
         text = self._text(node)
@@ -113,7 +113,7 @@ class _Reader:
         return text
 
     def _topic(self, key: str, node: yaml.Node, topic: Topic) -> Topic:
-        meaning = f"the topic {key} has questions and phrases, and"
+        meaning = f"the topic {key} has questions and phrases, but"
         parts = dict(self._entries(node, (*_ADDED, *_TOLD, "named"), meaning))
         added = {part: (*getattr(topic, part), *self._texts(parts[part], part)) for part in _ADDED if part in parts}
         if "phrases" in parts:
@@ -121,7 +121,7 @@ class _Reader:
         told = {part: self._phrases(parts[part]) for part in _TOLD if part in parts}
         topic = replace(topic, **added, **told)
         if "named" in parts:
-            entries = self._entries(parts["named"], self._known, "it has a fact and phrases, and")
+            entries = self._entries(parts["named"], self._known, "it has a fact and phrases, but")
             topic = replace(topic, named=tuple((fact, self._phrases(phrases, NAMED)) for fact, phrases in entries))
         heard = topic.questions or topic.remarks or topic.acts
         if not heard or not topic.phrases:
@@ -130,7 +130,7 @@ class _Reader:
         return topic
 
     def _phrases(self, node: yaml.Node, more: tuple[str, ...] = ()) -> tuple[str, ...]:
-        """Return the phrases of a node, whose parameters are facts."""
+        """Return the phrases of a node. Each parameter of a phrase must be a fact or one of `more`."""
         known = (*self._known, *more)
         for item in _items(node):
             try:
@@ -141,7 +141,7 @@ class _Reader:
             for _, parameter, form, conversion in parts:
                 if parameter is not None and (parameter not in known or form or conversion):
                     problem = f"{{{parameter}}} in {item.value!r} is not a fact{nearest(parameter, known)}"
-                    raise self._fault(item, f"{problem}; it would stand under facts:\n  {parameter or 'hobbies'}: ...")
+                    raise self._fault(item, f"{problem}; to add it, write\nfacts:\n  {parameter or 'hobbies'}: ...")
         return self._texts(node, "phrases")
 
     def _texts(self, node: yaml.Node, part: str, *, empty: bool = False) -> tuple[str, ...]:
@@ -187,7 +187,7 @@ class _Reader:
             raise self._fault(node, problem)
         text = str(node.value).strip()
         if not text or _is_null(node):
-            raise self._fault(node, "this must be a text, and it is empty")
+            raise self._fault(node, "this must be a text, but it is empty")
         return text
 
     def _fault(self, node: yaml.Node, problem: str) -> DeclarationError:

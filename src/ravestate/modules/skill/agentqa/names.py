@@ -21,12 +21,12 @@ from .router import Match
 
 
 class Settings(rs.Settings):
-    """The agent's life, and how often it offers to talk about itself."""
+    """The agent's life, and when the agent offers to talk about itself."""
 
     life: Path | None = None
-    """The user's own file. It changes the facts and topics that it mentions; all others stay."""
+    """The user's own life file. It changes the facts and topics that it mentions; all others stay."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
-    """Seconds of silence after which the agent invites the user, once, to ask about it."""
+    """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once."""
 
     @field_validator("life")
     @classmethod
@@ -45,8 +45,8 @@ asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; the payload has the topic."""
 
 remarked = module.signal("remarked", payload=Remark)
-"""The user makes a remark, such as distress or an insult; it takes priority over everything else. The payload has the
-topic."""
+"""The user makes a remark that the agent must respond to, such as an insult, or shows distress. This response outranks
+nearly all others. The payload has the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
 """The agent's life, read from the files at startup. Facts in the agent's memory override them."""
@@ -61,10 +61,10 @@ def machine_clock() -> datetime:
 
 
 clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, input=True)
-"""The clock, by default the machine's; it decides the agent's age, the date and the time of day."""
+"""The clock for the agent's age, the date and the time of day; by default, the machine's clock."""
 
 prompted: rs.Slot[float | None] = module.slot("prompted", None)
-"""The time when the agent invited the user to ask about it, in seconds since the context began."""
+"""The time of the agent's invitation to ask about the agent, in seconds since the context began."""
 
 turns: rs.Slot[tuple[int, float]] = module.slot("turns", (0, 0.0))
 """The number of the user's utterances, and the time of the last one."""

@@ -1,4 +1,4 @@
-"""Remarks that the agent must answer: distress, which fixed expressions find, then the user's acts and feelings."""
+"""Remarks that the agent must answer. Fixed expressions show distress; acts and feelings show other remarks."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Remark:
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
-    """Return the remark that matches an expression of a topic. If several topics match, take the first in the life.
+    """Return the remark that matches an expression of a topic. If several topics match, take the first of `life`.
 
     Args:
         utterance: The user's words.
@@ -51,9 +51,10 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
 
 
 def act_in(analysis: Analysis, life: Life) -> Remark | None:
-    """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first in the life.
+    """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first of `life`.
 
-    Unless the user says *you*, a feeling counts only if nothing else is said: not in *useless. how long do eggs boil*.
+    A feeling counts only if the user says *you*, or says nothing else. So *useless* does not count in *useless. how
+    long do eggs boil*.
     """
     for name, topic in life.topics.items():
         for known in topic.acts:

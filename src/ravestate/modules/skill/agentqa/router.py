@@ -53,11 +53,11 @@ class Miss:
 class Router:
     """A classifier that finds the topic of a question about the agent. Thread-safe.
 
-    It is a `Matcher` over a life's example questions. Before `load`, only questions that equal an example count.
+    It is a `Matcher` over a life's example questions. Before `load`, it recognises only exact examples.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
-        """Take the life. Nothing is loaded yet."""
+        """Make a router for the topics of `life`; it loads nothing yet."""
         self.life = life
         examples = {topic.name: topic.questions for topic in life.topics.values() if topic.questions}
         self._matcher = Matcher(examples, life.others, least=LEAST, encoder=encoder)
@@ -69,7 +69,7 @@ class Router:
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
         """Return the topic that an utterance asks about. If several sentences have a topic, take the first.
 
-        Without the package of sentence models, only questions that equal an example word for word are understood.
+        If the package of sentence models is missing, only questions that match an example word for word are understood.
 
         Args:
             utterance: The user's words, as typed or in their normal form.
@@ -103,7 +103,7 @@ def router_of(life: Life) -> Router:
 
 
 def _readings(sentence: str, *, question: bool) -> Iterator[str]:
-    """Yield a sentence; then its part after a comma, and its indirect question."""
+    """Yield a sentence, then the part after its last comma, then the indirect question in it."""
     yield sentence
     _, comma, rest = sentence.rpartition(", ")
     if comma and len(rest.split()) > 1:

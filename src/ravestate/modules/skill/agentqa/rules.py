@@ -27,14 +27,15 @@ from .telling import telling, without_question
 CERTAIN = 0.7
 """The agent accepts a topic without further evidence if its confidence in the topic is at least this high."""
 STATED = 0.85
-"""The same for a statement. It is higher, because statements may resemble a question: *I don't know what to say*."""
+"""The same threshold for a statement. It is higher, because a statement may resemble a question: *I don't know what to
+say*."""
 TURNS = 6
 """The number of utterances that a user makes before the agent invites questions about itself."""
 
 
 @module.rule(when=rs.startup.detached(), writes=(life, interloc.agent), detached=True)
 async def be_born(ctx: rs.RuleContext) -> None:
-    """Read the file about the agent, its life, and publish the agent's name."""
+    """Read the agent's life from the files, and publish the agent's name."""
     settings: Settings = ctx.settings
     told = read_life(settings.life)
     ctx[interloc.agent] = told.name
@@ -102,7 +103,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone. A user in distress thus gets an answer even without the sentence models."""
+    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing."""
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
@@ -167,9 +168,11 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=idle.bored.min_age(Settings.prompt_after).max_age(None),
     reads=(prompted, turns, idle.unanswered),
-    writes=(verbaliser.intent, rawio.output, prompted),  # the output, so that no other rule speaks at the same time
+    # Takes the output as well, so that no other rule speaks at the same time.
+    writes=(verbaliser.intent, rawio.output, prompted),
     weight=0.9,
-    # A causal group of its own: in the group of `bored`, this rule takes `rawio.output`, which the verbaliser needs.
+    # Starts a causal group of its own: in the group of `bored`, this rule takes `rawio.output`, so the verbaliser could
+    # not write it.
     detached=True,
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -191,14 +194,14 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with finished phrases. Its braces are escaped, because they belong to facts: all
-    placeholders have been filled."""
+    """Return an intent with phrases whose placeholders have been filled. Any braces that are left belong to facts,
+    so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 
 
 async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
-    """Return the agent's facts from memory; without a memory, from the file."""
+    """Return the agent's facts from memory. If there is no memory, return them from the file."""
     if memory is None:
         return told.facts
     try:

@@ -1,4 +1,4 @@
-"""The answer about a topic: fill in the phrases whose facts are known."""
+"""The answer about a topic: its phrases, with the known facts filled in."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .life import Fact, Topic
 def telling(
     topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, now: datetime
 ) -> tuple[str, ...] | None:
-    """Return the phrases to choose from; None if each needs an unknown fact.
+    """Return the phrases to choose from; None if every phrase needs an unknown fact.
 
     Args:
         topic: The topic.
@@ -92,7 +92,7 @@ def _names(question: str, it: str) -> bool:
 
 
 def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the phrases whose parameters are known, filled in."""
+    """Fill in the phrases whose parameters are all known, and return them."""
     known = [phrase for phrase in phrases if _parameters(phrase) <= values.keys()]
     return tuple(_BEGINNING.sub(lambda found: found[0].upper(), phrase.format_map(values)) for phrase in known)
 
@@ -107,4 +107,4 @@ _PARTICULAR = re.compile(
 """First words of a yes/no question about one thing."""
 _QUESTION_AT_THE_END = re.compile(r"(?<=[.!…])\s+[^.!?…]+\?$")
 _BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
-"""The first letter of a sentence, which may belong to a fact."""
+"""The first letter of a sentence. It may be part of a fact."""

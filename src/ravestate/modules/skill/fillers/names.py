@@ -14,7 +14,7 @@ class Settings(rs.Settings):
     """How long the agent waits before a filler."""
 
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
-    """Seconds from the user's words until an answer counts as slow, if nothing has been said."""
+    """If the agent says nothing for this many seconds after the user's words, the answer counts as slow."""
     answer_within: Annotated[float, Field(gt=0)] = 20.0
     """Seconds from a filler until the agent says that the answer takes longer."""
 
@@ -25,7 +25,7 @@ filled: rs.Slot[float | None] = module.slot("filled", None)
 """The time of the last filler, in seconds since the context began."""
 
 waiting = module.flag("waiting")
-"""Whether the user has said something and has heard no answer yet. If not, the agent says no filler and no apology."""
+"""Whether the user has said something and has heard no answer yet. The agent says a filler only while this is true."""
 
 promised = module.flag("promised")
 """Whether the agent still owes an answer after a filler."""
@@ -34,4 +34,4 @@ late = module.signal("late")
 """An answer after a filler takes too long; it may still come."""
 
 lost = module.signal("lost")
-"""No answer comes after a filler, because no rule is left that could answer."""
+"""The agent still owes an answer after a filler, but no rule is left that could answer."""

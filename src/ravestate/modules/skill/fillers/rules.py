@@ -11,7 +11,7 @@ from .names import filled, late, lost, module, promised, waiting
 ENOUGH = 5.0
 """The minimum number of seconds between two fillers."""
 REMEMBERED = 120.0
-"""An answer that comes later than this many seconds after its words counts as an answer to the newest words."""
+"""If an answer comes more than this many seconds after the user's words, it counts as an answer to the newest words."""
 
 
 @module.rule(
@@ -24,7 +24,7 @@ REMEMBERED = 120.0
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Raise `impatient` when a rule runs long without output. (`idle` notices rules that wait.)"""
+    """Raise `impatient` when a rule runs long without output. (`idle` does so when rules wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:

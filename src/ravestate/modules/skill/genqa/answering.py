@@ -22,29 +22,31 @@ from .shipped import bring_up
 from .stems import Stems
 
 RETRIEVED = 16
-"""The maximum number of passages that the search returns with any word of the question, and of those with all words."""
+"""The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The sizes of the batches in which these passages are read. A batch is read only if those before it had no answer."""
+"""The sizes of the batches in which these passages are read. A good answer ends the reading after its batch."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """Best scores that end the reading: `VERY_GOOD` after the first passage, `GOOD` after later passages, and `HOPELESS` or
 less after the first few passages."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages to compare from a document that the thread is about, whatever words they have."""
+"""The maximum number of passages from a document that the thread is about. They need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON, COMMON_KIND = 20_000, 2_000
-"""A word in more passages than this is searched only if all are so common. `COMMON_KIND` is for words of `Question.kinds`."""
+"""The search skips a word that is in more passages than this, unless all words are so common. `COMMON_KIND` is for
+words of `Question.kinds`."""
 NAMES, KINDS = 0.4, 0.7
-"""The share of words in a passage if a follow-up has only names: `KINDS` if the passage has a word of `Question.kinds`."""
+"""The share of words to assume if a follow-up has only names: `KINDS` for a passage with a word of `Question.kinds`,
+`NAMES` for other passages."""
 WORDS = 24
 """The maximum number of words to search for."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A passage that was read."""
+    """A passage with its score from the reader."""
 
     text: str
     title: str
@@ -69,7 +71,7 @@ class Answer:
     candidates: tuple[Candidate, ...] = ()
     """All passages that were read, best first."""
     reason: str = ""
-    """The reason why there is no text; empty if there is one."""
+    """The reason why there is no text; empty if there is a text."""
 
 
 class Answerer:
@@ -88,7 +90,7 @@ class Answerer:
         """Make an answerer; it opens and loads nothing yet.
 
         Args:
-            path: The index; it is created if there is none.
+            path: The file of the index; a missing file is created.
             collection: Whether the index should contain the collection that comes with Ravestate.
             reranker: The folder of another reader; see `Reranker`.
         """
@@ -120,7 +122,7 @@ class Answerer:
 
         Args:
             heard: The utterance, its parse, or its question.
-            titles: The titles of the documents to search; empty for all.
+            titles: The titles of documents that the thread is about; their first passages are compared as well.
 
         Raises:
             PlatformError: See `load`.
@@ -145,7 +147,7 @@ class Answerer:
         )
 
     def titled(self, name: str) -> str:
-        """Return the title of a document about `name`, or "". Upper and lower case, and *the*, make no difference."""
+        """Return the title of a document about `name`, or "". Ignore case, and a *the* in front."""
         return self._opened().title_of(name)
 
     # ---------------------------------------------------------------------------------- internals
@@ -168,7 +170,7 @@ class Answerer:
             return self._index
 
     def _retrieve(self, index: Index, question: Question, titles: Sequence[str]) -> list[tuple[float, Found]]:
-        """Return the passages that meet the question's qualifiers, each with its share of the question, best first."""
+        """Return the passages that meet the qualifiers, each with its share of the question's words, best first."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
         groups = (*asked, question.kinds[:WORDS], *question.needs)
@@ -177,7 +179,7 @@ class Answerer:
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
 
         def standing(word: str) -> int:
-            """Return the maximum number of passages with a word."""
+            """Return an upper bound for the number of passages with a word."""
             return min(known.get(stem, 0) for stem in stem_of[word])
 
         searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]

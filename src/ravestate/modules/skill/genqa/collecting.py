@@ -27,7 +27,7 @@ class Outcome:
     kind: Kind
     passages: int = 0
     why: str = ""
-    """Why the file is unreadable; empty if it is not."""
+    """Why the file is unreadable; empty if it is readable."""
 
 
 @dataclass(slots=True)
@@ -37,7 +37,7 @@ class Found:
     files: list[tuple[Path, str]] = field(default_factory=list[tuple[Path, str]])
     """The files, each with the source that answers name."""
     roots: list[Path] = field(default_factory=list[Path])
-    """The folders in which files may have been deleted."""
+    """The folders under these paths. The index may still have files that were deleted from these folders."""
     unreadable: list[Outcome] = field(default_factory=list[Outcome])
 
 

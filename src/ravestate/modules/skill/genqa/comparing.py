@@ -1,4 +1,4 @@
-"""Comparisons of two things by the numbers and dates of their documents, and ages at an event."""
+"""Comparisons of two things by numbers and dates from the documents, and the age of a person at an event."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
 
 
 def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> Answer | None:
-    """Return how old somebody was when they died, or at another event; None if the utterance does not ask for it."""
+    """Return the age of a person at their death or at another event; None if the utterance does not ask for an age."""
     words = [word for word in heard.asked if word.pos != "PUNCT"]
     low = [word.low for word in words]
     when = low.index("when", 1) if "when" in low[1:] else len(words)
@@ -117,7 +117,7 @@ def _sides(heard: Parse, thread: Sequence[Turn]) -> tuple[list[str], list[Turn]]
 
 
 def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
-    """Return what a noun or a pronoun of the utterance names; empty for other words."""
+    """Return the name of the thing that a noun or a pronoun stands for; empty for other words."""
     if refers(word, heard.asked):
         return next((thing.text for thing in referents(word, thread)), "")
     if (
@@ -131,7 +131,7 @@ def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
 
 
 def _told(turn: Turn, base: str) -> Answer | None:
-    """Return the answer of a turn if it measures what is compared."""
+    """Return the answer of a turn if it has the measure that the comparison needs."""
     words = set(turn.question.lower().split())
     fits = base in ("big", "large", "many", "much") or (base == "old" and "when" in words)
     if not fits and words.isdisjoint(variants_of(base)):
@@ -140,7 +140,7 @@ def _told(turn: Turn, base: str) -> Answer | None:
 
 
 def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the best answer that measures `name`."""
+    """Ask the documents, and return the best answer with a measure of `name`."""
     questions = [f"how {base} is {name}?"]
     if base == "many" or noun:
         questions = [f"how many {noun or 'people'} does {name} have?"]
@@ -152,7 +152,7 @@ def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Ans
 
 
 def begun(name: str, ask: Callable[[str], Answer]) -> Answer | None:
-    """Return when somebody was born, or something was founded or built; None if no passage about it says so."""
+    """Return the answer with the date when `name` was born, founded or built; None if no passage about it has one."""
     answers = [ask(f"when was {name} {done}?") for done in ("born", "founded", "built")]
     bare = name.lower().removeprefix("the ")
     own = [

@@ -20,10 +20,14 @@ def confidence(score: float, covered: float) -> float:
 
 
 def in_talk(score: float, own: float) -> float:
-    """Return this probability for a follow-up. `own` is the share of its words, without names from earlier questions.
+    """Return the probability (0 to 1) that a passage answers a follow-up.
 
     A high score alone is enough, because a follow-up rarely has the document's own words. Doubt counts twice, because a
     wrong answer is worse than no answer.
+
+    Args:
+        score: The reader's score of the passage.
+        own: The share of the follow-up's words in the passage (0 to 1), without names from earlier questions.
     """
     alone = 1.46 * max(score - 6.0, 0.0) * (1.0 - own)
     return 1.0 / (1.0 + math.exp(-(-9.4 + 0.48 * max(score, 0.0) + 7.72 * own + alone)))

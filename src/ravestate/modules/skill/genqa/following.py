@@ -1,4 +1,4 @@
-"""The answer to an utterance in a conversation: the answer to the reading that the documents support best."""
+"""The answer to an utterance in a conversation. An utterance may have several readings; the best answer counts."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def _again(text: str, before: str) -> str:
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
-    """Return the answer. A yes-or-no question may get the answer of another question; a vague one gets no sure answer."""
+    """Return the answer. For a yes-or-no question, try `other_wording` first. A vague question gets no sure answer."""
     if question.kind is QuestionWord.YES_NO and not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)
         if decided.confidence >= settings.sure:

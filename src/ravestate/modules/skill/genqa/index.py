@@ -142,7 +142,7 @@ class Index:
         return found[0][0] if found else ""
 
     def title_of(self, name: str) -> str:
-        """Return the title that is `name`, or "". Upper and lower case, and *the*, make no difference."""
+        """Return the title that equals `name`, or "". Ignore case, and a *the* in front."""
         bare = name.lower().removeprefix("the ")
         query = "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1"
         found = self._rows(query, bare, f"the {bare}")
@@ -253,7 +253,8 @@ class Index:
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
             with self._changing():
-                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:  # still no tables
+                # Another process may have made the tables meanwhile.
+                if not self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
                     for statement in _SCHEMA.split(";\n"):
                         self._base.execute(statement)
 
@@ -294,6 +295,6 @@ _ERRORS = {
 
 
 def _any_of(words: Sequence[str]) -> str:
-    """Return a query for any of these words, without operators."""
+    """Return a query for any of these words; operators in them count as plain words."""
     terms = [clean for word in words if (clean := word.replace('"', " ").replace("\0", " ").strip())]
     return " OR ".join(f'"{term}"' for term in terms)

@@ -23,14 +23,14 @@ class Settings(rs.Settings):
     index: Path | None = None
     """The file that ``ravestate genqa index`` writes; by default ``ravestate/genqa.sqlite`` in the user's data folder."""
     collection: bool = True
-    """Whether to search also the collection that comes with Ravestate: countries, nature, the calendar."""
+    """Whether to also search the collection that comes with Ravestate: countries, nature, the calendar."""
     sure: Probability = 0.7
-    """The minimum confidence of an answer that the agent says without a doubt."""
+    """The minimum confidence of an answer that the agent states as certain."""
     unsure: Probability = 0.5
-    """The minimum confidence of an answer that the agent says with a doubt; below that, the module is silent."""
+    """The minimum confidence of an answer that the agent states as uncertain. Below it, the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
-    sentences that were found, and an answer with another name or number is dropped."""
+    sentences that were found, and an answer with any other name or number is dropped."""
     reader: Path | None = None
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
     bundled one."""
@@ -51,4 +51,4 @@ found = module.signal("found", payload=Answer)
 """The documents have an answer that is probable enough to say."""
 
 thread: rs.Slot[tuple[Turn, ...]] = module.slot("thread", ())
-"""The latest questions with their answers, oldest first: *and its capital?* refers to them."""
+"""The latest questions with their answers, oldest first. A follow-up such as *and its capital?* refers to them."""

@@ -50,7 +50,7 @@ class Question:
     """Words that a passage must not have: other ranks, the other sex."""
     kind: QuestionWord | None = None
     doubtful: bool = False
-    """Whether only a sure answer counts, because the utterance may be no question about the world."""
+    """Whether only a sure answer counts, because the utterance may not be a question about the world."""
     follows: bool = False
     """Whether the question was completed from earlier questions. If so, names do not count for the confidence."""
     declined: str = ""
@@ -86,7 +86,7 @@ def parse(text: str) -> Parse:
 
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
-    """Return the parse. Its question is the first sentence with a question word or a question mark, or else the last."""
+    """Return the parse. Its question is the first sentence with a question word or mark, or else the last sentence."""
     sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
     asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
     asked = (asking or sentences[-1:] or [[]])[0]
@@ -126,7 +126,7 @@ def as_question(heard: str | Parse) -> Question:
         >>> as_question("Hello! Can you tell me what the capital of Peru is?").words
         ('capital', 'Peru')
         >>> as_question("What is your name?").declined
-        'it is about the two who talk'
+        'it is about the user or the agent'
     """
     if isinstance(heard, str):
         if len(heard) > LONGEST:
@@ -142,7 +142,7 @@ def as_question(heard: str | Parse) -> Question:
         reason = "it is about the moment, which documents do not know"
     named = {part for word in said if is_name(heard, word) for part in _parts(word)}
     if not reason and words and heard.kind in _ABOUT_DEEDS and named.issuperset(words):
-        reason = "it asks nothing about a name"
+        reason = "it has only a name, and asks nothing about it"
     if not reason and not words:
         reason = "it has no word to look for"
     if any(word.low in THE_TWO for word in said):
@@ -176,7 +176,7 @@ def _declined(heard: Parse, said: Sequence[Word]) -> str:
     root = next((word for word in said if word.dep == "ROOT" or word.head == word.index), None)
     modal = next((word for word in said if word.tag == "MD" and word.dep in ("aux", "ROOT")), None)
     if any(word.low in THE_TWO and not _is_anybody(heard, word) for word in said):
-        return "it is about the two who talk"
+        return "it is about the user or the agent"
     if modal is not None and modal.lemma in ("will", "shall"):
         return "it is about the future, which documents do not know"
     if modal is not None and modal.low == "should" and heard.kind is QuestionWord.YES_NO:
@@ -208,7 +208,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
     avoids: list[str] = []
     tree, ranks = heard.tree, words_of("ranks")
     named = {i for e in heard.entities if e.label in (*_NAMES, "DATE", "TIME") for i in range(e.start, e.end)}
-    decides = heard.kind is QuestionWord.YES_NO  # a passage that says no has another name: "The capital is Berlin."
+    decides = heard.kind is QuestionWord.YES_NO  # a passage that means "no" has another name: "The capital is Berlin."
     asked_ranks = {word.low for word in heard.asked if word.low in ranks}
     for word in heard.asked:
         if word.dep == "neg" or word.low in ("no", "never"):
@@ -239,7 +239,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
-    """Return whether a word is a superlative. In *most people*, without *the*, it is not."""
+    """Return whether a word is a superlative. The *most* in *most people* is not one."""
     before = tree.before(word)
     quantity = (
         word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
@@ -276,7 +276,7 @@ def is_vague(question: Question) -> bool:
 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:
-    """Return the reason, from its parse and acts, why an utterance asks for nothing; empty if it may be a question."""
+    """Return the reason why an utterance asks for nothing; empty if it may be a question."""
     if any(word.lemma == "mean" and word.head == word.index for word in heard.asked):  # "no, I meant ..."
         return ""
     if len(analysis.text) > LONGEST:

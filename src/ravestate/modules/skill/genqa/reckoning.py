@@ -53,7 +53,7 @@ class Unanswerable(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number with its unit, by its name in pint; the name is empty if there is no unit."""
+    """A number with a unit. `unit` is the name in pint, or "" if there is no unit."""
 
     value: float
     unit: str
@@ -61,7 +61,7 @@ class Quantity:
     """The unit as the text has it."""
 
     def beside(self, other: Quantity) -> tuple[float, float] | None:
-        """Return both values in this unit; None if they measure different things."""
+        """Return this value and the other one, both in this unit; None if they measure different things."""
         if self.unit == other.unit:
             return self.value, other.value
         if not _alike(self.unit, other.unit):
@@ -92,7 +92,7 @@ def words_for(name: str) -> frozenset[str]:
 def reckon(
     text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None, now: time | None = None
 ) -> str:
-    """Return the result of a sum in words; empty if the text is no sum.
+    """Return a sentence with the result of a sum; empty if the text is no sum.
 
     Args:
         text: The utterance.
@@ -175,7 +175,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
 
 def focused(question: str, answer: str) -> str:
-    """Return an answer in another order: the parts with most words of the question, names apart, come first.
+    """Return the parts of an answer, those with most words of the question first. Names do not count.
 
     Example:
         >>> focused("How high is it?", "The bridge is 512 metres long and 63 metres high.")
@@ -191,7 +191,7 @@ def focused(question: str, answer: str) -> str:
 
 
 def of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
-    """Return the result for a number of each text, if both measure the same; empty if there is no such pair."""
+    """Return the result of `work_out` for one number of each text; empty if no two numbers measure the same thing."""
     pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
     found = next(((left, values) for left, values in pairs if values is not None), None)
     return "" if found is None else f"{_number(work_out(*found[1]))} {found[0].word}".strip() + "."
@@ -388,7 +388,7 @@ def dates_in(text: str) -> list[Dated]:
 
     found: list[Dated] = []
     for match in _DATE.finditer(text.lower()):
-        try:  # a part that the text lacks comes from the default
+        try:  # the default supplies the parts that the text lacks
             one, other = (parse(match[0], default=default, dayfirst=True) for default in _DEFAULTS)
         except (ParserError, OverflowError, ValueError):
             continue
@@ -443,7 +443,7 @@ def apart(one: Dated, other: Dated, unit: str = "year") -> str:
 
 
 def _until(asked: re.Match[str], now: time) -> str:
-    """Return the minutes or hours until a time of day. Without *am* or *pm*, take the next such time."""
+    """Return the minutes or hours until a time of day. If it has no *am* or *pm*, take the next such time."""
     hour = int(asked["hour"] or (0 if asked["name"] == "midnight" else 12))
     if hour > 24:
         return ""

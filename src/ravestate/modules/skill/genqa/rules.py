@@ -43,8 +43,8 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
             ) from error
 
 
-# This rule runs for every utterance. A rule that waited for the signal of a question would hold the spikes of each
-# statement for seconds; until then, `idle` would not see the silence.
+# This rule runs for every utterance. If it waited for a signal that only questions raise, it would hold the spikes of
+# each statement for seconds. During these seconds, `idle` would not see the silence.
 @module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=(thread, rawio.output), writes=thread, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
     """Search the documents."""

@@ -103,7 +103,7 @@ class Reading:
     prior: float = 0.0
     """How likely the reading is before the documents are asked (log odds)."""
     about: str = ""
-    """The subject, if it comes from the thread; the text may name it."""
+    """The subject, if it comes from the thread; `text` may name it, too."""
     new: str = ""
     """The words of the utterance that replace words of an earlier question; a passage must have them."""
 
@@ -163,7 +163,7 @@ def _is_noun(word: Word) -> bool:
 
 
 def phrase_of(tree: Tree, head: Word) -> list[Word]:
-    """Return a noun with its own words to the left."""
+    """Return a noun with the words before it that belong to it."""
     left = [child for child in tree.children(head, *_OWN) if child.index < head.index]
     return [*(word for child in left for word in tree.subtree(child)), head]
 
@@ -188,7 +188,7 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
 
 
 def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = lambda _: "") -> list[Reading]:
-    """Return the questions that an utterance may stand for; none if it refers to something outside the thread.
+    """Return the questions that an utterance may stand for; an empty list if it refers to something outside the thread.
 
     Args:
         seen: The utterance.
@@ -256,7 +256,7 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
 
 
 def correction(seen: Parse) -> list[Word]:
-    """Return the words for what was really meant: *I meant Mount Olin*."""
+    """Return the words for the thing that the user meant: *Mount Olin* in *I meant Mount Olin*."""
     root = next((word for word in seen.asked if word.lemma == "mean" and word.head == word.index), None)
     if root is None or not any(word.low == "i" for word in seen.tree.children(root, "nsubj")):
         return []

@@ -20,7 +20,7 @@ TOLD = 3
 WORTH_TELLING = 3.0
 """A passage in the prompt has a score at most this far below the best score."""
 FAMILIAR = 0.6
-"""The minimum share of the model's words that the passages or the question must have."""
+"""The minimum share of the model's words that must also be in the passages or in the question."""
 
 _INSTRUCTION = (
     "You word answers. Answer the question in one short sentence, only with what the quotations between <<< and >>> say. "
@@ -31,7 +31,7 @@ _DENIAL = re.compile(r"\b(?:not|no|never|none|nobody|nothing|neither|nor|without
 
 
 def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Intent:
-    """Return the intent that says `text`, with or without a doubt."""
+    """Return the intent that says `text`, either as certain or as uncertain."""
     if not answer.source:
         return verbaliser.Intent("reckoned", {"answer": text}, package=__package__)
     name = "sure" if answer.confidence >= settings.sure else "unsure"
@@ -39,10 +39,10 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
 
 
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
-    """Return a rule in which the language model words the answer; it resigns if the model adds something.
+    """Return a rule that lets the language model word the answer. The rule resigns if the model adds something.
 
-    The rule is for a context with wildtalk. It outranks the rule that says the sentence itself. If this rule resigns or
-    fails, that rule speaks.
+    It is for a context with wildtalk. It outranks the rule `say`, which answers with the document's own sentence. If it
+    resigns or fails, `say` answers.
     """
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.backend import Message

@@ -14,7 +14,7 @@ goodbye = module.signal("goodbye")
 """The user says goodbye, and little else."""
 
 parted: rs.Slot[float | None] = module.slot("parted", None)
-"""The agent's last goodbye, in seconds since the context began."""
+"""The time of the agent's last goodbye, in seconds since the context began."""
 
 greeted: rs.Slot[float | None] = module.slot("greeted", None)
-"""The agent's last greeting of a user who came, in seconds since the context began."""
+"""The time of the agent's last greeting, in seconds since the context began."""

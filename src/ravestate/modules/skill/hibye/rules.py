@@ -16,14 +16,16 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .names import goodbye, greeted, hello, module, parted
 
 JUST_NOW = 60.0
-"""Seconds for which a greeting or a goodbye counts. Within this time, the agent does not repeat it."""
+"""For this many seconds after a greeting or a goodbye, the agent does not repeat it."""
 GENERAL = 0.15
 """The weight of the answers: so low that almost any other rule for the same words outranks them."""
 
 
 @module.rule(
-    when=interloc.users.added, writes=(verbaliser.intent, greeted), weight=1.1
-)  # outranks a simultaneous goodbye
+    when=interloc.users.added,
+    writes=(verbaliser.intent, greeted),
+    weight=1.1,  # outranks a simultaneous goodbye
+)
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
     """Greet a user who comes."""
     name = ctx.payload(interloc.users.added).item
@@ -80,6 +82,6 @@ def _partings() -> Matcher:
 
 
 def _goes_to_bed(text: str) -> bool:
-    if bundled_matcher("acts").loaded:  # until then, only words that equal an example are recognised
+    if bundled_matcher("acts").loaded:  # else, only words that equal an example are recognised
         _partings().load()
     return any(_partings().match_all(heard(text)))

@@ -63,7 +63,7 @@ class Acquaintance:
         return replace(self, talk=replace(self.talk, doubt=topics[0] if topics else ""))
 
     def settled(self, graph: ontology.Graph, answer: tuple[str, ...]) -> Acquaintance:
-        """Return the user as the person whose name and facts fit this answer; if nobody fits, as a new person."""
+        """Return the user as the person in memory who has this name and fits `answer`, or else as a new person."""
         assert self.who is not None
         for person in records.namesakes(graph, self.who[NAME]):
             values = records.known(graph, person).get(self.talk.doubt, ())
@@ -76,7 +76,7 @@ class Acquaintance:
         return replace(self, talk=replace(self.talk, doubt="", met=True, newcomer=True))
 
     def noted(self, graph: ontology.Graph) -> Acquaintance:
-        """Save what the user told in this conversation. Without their name, save nothing."""
+        """Save what the user has told in this conversation. If their name is not known, save nothing."""
         now = self.recall(graph)
         if now.who is None or now.talk.doubt:
             return now
@@ -87,10 +87,10 @@ class Acquaintance:
         return now
 
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
-        """Return the user under another name, because the first one was misunderstood.
+        """Return the user under another name, because the agent misunderstood the first one.
 
-        A person whom this conversation created gets the new name. A person from memory gets their old facts back; the
-        facts of this conversation go to a person with the new name.
+        If this conversation created the person, rename them. If the person comes from memory, restore their old facts;
+        the facts of this conversation then go to a person with the new name.
         """
         assert self.who is not None  # the agent understood their name
         person = ontology.Node("Person", {NAME: name})
@@ -115,7 +115,7 @@ class Acquaintance:
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
 
-        Parts that have changed since `base` stay as they are, because the user has kept talking."""
+        Parts of this state that already differ from `base` stay: the user has spoken in the meantime."""
         facts = unless_changed(self.facts, base.facts, after.facts)
         if (self.who, self.talk.met) != (base.who, base.talk.met):  # by now, this is another user
             return replace(self, facts=facts)

@@ -1,4 +1,4 @@
-"""Bare answers to the agent's questions, and corrections: *hannover*, *chess and football*, *no, Bremen*."""
+"""Bare answers to the agent's questions (*chess and football*), and corrections (*Bremen, not Hannover*)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .values import value_of
 
 
 def _any(name: str) -> str:
-    """Return the pattern of the phrases in a list."""
+    """Return a pattern that matches each phrase of a list in `WORDS`."""
     return "|".join(map(re.escape, sorted(WORDS[name], key=len, reverse=True)))
 
 
@@ -34,7 +34,7 @@ _HEDGES = re.compile(
 )
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
-"""Kinds of values that end before a place: only *teacher* in *teacher at a school*."""
+"""Kinds of values that leave out a place after them: in *teacher at a school*, the value is *teacher*."""
 _NOT_THIS = re.compile(
     r"^\W*(?:(?:no|it is|i am|i)\W+)*not (?P<wrong>.+?)[,;.]\s*(?:(?:but|it is|i am|rather) )*(?P<right>.+)$",
     re.IGNORECASE,
@@ -89,14 +89,14 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
 def correction(
     text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False
 ) -> list[Fact]:
-    """Return the facts in a correction: *no, Bremen*, *Bremen, not Hannover*.
+    """Return the facts in a correction: *Bremen, not Hannover*, or just *no, Bremen*.
 
     Args:
-        text: The utterance, short forms written out.
+        text: The utterance, with its short forms written out.
         topic: The topic to correct.
-        known: The values that were understood.
+        known: The values that the agent has understood.
         seen: The analysis of the utterance.
-        explicit: Whether only *Bremen, not Hannover* counts, and *no, Bremen* does not.
+        explicit: Whether a correction must name the wrong value: *Bremen, not Hannover* does, *no, Bremen* does not.
     """
     if both := _NOT_THIS.match(text) or _NOT_THAT.match(text):
         wrong = _PREPOSITIONS.sub("", both["wrong"]).strip(" .!?").casefold()
@@ -109,7 +109,7 @@ def correction(
 
 
 def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
-    """Return whether an utterance may be a bare answer. Sentences about others, requests, and a mere yes or no may not.
+    """Return whether an utterance may be a bare answer. Sentences about others, requests, and a mere yes or no are not.
 
     Args:
         seen: The analysis of the utterance.

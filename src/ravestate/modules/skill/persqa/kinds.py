@@ -21,38 +21,38 @@ FITTING = {
     "trait": ("trait",),
     "possession": ("possession",),
 }
-"""The kind or the name of a topic → the classes in `nouns.yaml` whose nouns may be its values."""
+"""A topic's kind or name → the classes in `nouns.yaml` whose nouns may be values of the topic."""
 _FOLDER = files(__name__.rpartition(".")[0])
 
 
 @cache
 def nouns() -> Matcher:
-    """Return the classifier of nouns, even if it is not loaded yet."""
+    """Return the classifier of nouns. It may not be loaded yet."""
     return Matcher(read_examples(_FOLDER / "nouns.yaml").classes, least=0.0, shapes=0.0)
 
 
 @cache
 def acts() -> Matcher:
-    """Return the classifier of the user's reactions to the agent's questions, even if it is not loaded yet."""
+    """Return the classifier of the user's reactions to the agent's questions. It may not be loaded yet."""
     found = read_examples(_FOLDER / "acts.yaml")
     return Matcher(found.classes, found.none)
 
 
 def likeness(value: str, kind: str) -> float:
-    """Return how much better a value fits a kind than all other kinds: about -1 to 1; 0 if unsure."""
+    """Return how much better a value fits `kind` than it fits any other kind: about -1 to 1; 0 if unsure."""
     ranked = nouns().ranked(value)
     fitting = [match.margin for match in ranked if match.name in FITTING[kind]]
     return max(fitting, default=-1.0 if ranked and ranked[0].name else 0.0)
 
 
 def is_remark(value: str) -> bool:
-    """Return whether a value is no answer, but probably a remark, a time or a state."""
+    """Return whether a value is probably a remark, a time or a state, and therefore no answer."""
     ranked = nouns().ranked(value)
     return bool(ranked) and ranked[0].name in ("remark", "state", "time") and ranked[0].margin > 0.15
 
 
 def load() -> None:
-    """Learn both classifiers, once.
+    """Load both classifiers, unless they are loaded.
 
     Raises:
         PlatformError: The sentence model is missing.

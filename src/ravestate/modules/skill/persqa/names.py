@@ -32,11 +32,11 @@ class Settings(rs.Settings):
     gap: Annotated[float, Field(ge=0)] = 180.0
     """The least number of seconds between two questions that the agent asks in silences."""
     turns: Annotated[int, Field(ge=0)] = 3
-    """The number of the user's first utterances during which the agent asks for nothing but their name."""
+    """Until the user has spoken this many times, the agent asks only for their name."""
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True
-    """Whether a user who gives a known name must answer a question before the agent uses what memory knows."""
+    """Whether a user who gives a name in memory must answer a question, to prove that they are this person."""
     ignored: Annotated[int, Field(ge=1)] = 2
     """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
 
@@ -47,7 +47,7 @@ who: rs.Slot[ontology.Node | None] = module.slot("who", None, type=ontology.Node
 """The user's node in memory; None as long as their name is not known."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
-"""Values by topic (``home``, ``hobby``, ...); an empty tuple means that there are none."""
+"""Values by topic (``home``, ``hobby``, ...); an empty tuple means that the user has none."""
 
 told: rs.Collection[Told] = module.collection("told")
 """The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
@@ -62,4 +62,4 @@ noted = module.signal("noted", payload=Noted)
 """Memory has looked up the user, or has saved what they told."""
 
 forgotten = interloc.forgotten
-"""The user has been forgotten, so other modules wipe the user's data. The signal itself is in `interloc`."""
+"""Persqa has forgotten the user, so other modules delete the user's data as well. This is a signal of `interloc`."""

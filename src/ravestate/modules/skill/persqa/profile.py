@@ -1,4 +1,4 @@
-"""The facts about the user after they told something. Nothing is saved here."""
+"""The change of the facts when the user tells something. The functions here save nothing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .wording import Facts, without
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """The result of learning."""
+    """The facts after the user has told something, and the topics that this concerns."""
 
     facts: Facts
     topics: tuple[str, ...]
@@ -47,7 +47,8 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
             continue
         before = now.pop(topic, ())
         left = without(before, values) if values else ()
-        if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):  # there may be a second place
+        # A user who leaves a place or an organisation may have another one, so note no empty value.
+        if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):
             now[topic] = left
         if topic == "occupation" and not left:
             topics.append("employer")

@@ -228,7 +228,7 @@ class Reader:
         yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
 
     def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
-        """Yield the topics that the table has for a verb and a preposition, perhaps with an object: *have a job at*."""
+        """Yield the topics that the table has for *live in* (verb, preposition) or *have a job at* (with an object)."""
         predicate, object = _predicate(said), said.object
         child = any(phrase.preposition == "as" and phrase.head in WORDS["young"] for phrase in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
@@ -329,7 +329,7 @@ class Reader:
         """Yield the relatives that the user names, with their names: *my sister Rosa*, *my mother's name is Anna*,
         *a son named Ben*, *call me Tom*.
 
-        The parser often misses the second of two relatives, so this reads the words one by one."""
+        The parser often misses the second of two relatives, so this method reads the words one by one."""
         unsaid: set[str] = set()
         whole: list[tuple[str, tuple[str, ...]]] = []
         for said in self.seen.statements:

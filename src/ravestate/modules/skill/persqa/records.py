@@ -17,7 +17,7 @@ MOST = 200
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name; if there are several, the one with the most relations, then the oldest."""
+    """Return the person of this name. Among several people, take the one with the most relations, then the oldest."""
     people = namesakes(graph, name)
     return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
 
@@ -28,7 +28,7 @@ def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
 
 
 def has_talked(graph: ontology.Graph, person: ontology.Node) -> bool:
-    """Return whether a person in memory has talked to the agent, or was only mentioned by others."""
+    """Return whether a person in memory has talked to the agent. Others may only have mentioned the person."""
     relations = graph.relations(person)
     return not relations or any(relation.source.id == person.id for relation in relations)
 
@@ -51,7 +51,7 @@ def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts
         graph: The memory.
         person: The person; their node is saved as well.
         facts: Values by topic.
-        once: Values that earlier calls may have saved. This call removes values that are missing in `facts`.
+        once: Values that earlier calls may have saved. This call removes those that are missing in `facts`.
     """
     graph.save(person)
     related = _related(graph, person)
@@ -90,7 +90,7 @@ def _remarks(graph: ontology.Graph, person: ontology.Node) -> list[tuple[Told, o
 
 
 def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str, Told]) -> None:
-    """Save the last `MOST` free statements in `told`, and remove all other free statements of the person."""
+    """Save the last `MOST` free statements in `told`, and remove the person's other free statements from memory."""
     present = {one.key: node for one, node in _remarks(graph, person)}
     kept = dict(list(told.items())[-MOST:])
     for key, node in present.items():

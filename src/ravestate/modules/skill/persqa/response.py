@@ -45,7 +45,7 @@ def respond_to(
         user: The user before the utterance.
         now: Seconds from the beginning of the context.
         chance: The source of random choices.
-        confirm: Whether the user must confirm a known name before the agent uses memory's facts.
+        confirm: Whether a user who gives a name in memory must answer a question, to prove that they are this person.
     """
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
@@ -195,7 +195,8 @@ async def _written(
     except RavestateError as error:
         user = _with(user, trouble=str(error))
     if again:
-        return replace(user, who=ontology.Node("Person", {NAME: name}))  # for as long as the conversation lasts
+        # Memory failed, so the name is for this conversation only.
+        return replace(user, who=ontology.Node("Person", {NAME: name}))
     with contextlib.suppress(RavestateError):  # reading may work where writing fails
         return await _at_once(memory, user.recall)
     return user
@@ -303,7 +304,7 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 
 
 def _wants_out(user: Acquaintance, now: float) -> Response:
-    """Ask for a confirmation before forgetting everything, or ask who the user is."""
+    """Ask for a confirmation before forgetting everything. If the user is not known, ask who they are."""
     if user.who is None and not user.known and not user.told:
         return _ask(NAME, "forget_who", _with(user, wants_out=True), now)
     unknown = user.talk.wants_out and user.talk.newcomer and not user.facts and not user.told
@@ -314,7 +315,7 @@ def _wants_out(user: Acquaintance, now: float) -> Response:
 
 
 def _removed(user: Acquaintance) -> str:
-    """Return what forgetting the user removes, in words."""
+    """Return a description, for the user, of the data that is removed when the agent forgets them."""
     topics = [f"your {topic}" for topic in in_order(user.known) if user.known[topic]]
     amount = len(user.told)
     things = [f"{amount} other thing{'s' if amount > 1 else ''} that you told me"] if amount else []

@@ -31,7 +31,7 @@ T = TypeVar("T")
 @module.rule(
     when=idle.bored,
     reads=(who, facts, told),
-    writes=(verbaliser.intent, rawio.output, talk),  # the output, so that no other rule speaks at the same time
+    writes=(verbaliser.intent, rawio.output, talk),  # takes the output, so that no other rule speaks at the same time
     weight=1.2,
     cooldown=20.0,
     detached=True,  # starts a causal group of its own: in the group of `bored`, no rule could put the intent into words
@@ -41,7 +41,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     now = ctx[talk]
     if now.quiet:
-        return rs.Resign("the user has taken leave")
+        return rs.Resign("the user has said goodbye")
     if now.asked is not None and (age := ctx.now - now.asked) < settings.gap:
         return rs.Resign(f"a question was asked {age:.0f} s ago; persqa.gap is {settings.gap:g} s")
     if now.question is not None and not now.question.turns:
@@ -103,10 +103,10 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     emits=(reply, noted, forgotten),
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Learn what the user tells about themselves, and raise a reply if this module has one.
+    """Learn what the user tells about themselves, and emit a reply if there is one.
 
-    The slots change before memory saves anything, because the next utterance does not wait. `acknowledge` puts the result
-    of memory into the slots later.
+    The slots change before memory saves anything, because the user may speak again before memory has finished.
+    `acknowledge` then puts memory's result into the slots.
     """
     settings: Settings = ctx.settings
     seen = ctx.payload(nlp.analysis.changed)
@@ -142,7 +142,7 @@ async def _is_open(memory: ontology.Memory) -> bool:
 
 @module.rule(when=noted.max_age(None).detached(), writes=(talk, who, facts, told, interloc.users), background=True)
 async def acknowledge(ctx: rs.RuleContext) -> None:
-    """Put the result of memory into the slots, and the user's name into `interloc.users`."""
+    """Put memory's result into the slots, and the user's name into `interloc.users`."""
     base, after, called = ctx.payload(noted)
     now = acquaintance_of(ctx)
     keep(ctx, now, now.rebased(base, after))
@@ -154,8 +154,10 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
 
 
 @module.rule(
-    when=reply, writes=verbaliser.intent, weight=1.6
-)  # outranks `agentqa` for "what have you learnt about me?"
+    when=reply,
+    writes=verbaliser.intent,
+    weight=1.6,  # outranks `agentqa` for "what have you learnt about me?"
+)
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)
@@ -163,7 +165,7 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note that the agent said something else after its question. The user's next words may answer the later words."""
+    """Note that the agent has spoken again after its question. The user's next words may not answer the question."""
     if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
         return rs.Resign("that was no word")  # for example, an emoji after an answer
     ctx[talk] = ctx[talk].speaking()
@@ -172,7 +174,7 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.heard.changed.max_age(None).detached(), reads=rawio.output, writes=talk, background=True)
 async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Withdraw a spoken question that the user interrupted before its end: their words do not answer it."""
+    """Withdraw a spoken question that the user has interrupted. Their words do not answer it."""
     said, heard, now = ctx[rawio.output].strip(), ctx.payload(rawio.heard.changed).strip(), ctx[talk]
     if now.question is None or not now.question.fresh:
         return rs.Resign("no question waits for its first answer")
@@ -190,7 +192,7 @@ async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up a new user whose name is known. `hibye` greets them; later, in a silence, `ask` mentions a known fact."""
+    """Look up an arriving user in memory. `hibye` greets them; later, in a silence, `ask` mentions a known fact."""
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
@@ -225,7 +227,7 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
 
 def person_of(item: object) -> ontology.Node | None:
     """Return the person of an item in `interloc.users`; None for an item without a name."""
-    item = getattr(item, "node", item)  # a platform that recognises the person gives their node
+    item = getattr(item, "node", item)  # a platform that recognises people gives a node
     if isinstance(item, ontology.Node):
         return item if item.get(NAME) else None
     return ontology.Node("Person", {NAME: item.strip()}) if isinstance(item, str) and item.strip() else None
@@ -275,7 +277,7 @@ def _update(items: Any, before: Mapping[str, T], after: Mapping[str, T]) -> None
     background=True,
 )
 async def publish(ctx: rs.RuleContext) -> None:
-    """Copy the facts about the user, and their name, to `interloc.facts`, for modules that do not need this one."""
+    """Copy the facts about the user, and their name, to `interloc.facts`, for modules that do not require persqa."""
     known = {
         topic: tuple(values)
         for topic, values in Acquaintance(ctx[who], dict(ctx[facts]), Talk()).known.items()

@@ -9,7 +9,7 @@ from typing import Any
 from .told import Told
 
 FORGET = "forget"
-"""The topic of the question: do you really want to be forgotten?"""
+"""The topic of the question whether the agent should really forget the user."""
 
 CONFIRM = "confirm"
 """The topic of the question that tests whether the user is the person of the same name in memory."""
@@ -24,7 +24,7 @@ LONGEST = 100
 """The number of the user's statements that a conversation remembers."""
 
 CORRECTABLE = 2
-"""The number of utterances after a fact in which the user can correct it briefly, as with "no, Bremen"."""
+"""The number of utterances for which the user can correct the last fact in a few words: "no, Bremen"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +35,10 @@ class Question:
     since: float
     """Seconds from the beginning of the context to the question."""
     turns: int = 0
-    """How many times the user has spoken since the question without answering it."""
+    """The number of the user's utterances since the question, none of which answered it."""
     heard: bool = False
     spoken_over: bool = False
-    """Whether the agent has said something else since the question. If so, a mere "no" may answer the later words."""
+    """Whether the agent has said something else since the question. If so, a mere "no" may not answer the question."""
 
     @property
     def fresh(self) -> bool:
@@ -61,7 +61,7 @@ class Talk:
     last: str = ""
     """The topic that the agent has learnt or mentioned most recently."""
     latest: tuple[str, ...] = ()
-    """The values of the topic `last`. The user can correct them briefly, as with "no, Bremen"."""
+    """The values of the topic `last`. The user may correct them in a few words: "no, Bremen"."""
     age: int = 0
     """The number of utterances since the agent learnt or mentioned `last`."""
     met: bool = False
@@ -117,7 +117,7 @@ class Talk:
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self) -> Talk:
-        """Note that the agent has spoken. Its first utterance is the question; the next one may speak over the question."""
+        """Note that the agent has spoken. The first time, this is the question itself; after that, something else."""
         question = self.question
         if question is None or (question.heard and question.turns):
             return self
@@ -132,7 +132,7 @@ class Talk:
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """Note the `topics` that the user told about, and the values of the topic `last`, which a correction would change."""
+        """Note the topics that the user told about. They may then correct `latest`, the values of the topic `last`."""
         answered = self.question is not None and self.question.topic in topics
         told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
         return told.mentioning(last, latest)
@@ -147,7 +147,7 @@ class Talk:
         return talk.keeping(gone).learning(gone.keys(), "", ())
 
     def keeping(self, values: Mapping[str, tuple[str, ...]]) -> Talk:
-        """Note values that this conversation has saved or removed, whether or not memory has finished."""
+        """Note values that this conversation saves or removes. Memory may not have finished yet."""
         return replace(
             self, once={**self.once, **{topic: self.once.get(topic, ()) + values[topic] for topic in values}}
         )
@@ -169,7 +169,7 @@ class Talk:
 
     @property
     def correctable(self) -> str:
-        """The topic that "no, Bremen" would correct; empty if there is none."""
+        """The topic that a correction such as "no, Bremen" is about; empty if there is none."""
         return self.last if self.age <= CORRECTABLE else ""
 
 

@@ -32,7 +32,7 @@ _FIT = {
     ),
     nlp.QuestionWord.PLACE: re.compile(r"\b(?:in|at|to|from|near|on) \w"),
 }
-"""The form of a statement that answers a question for a person, a time or a place."""
+"""The kind of a question → a pattern that fits the statements that can answer the question."""
 _FIT[nlp.QuestionWord.AMOUNT] = re.compile(
     r"\d|\b(?:half|(?:one|two|three|four|five|six|seven|eight|nine)(?:teen|ty)?|ten|eleven|twelve|(?:thir|fif|eigh)teen|"
     r"(?:twen|thir|for|fif|eigh)ty|hundred|thousand|many|few|no)\b",
@@ -76,7 +76,7 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all its statements. *He* stands for the person named last."""
+    """Return two lists: the free statements of an utterance, and all its statements. *He* is the person named last."""
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
@@ -161,7 +161,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 
 
 def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
-    """Return whether a statement has all these words. The name of a relative counts as well: *Rosa* for *sister*."""
+    """Return whether a statement has all these words. *Rosa* counts as *sister* if the user's sister is Rosa."""
     had = _stems(f"{one.text} {one.verb} {one.subject}")
     return all(_stems(" ".join((word, *known.get(NOUNS.get(word, ""), ())))) & had for word in words)
 
@@ -184,7 +184,7 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _gained(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether the subject owns something or has got it: *a red bicycle*, but not *a headache*."""
+    """Return whether a statement says that its subject owns a thing: *a red bicycle*, but not *a headache*."""
     verb = reader.verb(said)
     gets = said.verb == "get" and verb is not None and verb.low == "got"
     thing = reader.written(said.object)
@@ -194,12 +194,12 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether a statement tells an event and a name: *I went to Prague*, but not *I went to the shop*."""
+    """Return whether a statement reports a past event with a name: *I went to Prague*, but not *I went to the shop*."""
     return bool(said.object.names) and said.verb in WORDS["events"] and _happened(reader, said)
 
 
 def _happened(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether a statement tells an event of the past: *I painted a dragon*, but not *I lived in Rome*."""
+    """Return whether a statement reports a past event: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
     return not flags and verb is not None and verb.tag == "VBD" and said.verb not in WORDS["states"] | WORDS["pastimes"]
@@ -214,9 +214,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         verb = reader.verb(said)
         deictic = _DEICTIC.match(reader.written(object)) or (verb is not None and verb.dep == "relcl")
         spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
-        there = (
-            object.preposition and not object.text[:1].isupper()
-        )  # "I drive for Transkorn", but not "I wait for the bus"
+        # "I wait for the bus", but not "I drive for Transkorn"
+        there = object.preposition and not object.text[:1].isupper()
         fits = object.text and not there and not mine and not deictic
         if said.verb == "be":
             fits = fits and likeness(object.text, "trait") > 0.1

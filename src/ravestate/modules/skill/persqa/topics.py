@@ -51,11 +51,11 @@ class Fact:
     topic: str
     values: tuple[str, ...] = ()
     gone: bool = False
-    """Whether the fact is denied. Without values, the user says that there are none."""
+    """Whether the user denies the fact. If `values` is empty, the user has none, for example no hobby."""
 
 
 class _Topics(dict[str, Topic]):
-    """The topics; favourites (*favourite food*) are topics without being listed."""
+    """The topics. Every favourite, such as *favourite food*, is a topic, although the file does not list it."""
 
     def __missing__(self, name: str) -> Topic:
         if not name.startswith("favourite "):
@@ -69,7 +69,7 @@ _TABLE: dict[str, Any] = load_yaml(_FILE.read_text(encoding="utf-8"), str(_FILE)
 _ROWS = TypeAdapter(list[Topic]).validate_python([{"name": name, **row} for name, row in _TABLE.pop("topics").items()])
 
 TOPICS: Mapping[str, Topic] = _Topics((topic.name, topic) for topic in _ROWS)
-"""All topics by name, in the order in which they are asked."""
+"""All topics by name, in the order in which the agent asks about them."""
 ASKED = tuple(topic.name for topic in _ROWS if topic.asked)
 WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", _TABLE).items()}
 NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
@@ -125,7 +125,7 @@ def due(
         wanted: Names of topics.
         known: The values by topic; an empty tuple means that there are none.
         closed: Topics not to ask about.
-        tries: The number of questions about each topic.
+        tries: The number of questions that the agent has asked about each topic.
         last: The topic that the agent learnt or mentioned most recently.
         touched: Topics that the user's words have touched.
         limit: The maximum number of questions about one topic.

@@ -196,7 +196,7 @@ class _Hearing:
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
-        """Return the user's answer to the test of who they are. Without an answer, the meaning has no facts."""
+        """Return the answer to the question that tests who the user is. If they refuse, the meaning has no facts."""
         seen, topic = self.seen, self.talk.doubt
         told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
         if not told and seen.question is None:
@@ -242,7 +242,7 @@ class _Hearing:
         return None
 
     def wish_to_forget(self) -> Meaning | None:
-        """Return the wish to forget; None if the utterance has none."""
+        """Return the user's wish that the agent forget something; None if there is no such wish."""
         wishes = [said for said in self.seen.statements if said.verb in WORDS["forgetting"]]
         for said in filter(self.is_wish, wishes):
             object, low = said.object, said.object.text.lower()
@@ -272,7 +272,7 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether to note a denial: of a known fact, or of any value, as in *I have no hobby*."""
+        """Return whether to note a denial. It must deny a known fact, or all values of a topic: *I have no hobby*."""
         if fact.values or fact.topic == NAME:
             return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
@@ -284,7 +284,7 @@ _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re
 
 
 def _before_question(text: str) -> str:
-    """Return the words before a question in the same breath: *hannover* in *hannover, and you?*."""
+    """Return the words of an utterance before its question: *hannover* in *hannover, and you?*."""
     before, turned, _ = _TURNED.sub("\0", text.rstrip(" ?"), count=1).partition("\0")
     return before.strip() if turned else ""
 

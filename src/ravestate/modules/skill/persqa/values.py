@@ -1,4 +1,4 @@
-"""Values of topics: which words can be a value, and how it is written."""
+"""The values of topics: which words can be a value, and how memory spells it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _DEICTIC = re.compile(
 
 
 def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) -> str | None:
-    """Return the value that these words are, as memory keeps it; None if they cannot be a value.
+    """Return some words as a value in memory's spelling; None if they cannot be a value of the topic.
 
     Args:
         text: The words.
@@ -67,7 +67,7 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
 
 
 def _typed(name: str, seen: nlp.Analysis) -> str:
-    """Return a name as typed, if the normal form mended it like a typing error."""
+    """Return a name as the user typed it, if the normal form has changed it like a typing error."""
     at = seen.normal.text.lower().find(name.lower())
     start, end = seen.normal.span(at, at + len(name)) if at >= 0 else (0, 0)
     typed = seen.normal.original[start:end]
@@ -87,7 +87,7 @@ def number_in(text: str) -> str:
 
 
 def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: bool) -> bool:
-    """Return whether words suit the kind of a topic; `determined`: whether a determiner precedes them."""
+    """Return whether words suit the kind of a topic; `determined` says whether they begin with a determiner."""
     kind = topic.kind
     if kind in ("activity", "thing"):
         return True
@@ -132,7 +132,7 @@ def _is_proper(text: str, seen: nlp.Analysis) -> bool:
 
 
 def _trimmed(text: str) -> str:
-    """Return a text without the punctuation and the emoji around it; an emoji alone stays."""
+    """Return a text without the punctuation and the emoji around it. A text of emoji alone stays."""
     kept = [at for at, letter in enumerate(text) if unicodedata.category(letter)[0] in "LN" or letter in "+#"]
     return text[kept[0] : kept[-1] + 1] if kept else text.strip(" \"'.,;:!?-_*~()[]{}<>|“”„«»…`\n")
 
@@ -143,7 +143,7 @@ def is_gerund(text: str) -> bool:
 
 
 def gerund(text: str, seen: nlp.Analysis) -> str:
-    """Return a verb phrase as a hobby: *reading books and swimming*."""
+    """Return a verb phrase in the form of a hobby: *reading books* for *read books*."""
     verbs = {word.low for word in seen.tree.words if word.pos in ("VERB", "AUX")}
 
     def turned(found: re.Match[str]) -> str:

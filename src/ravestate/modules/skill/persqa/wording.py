@@ -143,10 +143,10 @@ def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
 
 
 def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> Intent:
-    """Return a reply that states one topic as a clause: ``{fact}``."""
+    """Return a reply that states the values of a topic; its phrases have them, as a clause, in ``{fact}``."""
     return say(intent, known, fact=clause(topic, values))
 
 
 def memorable(remembered: Facts, chance: random.Random) -> str:
-    """Return one of the remembered topics."""
+    """Return a random topic whose values are remembered."""
     return chance.choice([topic for topic, values in remembered.items() if values])

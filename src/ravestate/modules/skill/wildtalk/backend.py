@@ -28,7 +28,7 @@ class Backend(Protocol):
     """A language model. An instance belongs to one event loop."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Get ready to answer. Later calls do nothing. If nobody has called `load`, `stream` does.
+        """Get ready to answer. Later calls do nothing. If `load` has not been called, `stream` calls it.
 
         Raises:
             PlatformError: A package, a file or a server is missing or broken. The message says what to do.
@@ -47,7 +47,7 @@ class Backend(Protocol):
         """Yield the answer to `messages` in pieces, as the model writes it.
 
         Closing the iterator, or cancelling the task that waits for it, stops the model. Wrap the iterator in
-        ``contextlib.aclosing`` if your loop may end before it does.
+        ``contextlib.aclosing`` if your loop may end before the answer is complete.
 
         Args:
             messages: The conversation, oldest first. The model answers the last message.
@@ -74,12 +74,12 @@ class PendingBackend:
         self._chosen: asyncio.Future[Backend] = asyncio.get_running_loop().create_future()
 
     def resolve(self, backend: Backend | None, fault: PlatformError | None = None) -> None:
-        """Pass the chosen backend to the waiting calls. Without a backend, these calls raise `fault`."""
+        """Pass the chosen backend to the waiting calls. If there is none, these calls raise `fault`."""
         if backend is not None:
             self._chosen.set_result(backend)
         else:
             self._chosen.set_exception(fault or PlatformError("wildtalk: the agent ended before it had a model"))
-            self._chosen.exception()  # if no call waits, asyncio would complain about a fault that nobody has seen
+            self._chosen.exception()  # otherwise, asyncio would log the fault if no call waits
 
     async def settled(self) -> Backend | None:
         """Wait for the choice, and return the chosen backend; None if the choice found none."""
@@ -99,4 +99,4 @@ class PendingBackend:
                 yield piece
 
     async def close(self) -> None:
-        """Do nothing: the chosen backend is closed by its own user."""
+        """Do nothing: this does not close the chosen backend."""

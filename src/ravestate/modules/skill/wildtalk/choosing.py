@@ -21,7 +21,7 @@ FETCH = "ravestate model get"
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The settings of the chosen backend, complete, and a sentence about the choice."""
+    """The complete settings of the chosen backend, and a sentence about the choice."""
 
     settings: Settings
     text: str
@@ -92,7 +92,7 @@ def _servers() -> list[LocalServer]:
 
 
 def _pick(servers: list[LocalServer], model: str | None) -> tuple[str, str, str] | None:
-    """Return the address, model and name of the first server; with `model`, of the first server that has it."""
+    """Return the address, model and name of the first server that has `model`; None stands for any model."""
     for server in servers:
         for name in server.models:
             if model is None or name in (model, f"{model}:latest"):

@@ -25,7 +25,7 @@ def size_of(number: float) -> str:
 
 
 def download(model: CatalogueModel) -> None:
-    """Fetch a model's file, with a progress bar on a terminal. A finished file is verified, and then gets its name.
+    """Fetch a model's file, with a progress bar on a terminal. Verify the finished file, then give it its name.
 
     `model.part` keeps the bytes of an interrupted download for the next call. As in other programs for the hub,
     ``HF_ENDPOINT`` may give the address of another hub, and ``HF_TOKEN`` a token.
@@ -89,7 +89,7 @@ def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
         raise PlatformError(
             f"{model.name} needs {size_of(model.size - have + SPARE)} at {model.part.parent}, where {size_of(free)} are free"
         )
-    logging.getLogger("huggingface_hub").setLevel(logging.ERROR)  # each attempt is a warning
+    logging.getLogger("huggingface_hub").setLevel(logging.ERROR)  # the library logs each attempt as a warning
     try:
         cast("Any", file_download).http_get(
             hf_hub_url(model.repository, model.file, revision=model.revision, endpoint=hub),
@@ -104,7 +104,7 @@ def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
         mend = {
             401: "put a token of your account there into HF_TOKEN",
             403: "put a token of your account there into HF_TOKEN",
-            404: "it has the file no more; take another model (ravestate model list)",
+            404: "it no longer has the file; take another model (ravestate model list)",
         }.get(
             status, "wait, and repeat the command" if status in (408, 429) or status >= 500 else "is HF_ENDPOINT right?"
         )

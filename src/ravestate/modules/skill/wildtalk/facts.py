@@ -17,9 +17,9 @@ def facts_matcher() -> Matcher:
 
 
 def asks_for_fact(text: str, *, question: bool = True) -> bool:
-    """Guess whether `text` asks for a fact: "Who wrote Hamlet?", not "Who are you?". False without the model.
+    """Guess whether `text` asks for a fact, as "Who wrote Hamlet?" does. If the model is missing, return False.
 
-    `question`: whether the parse finds a question in the text. A statement asks for no fact.
+    `question` says whether the parse finds a question in the text. A statement asks for no fact.
     """
     if not (question or text.rstrip().endswith("?")):
         return False

@@ -18,7 +18,8 @@ from .listening.material import material
 from .listening.tongue import is_nonsense, tongue_of
 
 FAR, NEAR, UNRELATED = 0.45, 0.56, -10.9
-"""Refuse an answer less similar than FAR. Below NEAR, refuse it if the cross-encoder scores it under UNRELATED.
+"""The gate refuses answers whose similarity to the conversation is below FAR. From FAR to NEAR, it refuses those that
+the cross-encoder scores below UNRELATED.
 
 Calibrated on small talk: all of 25 fitting answers pass, and 9 of 10 misplaced answers are refused.
 """
@@ -96,7 +97,7 @@ class Gate:
         return self._admitted, bool(self.reason)
 
     def refuse(self, sentence: str) -> str:
-        """Return the reason to refuse a sentence. Without such a reason, note the sentence as said, and return ""."""
+        """Return the reason to refuse a sentence. If there is none, note the sentence as said, and return ""."""
         reason = self._form(sentence) or self._repetition(sentence) or self._claims(sentence) or self._meaning(sentence)
         if not reason:
             self._passed.append(plain(sentence))

@@ -50,8 +50,8 @@ class History:
 
         Args:
             turns: The maximum number of turns, including the turn to be answered; at least 1.
-            characters: The maximum number of characters (about 4 make a token). The oldest utterances are left out; the
-                last one is cut if it is longer.
+            characters: The maximum number of characters (about 4 make a token). The oldest utterances
+                are left out. The newest one is cut if it alone is too long.
         """
         if turns < 1 or characters < 1:
             raise ValueError(f"turns and characters must be at least 1, not {turns} and {characters}")
@@ -83,8 +83,8 @@ class History:
     ) -> tuple[Message, ...]:
         """Return the prompt: the persona with the notes, the examples, and the history, oldest first.
 
-        `notes` are sentences about the user and the situation; their first `NOTES` characters are kept.
-        The user begins, and the speakers alternate strictly, because several templates demand it.
+        `notes` are sentences about the user and the situation. Notes that do not fit into `NOTES` characters are left
+        out. The user begins, and the speakers alternate strictly, because several templates demand this.
         """
         left = self._characters
         kept: list[Message] = []

@@ -137,7 +137,7 @@ def checked_model(path: Path | str) -> Path:
     """Return the absolute path of the user's model file, which may begin with ``~``.
 
     Raises:
-        PlatformError: xllamacpp or the file is missing, or it is not a GGUF file.
+        PlatformError: xllamacpp or the file is missing, or the file is not a GGUF file.
     """
     if importlib.util.find_spec("xllamacpp") is None:
         raise PlatformError(

@@ -1,7 +1,8 @@
 """The process of a model: llama.cpp's server on the loopback interface.
 
-`llama_process` runs this file by itself, so it imports nothing from Ravestate. It reads its configuration as one line of
-JSON, and writes the server's address as one line. It ends when standard input ends, and so with its parent.
+`llama_process` runs this file as a program, so the file imports nothing from Ravestate. The program reads its
+configuration as one line of JSON, and writes the server's address as one line. When its parent ends, standard input
+ends, and so does the program.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def _load(config: dict[str, Any]) -> Any:
     parameters.n_parallel = config["parallel"]
     parameters.kv_unified = True
     parameters.cpuparams.n_threads = config["threads"]
-    parameters.cache_ram_mib = 0  # otherwise it keeps up to 8 GB of old prompts
+    parameters.cache_ram_mib = 0  # otherwise, llama.cpp keeps up to 8 GB of old prompts
     parameters.warmup = True  # loads more slowly, but says the first word sooner
     parameters.verbosity = 1  # errors
     parameters.port = 0

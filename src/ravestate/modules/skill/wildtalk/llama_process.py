@@ -198,7 +198,7 @@ def take(key: ModelKey) -> LlamaProcess:
 
 
 def drop(process: LlamaProcess) -> None:
-    """Take one user away from `process`. Without users, the process ends; this blocks for a few milliseconds."""
+    """Remove a user of `process`. When no user is left, the process ends; this blocks for a few milliseconds."""
     with _sharing:
         process.users -= 1
         if process.users:

@@ -62,7 +62,7 @@ class _Listing(BaseModel):
 
 
 async def find_servers(ports: Mapping[int, str] | None = None) -> list[LocalServer]:
-    """Return the servers that answer on these ports of the loopback interface (by default `PORTS`), within a second.
+    """Return the servers that answer within a second on these ports of the loopback interface, by default `PORTS`.
 
     The request contains neither a key nor any words of the user. Web servers without a list of models are left out.
     """
@@ -85,7 +85,7 @@ async def _ask(port: int, name: str) -> LocalServer:
 
 
 async def chat_models(base_url: str, key: str = "", patience: float = PATIENCE) -> tuple[str, ...]:
-    """Return the chat models that a server lists, the most suitable first; none if the server lists no models.
+    """Return the chat models that a server lists, the most suitable first; empty if the server lists no models.
 
     Args:
         base_url: The address of the API. For most servers, it ends in ``/v1``.

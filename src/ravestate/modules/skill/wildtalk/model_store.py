@@ -11,7 +11,7 @@ from ravestate.folders import user_folder
 from ravestate.yaml_text import load_yaml
 
 RECOMMENDED = "qwen2.5-1.5b"
-"""The model that ``ravestate model get`` fetches without a name."""
+"""The model that ``ravestate model get`` fetches if no name is given."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from .listening.state import Overheard, State
 Seconds = Annotated[float, Field(gt=0)]
 
 OLLAMA = "http://localhost:11434/v1"
-"""The default server for the backend ``openai``, if no server on this machine answers."""
+"""The address that the backend ``openai`` uses if the search finds no server on this machine."""
 
 
 class Settings(rs.Settings):
@@ -89,7 +89,7 @@ chosen: rs.Signal[object] = module.signal("chosen", payload=object)
 """A backend was chosen, by the settings or by what this machine has. The payload is the backend, or None."""
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
-"""The reason why the model does not answer; empty while it does. It is logged once."""
+"""The reason why the model does not answer; empty while the model answers. Each reason is logged once."""
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
 """The memory of the listening skill: the last phrases, the tone, opinions, a game."""

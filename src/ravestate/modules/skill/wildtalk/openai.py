@@ -22,7 +22,7 @@ LIMIT = 1 << 20
 
 _EXAMPLE = "write for example wildtalk.base_url=http://localhost:11434/v1"
 _OPTIONAL = {"max_tokens": "max_completion_tokens", "temperature": "", "seed": "", "stop": ""}
-"""Parameters that newer models refuse, with their newer names."""
+"""Parameter that newer models refuse → its newer name; empty if newer models have no such parameter."""
 
 
 class OpenAIBackend:
@@ -67,7 +67,7 @@ class OpenAIBackend:
         return f"OpenAIBackend({self._place!r}, {self._model!r})"
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Import the web client and its certificates, off the loop. The server is not contacted yet."""
+        """Import the web client and its certificates, in a thread. The server is not contacted yet."""
         if self._client is None:
             client = await asyncio.to_thread(self._make_client)
             self._client = self._client or client
@@ -151,7 +151,7 @@ class OpenAIBackend:
         finished = False
         events = aiter(EventSource(answer, max_event_size=LIMIT))
         while True:
-            async with asyncio.timeout(self._read_timeout):  # a comment in the stream is no event
+            async with asyncio.timeout(self._read_timeout):  # comments in the stream do not extend the timeout
                 event = await anext(events, None)
             if event is None or event.data == "[DONE]":
                 break

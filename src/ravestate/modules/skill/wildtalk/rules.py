@@ -76,7 +76,7 @@ async def use(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Learn the examples of small talk in the background. Until then, only words that equal an example count."""
+    """Learn the examples of small talk in the background. Until that is done, only exact examples are recognised."""
     try:
         learn_all()
         give_back()
@@ -102,7 +102,7 @@ async def hear(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=history, background=True)
 async def note(ctx: rs.RuleContext) -> None:
-    """Add the agent's words to the history, from any rule."""
+    """Add the agent's words to the history. Any rule may have said them."""
     said = ctx.payload(rawio.output.changed)
     lately = list(ctx[history].values())[-2:]
     if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` has already added it
@@ -144,7 +144,7 @@ def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     until=rawio.input.changed | rs.shutdown,  # otherwise, a model that is still loading would delay the shutdown
 )
 async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer with small talk, piece by piece; a new utterance interrupts it."""
+    """Answer with small talk, piece by piece. A new utterance interrupts the answer."""
     settings: Settings = ctx.settings
     seen = ctx.payload(nlp.analysis.changed)
     text, backend = ctx.payload(rawio.input.changed) if seen is None else seen.text, ctx[model]
@@ -242,7 +242,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     weight=8.0,  # outranks modules that would mistake a move in a game for a question
 )
 async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Continue a game, or react to the answer to the listening skill's question."""
+    """Continue a game, or react to the user's answer to a question of the listening skill."""
     seen = ctx.payload(nlp.analysis.changed)
     said = "" if seen is None else await follow_up(ctx, heard_in(ctx, seen.text, seen))
     if not said:
@@ -258,7 +258,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     weight=4.0,  # outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer a sorrow before anything else that the user said."""
+    """Console a sad user before any rule answers the rest of their words."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None or not isinstance(ctx[model], ListeningBackend):
         return rs.Resign("a language model answers")
@@ -268,7 +268,7 @@ async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=interloc.forgotten.max_age(None).detached(), writes=(history, listening, overheard), background=True)
 async def forget(ctx: rs.RuleContext) -> None:
-    """Wipe the messages and the memory of the talk: the user has been forgotten."""
+    """Delete the messages and the memory of the listening skill when the agent forgets the user."""
     for key in list(ctx[history]):
         ctx[history].remove(key)
     ctx[listening], ctx[overheard] = State(), ()
@@ -293,7 +293,7 @@ def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
 
 
 def make_backend(settings: Settings) -> Backend:
-    """Return the backend in `settings`, which must be complete, as the settings from `choose` are.
+    """Return the backend that the settings describe. They must be complete, like those from `choose`.
 
     Raises:
         PlatformError: The server's address is malformed.

@@ -1,7 +1,7 @@
 """Small talk by a causal model in the format of Hugging Face's transformers: GPT-2 and its many successors.
 
-This backend is slower and ten times heavier than llama.cpp with a GGUF file. Use it for models without such a file, and
-for models that you have trained.
+This backend is slower and ten times heavier than llama.cpp with a GGUF file. Use it for models that have no such file,
+and for models that you have trained.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ravestate.language.loading import LOADING
 from .backend import Message, Progress
 
 ANSWERS = "Agent:"
-"""The beginning of a line; a model without a chat template writes the rest."""
+"""The beginning of a line in a transcript. A model that has no chat template writes the rest of the line."""
 
 LOADER = "ravestate-model-loader"
 """The name of a thread that loads a model."""
@@ -64,7 +64,7 @@ class TransformersBackend:
         seed: int | None = None,
         stop: Sequence[str] = (),
     ) -> AsyncGenerator[str, None]:
-        """See `Backend.stream`. A model without a chat template continues a transcript."""
+        """See `Backend.stream`. A model that has no chat template continues a transcript."""
         await self.load()
         model = self._model
         assert model is not None  # `load` has set it
@@ -211,7 +211,7 @@ class _Model:
 
 
 def transcript(messages: Sequence[Message]) -> str:
-    """Return a conversation as text, for models without turns."""
+    """Return a conversation as text, for models that have no chat template."""
     lines: list[str] = []
     for message in messages:
         text = " ".join(message.text.split())

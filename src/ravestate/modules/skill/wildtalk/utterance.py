@@ -30,7 +30,7 @@ class Utterance:
     spaces. The utterance is `complete`, and ignores further pieces, after `sentences` sentences, or when the model
     begins to speak for somebody else.
 
-    An end that may become a mark is held back, so the result does not depend on the size of the pieces.
+    Text at the end that may become a mark is held back, so the result does not depend on the size of the pieces.
 
     Example:
         >>> utterance = Utterance("Rosie")
@@ -91,7 +91,7 @@ class Utterance:
         start = self._past_thoughts(text)
         if start > sure:
             return ""
-        front = self._front.match(text, start)  # it may yet grow, but then `sure` is before it
+        front = self._front.match(text, start)  # the match may still grow, but then `sure` is before it
         assert front is not None  # it matches the empty string
         start, quoted = front.end(), any(mark in front[0] for mark in _QUOTES)
         cut = self._cut(text, start)
