@@ -73,6 +73,8 @@ def test_say_writes_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
         assert file.getframerate() == 24000 and 0.8 < file.getnframes() / 24000 < 4
     code, _, errors = call(capsys, "voice", "say", "Good morning.", "-o", "none/out.wav")
     assert code == 2 and "there is no folder none" in errors
+    code, _, errors = call(capsys, "voice", "say", "Good morning.", "-o", "out.mp3")
+    assert code == 2 and "ends in .wav" in errors
 
 
 def test_talk_holds_a_conversation(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

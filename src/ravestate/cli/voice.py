@@ -155,5 +155,7 @@ def _show(one: Said) -> None:
 
 
 def _check_target(path: Path) -> None:
+    if path.suffix.lower() != ".wav":
+        raise UsageError(f"cannot write {path}: the sound is written as WAV, so name a file that ends in .wav")
     if not path.parent.is_dir():
         raise UsageError(f"cannot write {path}: there is no folder {path.parent}")

@@ -63,10 +63,11 @@ def talk(
         record: Called with each record of the trace.
 
     Raises:
-        PlatformError: The recording cannot be read, or a model or a program is missing.
+        PlatformError: The recording cannot be read, the output is no WAV file or cannot be written, or a model or a program is missing.
         EngineError: An event loop runs in this thread already.
     """
     from ravestate.modules import voiceio
+    from ravestate.modules.platform.voiceio.wav_line import check_target
 
     try:
         asyncio.get_running_loop()
@@ -82,7 +83,9 @@ def talk(
             show(one)
 
     given = {name: dict(values) for name, values in (settings or {}).items()}
-    files = {"source": str(Path(recording).absolute())} | ({"sink": str(Path(output).absolute())} if output else {})
+    if output:
+        check_target(Path(output))
+    files = {"source": str(Path(recording).absolute()), "sink": str(Path(output).absolute()) if output else ""}
     given["voiceio"] = {**given.get("voiceio", {}), **files}
     context = Context(*modules, voiceio, _witness(note), settings=given, seed=seed, trace=record or False)
     loop = VirtualLoop()

@@ -127,7 +127,7 @@ class Scripted:
 
     def close(self, *, linger: bool = False) -> None: ...
 
-    def recognise(self, pcm: bytes, *, partial: bool = False) -> Any:
+    def recognise(self, pcm: bytes, *, partial: bool = False, unwanted: Any = None) -> Any:
         from ravestate.modules.platform.voiceio.recogniser import Recognised
 
         self.heard.append(len(pcm) / 32000)

@@ -125,6 +125,9 @@ def _devices(settings: Settings) -> list[Line]:
     else:
         why = "no device: plug one in, speak through the web page (`make demo`), or name WAV files"
     for part, name, channel in (("microphone", settings.source, 1), ("loudspeaker", settings.sink, 2)):
+        if not name:
+            lines.append(Line(part, False, False, "none: the sound is dropped"))
+            continue
         if is_file(name):
             lines.append(Line(part, True, False, f"the file {name}"))
             continue
