@@ -85,18 +85,16 @@ def talk(
     files = {"source": str(Path(recording).absolute())} | ({"sink": str(Path(output).absolute())} if output else {})
     given["voiceio"] = {**given.get("voiceio", {}), **files}
     context = Context(*modules, voiceio, _witness(note), settings=given, seed=seed, trace=record or False)
-    loop = VirtualLoop()
 
     async def hold() -> None:
+        loop = asyncio.get_running_loop()
+        assert isinstance(loop, VirtualLoop)
         async with context:
             loop.busy = context.plain_functions
             await context.until_stopped()
 
-    try:
-        loop.run_until_complete(hold())
-        loop.run_until_complete(loop.shutdown_asyncgens())
-    finally:
-        loop.close()
+    with asyncio.Runner(loop_factory=VirtualLoop) as runner:  # at Ctrl-C, it lets the agent end in order
+        runner.run(hold())
     return said
 
 
