@@ -1,12 +1,19 @@
 """Opening a conversation: the parts that a line needs, and what is closed with it."""
 
+import asyncio
+import gc
+import threading
+from typing import cast
+
 import pytest
 
 from modules.platform.voiceio.speech import FAST, Scripted
 from modules.platform.voiceio.test_wav_line import run
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.voiceio import Settings, opening
+from ravestate.modules.platform.voiceio.ear import Turn
 from ravestate.modules.platform.voiceio.echo import EchoCanceller
+from ravestate.modules.platform.voiceio.turn import Melody
 from ravestate.modules.platform.voiceio.wav_line import WavLine
 from ravestate.modules.platform.webio.line import PageLine
 
@@ -54,3 +61,35 @@ def test_a_device_is_closed_again_if_a_later_part_is_missing(monkeypatch: pytest
         assert [block async for block in line.blocks()] == []
 
     run(talk)
+
+
+def test_words_that_nobody_waits_for_any_more_may_fail_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At Ctrl-C, the process of the model is killed in the middle of its work."""
+    failures: list[object] = []
+    judging = threading.Event()
+
+    class Slow:
+        def complete(self, pcm: bytes) -> float:
+            assert judging.wait(10)
+            return 1.0
+
+    async def talk() -> None:
+        asyncio.get_running_loop().set_exception_handler(lambda _, what: failures.append(what))
+        conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+        conversation.melody = cast(Melody, Slow())
+        rule = asyncio.create_task(conversation.judge(Turn(0.0, 1.0)))
+        while not heard.heard:
+            await asyncio.sleep(0)
+        rule.cancel()
+        judging.set()
+        await asyncio.wait([rule])
+        del rule
+        conversation.close()
+        for _ in range(3):
+            await asyncio.sleep(0)
+        gc.collect()
+
+    heard = Scripted(PlatformError("voiceio: the process of whisper ended (killed by signal 9)"))
+    monkeypatch.setattr(opening, "Recogniser", heard)
+    run(talk)
+    assert not failures

@@ -31,9 +31,11 @@ class Conversation:
     recogniser: Recogniser
     melody: Melody | None
     settings: Settings
+    closed: bool = False
 
     def close(self, *, linger: bool = False) -> None:
         """Close the line, and let go of the models, which stay loaded for a while if they may `linger`."""
+        self.closed = True
         self.line.close()
         self.ear.close()
         self.recogniser.close(linger=linger)
@@ -47,8 +49,11 @@ class Conversation:
         """
         sound, melody = turn.sound, self.melody
         hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
-        complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
-        found = await hearing
+        try:
+            complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
+            found = await hearing
+        finally:
+            hearing.cancel()  # nobody waits for the words of a turn that goes on, nor for their error
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
