@@ -131,9 +131,8 @@ def _say(options: argparse.Namespace) -> int:
 
 
 def _talk(options: argparse.Namespace) -> int:
-    from ravestate.testing import talk
-
     from ravestate.modules.platform.voiceio.opening import is_file
+    from ravestate.testing import talk
 
     _check_source(options.recording)
     if not is_file(str(options.recording)):

@@ -107,6 +107,7 @@ def test_a_user_who_goes_on_while_the_agent_begins_interrupts_it(
     assert sides(said, "user") == ["Tell me a story.", "About the sea, and my grandmother."]
     story = next(one for one in said if one.speaker == "agent")
     assert story.cut and story.end < rest + 0.7
+    assert [one.start for one in said] == sorted(one.start for one in said)
     assert heard.heard[-1] > 2.2  # the whole rest of the sentence
 
 
