@@ -235,6 +235,26 @@ def test_the_end_waits_for_an_answer_and_a_farewell_but_not_for_ever() -> None:
     converse(talk, module)
 
 
+@pytest.mark.parametrize("whole", ["I think so.", "I think so. ", "I think so. Yes."])
+def test_pieces_that_end_in_a_space_and_the_whole_are_one_utterance(whole: str) -> None:
+    writer = rs.Module("writer", requires=[rawio])
+
+    @writer.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def write(ctx: rs.RuleContext) -> None:
+        for piece in ("I ", "think ", "so. "):
+            ctx.emit(rawio.piece, piece)
+        await ctx.sleep(1)
+        ctx[rawio.output] = whole
+
+    async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
+        conversation.hear("Is it?")
+        await past(5)
+        [utterance] = spoken
+        assert (await text(utterance)).replace("|", "").strip() == whole.strip()
+
+    converse(talk, writer)
+
+
 def test_an_end_at_once_waits_for_nothing() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")

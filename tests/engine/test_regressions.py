@@ -465,7 +465,7 @@ def test_a_detached_clause_keeps_the_spike_that_another_clause_of_its_rule_runs_
 
 
 def test_an_added_rule_looks_again_when_a_spike_that_is_older_than_the_rule_ripens() -> None:
-    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s, holds the first s0, which is old enough, and looks at
+    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s and holds the first s0, which is old enough. It looks at
     # the second one as soon as that is old enough too, at 1.5 s.
     looking = RuleOf(when=((Want("s0", min_age=1.0, detached=True), Want("s1", min_age=0.5)),))
     world = World(
@@ -498,9 +498,9 @@ def test_a_rule_asks_again_when_a_rival_gives_up_on_which_another_rival_hangs() 
 
 
 def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_cause() -> None:
-    # L12, L15: at 1.25 s the first activation of r2 runs and writes v0. The second one loses its spikes, takes the later
-    # s1 of 0 s and the new write, and kept its place as if it still had its old cause. The s1 of 0.75 s comes from the s0
-    # of 0 s, which is older than that later s1, so the activation with this s1 goes first.
+    # L12, L15: at 1.25 s the first activation of r2 runs and writes v0. The second one loses its spikes, and takes the
+    # later s1 of 0 s and the new write. It kept its place as if it still had its old cause. The s1 of 0.75 s comes from
+    # the s0, which is older than that later s1. So the activation with this s1 goes first.
     world = World(
         S3,
         V1,
@@ -545,3 +545,26 @@ def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> N
         ((0.0, ("emit", "s0", 2)), (0.0, ("emit", "s3", 1)), (0.0, ("emit", "s3", 0))),
     )
     assert moments(world, "r2") == [0.75, 2.875]
+
+
+def test_clauses_whose_utilities_differ_in_the_last_digits_are_equals() -> None:
+    # L9, L15: r1's utility is rounded, then doubled by its weight; r6 needs two signals of that utility. The first declared
+    # goes first, as for any equals.
+    world = World(
+        (SignalOf(input=True), *S3),
+        (SlotOf(), SlotOf(), SlotOf("flag", always=True)),
+        (
+            RuleOf(when=on("s1")),
+            RuleOf(when=on("s0"), writes=("v1",), weight=2.0),
+            RuleOf(when=on("s3"), emits=("s0",), acts=(Act(((0.0, ("emit", "s0", 0)),)),)),
+            RuleOf(when=on("s0"), emits=("s3",)),
+            RuleOf(when=on("s2")),
+            RuleOf(when=on("v2:false"), emits=("s3",), acts=(Act(((0.0, ("emit", "s3", 1)),)),)),
+            RuleOf(when=on("s0", "s3"), writes=("v1",)),
+        ),
+        ((0.0, ("write", "v2", False)),),
+    )
+    play = Play(world).play()
+    first, second = (play.engine.policy.rule_plan(f"m:r{n}").clauses[0] for n in (1, 6))
+    assert first.base == second.base
+    assert "r6" not in runs(play)

@@ -474,7 +474,7 @@ class Model:
 
     def lose(self, act: Act, needs: Iterable[Any]) -> None:
         """Give spikes up, and take the oldest ones that fit instead (L12); end when nothing is left."""
-        needs = [need for need in needs if need.index in act.held]
+        needs = sorted((need for need in needs if need.index in act.held), key=lambda need: need.index)
         if not needs:
             return
         clause = act.clause

@@ -250,13 +250,14 @@ def empty(play: Play) -> None:
         "waiting",
         "alternatives",
         "halves",
-        "_free",
         "_asking",
         "_dirty",
     ):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
     for name in ("_watches", "_errors", "_out"):
         assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
+    assert not engine._free.new
+    assert not engine._free.line
     assert engine.next_deadline() is None
     assert len(engine._deadlines) == 0
     assert engine._busy == 0

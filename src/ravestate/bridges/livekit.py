@@ -63,12 +63,12 @@ class RavestateAgent(Agent):
         await self._begun()
 
     async def on_exit(self) -> None:
-        """Stop the agent."""
+        """Stop the agent at once: the session does not say its words any more."""
         conversation, self._conversation = self._conversation, None
         if self._watching is not None:
             self._watching.cancel()
         if conversation is not None:
-            await conversation.end()
+            await conversation.end(at_once=True)
 
     async def llm_node(
         self, chat_ctx: llm.ChatContext, tools: list[llm.Tool], model_settings: ModelSettings

@@ -217,8 +217,10 @@ class Conversation:
 
     def _utter(self, text: str) -> None:
         growing = self._growing
-        if growing is not None and text.startswith(growing.text):
-            growing.grow(text[len(growing.text) :])
+        so_far = "" if growing is None else growing.text.strip()  # pieces may end in a space that the whole lacks
+        if growing is not None and text.strip().startswith(so_far):
+            rest = text.strip()[len(so_far) :]
+            growing.grow(rest.lstrip() if growing.text[-1:].isspace() else rest)
             self._fall_silent()
         elif text.strip():
             utterance = Utterance()

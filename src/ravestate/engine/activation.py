@@ -92,6 +92,8 @@ class Activation:
 
     ripens: float = NEVER
     """While one of its spikes is too young: the time at which all will be old enough (seconds)."""
+    place: tuple[int, int, int, Activation] | None = None
+    """While it is ready and needs no consent: its place in the queue (``free.py``)."""
     pressed: dict[Group, float] = MappingProxyType[Any, Any]({})  # type: ignore[assignment]  # replaced on first use
     """Group in which others wait for it, though it may never be ready → when its patience ends (seconds; L16)."""
     waits_for: tuple[str, ...] = ()

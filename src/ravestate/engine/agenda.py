@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, WAITING, Activation
+from ravestate.engine.activation import GRANT, NEVER, READY, REFUSE, RUNNING, WAITING, Activation
 from ravestate.engine.consent import Refusal, ask, stalemate
 from ravestate.engine.deadlines import PATIENCE, RECHECK, TIMEOUT
 from ravestate.engine.effects import Run
@@ -37,6 +37,16 @@ BATCH = 100
 
 class Agenda(Slots):
     """The layer of the engine that decides which ready activations start."""
+
+    __slots__ = (
+        "_activity",
+        "_breakers",
+        "_pressure",
+        "_queue",
+        "patience",
+        "ran",
+        "standing",
+    )
 
     def __init__(self, policy: Policy, patience: float) -> None:
         super().__init__(policy)
@@ -102,23 +112,23 @@ class Agenda(Slots):
         """
         queue = self._queue
         self.standing.now = self.now
-        left, queue[:] = list(queue), []
-        for *_, activation in left:  # their places may have changed since the last round
-            if activation.state in ASKABLE:
-                heapq.heappush(queue, (*self._turn(activation), activation))
-        for activation in self._asking:
-            heapq.heappush(queue, (*self._turn(activation), activation))
-        self._asking.clear()
+        asking = self._asking
+        self._asking = {}
         if self._dirty or self._stirred:
-            again: dict[Activation, None] = {}
             for group in self._dirty:
-                again.update(group.interested)
+                asking.update(group.interested)
             self._dirty.clear()
             for hope in self._stirred:
-                again.update(self.hoping.get(hope, {}))
+                asking.update(self.hoping.get(hope, {}))
             self._stirred.clear()
-            for activation in again:
-                heapq.heappush(queue, (*self._turn(activation), activation))
+        if queue:  # the places of those left may have changed since the last round
+            asking.update((entry[4], None) for entry in queue if entry[4].state in ASKABLE)
+            queue.clear()
+        if len(asking) == 1:
+            queue += [(0, 0.0, 0, 0, activation) for activation in asking]
+        else:
+            queue += [(*self._turn(activation), activation) for activation in asking]
+            heapq.heapify(queue)
         written: set[int] = set()
         later: list[tuple[int, float, int, int, Activation]] = []
         while queue:
@@ -140,7 +150,10 @@ class Agenda(Slots):
                 written.update(rule.slots)
         for entry in later:
             heapq.heappush(queue, entry)
-        if not (queue or self._asking or self._dirty or self._stirred or self._acts or self._free):
+        idle = not (
+            queue or self._asking or self._dirty or self._stirred or self._acts or self._free.new or self._free.line
+        )
+        if idle and (self._refused or self._stuck):
             self._break_stalemate()
 
     def _break_stalemate(self) -> None:
@@ -249,6 +262,27 @@ class Agenda(Slots):
             lacks = tuple(n.signal.name for n in rival.needs if n.bit & missing)
             self.tracer(trace.Pressed(self.now, rival.rule.name, by.clause.rule.name, lacks, until))
         return until
+
+    def is_pressed(self, time: float, owner: tuple[Group, int | Activation]) -> bool:
+        """Return whether the patience of a rival still matters."""
+        group, rival = owner[0].root(), owner[1]
+        if isinstance(rival, int):
+            return bool(group.interested)
+        return rival.state < RUNNING and rival.pressed.get(group) == time
+
+    def on_patience(self, time: float, owner: tuple[Group, int | Activation]) -> None:
+        """Let the activations that wait in a group judge a rival again, whose patience is over (L16)."""
+        self._dirty[owner[0].root()] = None
+
+    def on_recheck(self, time: float, activation: Activation) -> None:
+        """Let an activation ask again, because the order of recovering utilities has changed (L15)."""
+        activation.recheck = NEVER
+        if activation.state == WAITING:
+            self._asking[activation] = None
+
+    def on_timeout(self, time: float, run: Activation) -> None:
+        """Cancel a run that has had its time (L18)."""
+        self._cancel(run, "timeout")
 
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""

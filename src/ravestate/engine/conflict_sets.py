@@ -18,6 +18,8 @@ from ravestate.policy.model import Clause, SignalPlan
 class ConflictSets(Holdings):
     """The layer of the engine that keeps the queues of alternatives."""
 
+    __slots__ = ()
+
     def unfold(self, activation: Activation) -> None:
         """Create the activations of all alternatives in one activation's queue."""
         clauses, made, base = self.alternatives.pop(activation)

@@ -89,7 +89,7 @@ def ask(
                 refusal.blockers[holder] = None
         if not group.taken.keys().isdisjoint(slots):
             continue
-        for half, spike in _rival_halves(engine, group, slots):
+        for half, spike in _rival_halves(engine, group, slots) if group.entries else ():
             if clause.rule.cooldown:
                 engine.unfold_half(spike, half)
                 continue
@@ -231,14 +231,21 @@ def stalemate(engine: Engine, refused: Iterable[Activation], known: Collection[A
         refused: The activations that were refused since the last search: at least one is in any new stalemate.
         known: The activations that earlier searches found.
     """
-    seen: dict[Activation, None] = {}
+    waiting = engine.waiting.keys()
+    seen: set[Activation] = set()
     reached = list(refused)
     while True:
         while reached:
             one = reached.pop()
-            if one not in seen and one in engine.waiting and one.firm and not one.bounded:
-                seen[one] = None
-                reached += [root for roots in one.firm for root in roots]
+            if one in seen or one not in waiting or not one.firm or one.bounded:
+                continue
+            if any(waiting.isdisjoint(roots) for roots in one.firm):
+                continue  # it waits for work that waits for nothing
+            seen.add(one)
+            for roots in one.firm:
+                reached += roots
+        if not seen:
+            return seen
         stuck = set(seen)
         while freed := {one for one in stuck if any(stuck.isdisjoint(roots) for roots in one.firm)}:
             stuck -= freed

@@ -14,16 +14,16 @@ from typing import Any, get_args
 
 from ravestate.declare.wording import said
 from ravestate.engine import events, trace
-from ravestate.engine.activation import NEVER, RUNNING, WAITING, Activation
+from ravestate.engine.activation import RUNNING, Activation
 from ravestate.engine.agenda import Agenda
-from ravestate.engine.deadlines import EXPIRE, LOOK, PATIENCE, RECHECK, RIPEN, TIMEOUT, WATCH, Entry
+from ravestate.engine.deadlines import LOOK, Deadlines, Table
 from ravestate.engine.effects import Effect, Ended
 from ravestate.engine.events import Event
 from ravestate.engine.group import Group
 from ravestate.engine.slots import ABSENT, equal
 from ravestate.engine.spike import Spike
 from ravestate.errors import EngineError, RuleError, RuleTimeout, UndeclaredError, nearest
-from ravestate.policy.model import Need, RulePlan, SlotPlan
+from ravestate.policy.model import RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
 OUTCOMES = get_args(events.OutcomeKind)
@@ -49,8 +49,14 @@ class Engine(Agenda):
         []
     """
 
+    __slots__ = (
+        "__weakref__",
+        "report_ends",
+    )
+
     def __init__(self, policy: Policy, *, patience: float = DEFAULT_PATIENCE, report_ends: bool = False) -> None:
         super().__init__(policy, patience)
+        self._deadlines = Deadlines(self, DEADLINES)
         self.report_ends = report_ends
 
     # ------------------------------------------------------------------------------------ the four verbs
@@ -66,8 +72,9 @@ class Engine(Agenda):
             if now != now:
                 raise EngineError("the time is not a number of seconds: it is NaN")
         elif now > self.now:
-            self._refused.update(self._stuck)  # with time, their reasons to wait may change
-            self._stuck.clear()
+            if self._stuck:
+                self._refused.update(self._stuck)  # with time, their reasons to wait may change
+                self._stuck.clear()
             if self._deadlines.earliest <= now:
                 self.advance(now)
             self.now = now
@@ -81,7 +88,7 @@ class Engine(Agenda):
         entry = self._deadlines.pop(now)
         while entry is not None:
             self.now = max(self.now, entry[0])
-            self._due(entry)
+            self._deadlines.fall_due(entry)
             entry = self._deadlines.pop(now)
         self.now = max(self.now, now)
 
@@ -106,7 +113,7 @@ class Engine(Agenda):
                 self._birth(error, failure, (), self._new_group(), None, lineage)
             elif self._busy and not self.values.get(self._activity.index):
                 self._set_flag(self._activity, True)
-            elif self._free:
+            elif self._free.new or self._free.line:
                 self._start_free()
             elif self._queue or self._asking or self._dirty or self._stirred or self._refused or self._stuck:
                 self._consent_round()
@@ -307,7 +314,7 @@ class Engine(Agenda):
                         and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                     ):
                         self._lose(other, self._of_group(other, group), "consumed", run)
-                for spike in list(group.entries):
+                for spike in list(group.entries) if group.entries else ():
                     for half in self.halves_of(spike):
                         if not half.slotset.isdisjoint(rule.slotset):
                             self._drop(spike, half)
@@ -330,36 +337,18 @@ class Engine(Agenda):
                 self._end(activation, "retired")
         self._asking.update(self.waiting)  # these may have waited for signals of the retired rule
 
-    # ------------------------------------------------------------------------------------ deadlines
 
-    def _due(self, entry: Entry) -> None:
-        """Handle a deadline that is due."""
-        time, kind, _, owner = entry
-        if kind is EXPIRE:
-            self._expire(owner, time)
-        elif kind is RIPEN:
-            owner.ripens = NEVER
-            self._update(owner)
-        elif kind is LOOK:
-            looking: Need = owner[0]
-            spike: Spike = owner[1]
-            clause = self.policy.clause_plans[looking.clause.index]  # a rule may have been added since
-            need = clause.needs[looking.index]
-            if self._fits(need, spike):
-                self._show(need, spike)
-        elif kind is PATIENCE:
-            self._dirty[owner[0].root()] = None  # the activations that wait there judge the rival again
-        elif kind is RECHECK:
-            owner.recheck = NEVER
-            if owner.state == WAITING:
-                self._asking[owner] = None
-        elif kind is TIMEOUT:
-            self._cancel(owner, "timeout")
-        elif kind is WATCH:
-            owner.due = NEVER
-            self._judge(owner)
-        elif not owner.holders:
-            self._forget(owner)
+DEADLINES: Table = (
+    (lambda engine, time, activation: activation.ripens == time, Engine.on_ripen),  # RIPEN
+    (lambda engine, time, looking: engine.is_live(looking[1]), Engine.on_look),  # LOOK
+    (lambda engine, time, activation: activation.recheck == time, Engine.on_recheck),  # RECHECK
+    (Engine.is_pressed, Engine.on_patience),  # PATIENCE
+    (lambda engine, time, spike: bool(spike.holders) or engine.is_live(spike), Engine.on_expire),  # EXPIRE
+    (lambda engine, time, spike: engine.is_live(spike), Engine.on_forget),  # FORGET
+    (lambda engine, time, run: run.deadline == time, Engine.on_timeout),  # TIMEOUT
+    (lambda engine, time, watch: watch.due == time and watch.run.state == RUNNING, Engine.on_watch),  # WATCH
+)
+"""For each kind of deadline, in the order of `Kind`: whether an entry still counts, and what to do when it is due."""
 
 
 def _roots(run: Activation) -> list[Group]:

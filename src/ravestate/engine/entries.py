@@ -15,6 +15,8 @@ from ravestate.policy.model import Half, Need, RulePlan
 class Entries(State):
     """The layer of the engine that keeps the table of the halves."""
 
+    __slots__ = ()
+
     def _enter(self, spike: Spike, half: Half, before: int) -> None:
         """Let a half hold a spike; `before` is the activation number just before theirs."""
         held = self.halves.get(half)
@@ -92,3 +94,8 @@ class Entries(State):
                 del self.live[signal.index]
         if spike.group.root().interested:
             self._dirty[spike.group.root()] = None
+
+    def on_forget(self, time: float, spike: Spike) -> None:
+        """Remove a spike that is too old for every detached need, if nothing holds it."""
+        if not (spike.holders or spike.entries):
+            self._forget(spike)

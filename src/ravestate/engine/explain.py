@@ -82,7 +82,7 @@ class Explanation:
             lines.append(f"    utility {clause.utility:.6f} nats, now {clause.effective:.6f}; pathway {sums}")
             lines += [f"    {gate}: {'true' if open_ else 'false, so it may not run'}" for gate, open_ in clause.gates]
         if not self.activations:
-            lines.append("  idle: it holds no spike")
+            lines.append("  idle: no spike is left for it to act on")
         for one in self.activations:
             lines.append(f"  {one.state} (activation {one.id})")
             lines += [f"    holds {signal}, {age:.3f} s old" for signal, age in one.holds]

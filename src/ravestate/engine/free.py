@@ -7,48 +7,50 @@ from collections import deque
 
 from ravestate.engine.activation import READY, Activation
 
-Place = tuple[int, int, int]
+Place = tuple[int, int, int, Activation]
 
 
 class Free:
-    """A queue of ready activations. Most join at its end; those that lost a spike and took another join anywhere."""
+    """A queue of ready activations. Most join at its end; those that lost a spike and took another join anywhere.
 
-    __slots__ = ("_between", "_line")
+    Attributes:
+        new: The activations without a place so far.
+        line: The places of the others, in order. It is empty only if all activations are in `new`.
+    """
+
+    __slots__ = ("_between", "line", "new")
 
     def __init__(self) -> None:
-        self._line: deque[tuple[Place, Activation]] = deque()
-        self._between: list[tuple[Place, Activation]] = []  # a heap
-
-    def add(self, activation: Activation) -> None:
-        """Add a ready activation."""
-        entry = (_place(activation), activation)
-        if not self._line or self._line[-1] < entry:
-            self._line.append(entry)
-        else:
-            heapq.heappush(self._between, entry)
+        self.new: list[Activation] = []
+        self.line: deque[Place] = deque()
+        self._between: list[Place] = []  # a heap
 
     def pop(self) -> Activation | None:
         """Remove the first activation that is still ready, and return it; None if there is none."""
-        while self._line or self._between:
-            if self._between and (not self._line or self._between[0] < self._line[0]):
-                place, activation = heapq.heappop(self._between)
-            else:
-                place, activation = self._line.popleft()
-            if activation.state is READY:
-                if place == _place(activation):
+        new, line, between = self.new, self.line, self._between
+        if len(new) == 1 and not line:
+            activation = new.pop()
+            return activation if activation.state is READY else None
+        for activation in new:
+            self._join(activation)
+        new.clear()
+        while line:
+            place = heapq.heappop(between) if between and between[0] < line[0] else line.popleft()
+            if between and not line:
+                line.extend(sorted(between))
+                between.clear()
+            activation = place[3]
+            if activation.place is place:  # else it was added again since
+                activation.place = None
+                if activation.state is READY:
                     return activation
-                self.add(activation)
         return None
 
-    def __len__(self) -> int:
-        return len(self._line) + len(self._between)
-
-
-def _place(activation: Activation) -> Place:
-    """Return the sort key of an activation: its newest spike, then the order of declaration."""
-    spikes = activation.spikes
-    if len(spikes) == 1:
-        newest = 0 if spikes[0] is None else spikes[0].id
-    else:
-        newest = max([spike.id for spike in spikes if spike is not None], default=0)
-    return (newest, activation.clause.index, activation.id)
+    def _join(self, activation: Activation) -> None:
+        """Give an activation its place: first in the order of its newest spike, then of declaration."""
+        newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
+        place = activation.place = (newest, activation.clause.index, activation.id, activation)
+        if not self.line or self.line[-1] < place:
+            self.line.append(place)
+        else:
+            heapq.heappush(self._between, place)

@@ -25,6 +25,8 @@ from ravestate.policy.model import Clause, Half, Need, SignalPlan
 class Halves(ConflictSets):
     """The layer of the engine that offers spikes to halves, and makes their activations."""
 
+    __slots__ = ()
+
     def unfold_all(self) -> None:
         """Create the activations of all alternatives and entries."""
         super().unfold_all()
@@ -63,15 +65,16 @@ class Halves(ConflictSets):
         self.lacking.setdefault(clause.needs[1 - need.index], {})[activation] = None
         return activation
 
-    def _offer_to_halves(self, signal: SignalPlan, spike: Spike) -> None:
-        """Offer a new spike to the halves of its signal."""
+    def _offer_to_halves(self, signal: SignalPlan, spike: Spike) -> list[Need]:
+        """Offer a new spike to the halves of its signal; return the needs to which it must be offered one by one."""
+        others: list[Need] = []
         group = spike.group.root()
-        if self.tracer is not None or self._loops.full:
+        single = self.tracer is not None or self._loops.full
+        if single:
             self.unfold_all()
         for half in signal.halves:
-            if self.tracer is not None or self._loops.full or not self.retired.isdisjoint(half.places):
-                for need in half.needs:
-                    self._offer(need, spike)
+            if single or (self.retired and not self.retired.isdisjoint(half.places)):
+                others += half.needs
                 continue
             first = half.needs[0]
             rule = first.clause.rule
@@ -94,6 +97,7 @@ class Halves(ConflictSets):
                 self._inherit_pressure(spike, half, group)
         if group.interested:
             self._dirty[group] = None
+        return others
 
     def _pair(self, need: Need, spike: Spike, group: Group) -> bool:
         """Make the activations that a new spike completes; return whether the spike needs no entry for the clause."""

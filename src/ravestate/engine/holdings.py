@@ -27,6 +27,8 @@ from ravestate.policy.model import Clause, Need, SignalPlan
 class Holdings(Entries):
     """The layer of the engine that gives spikes to activations and takes them away."""
 
+    __slots__ = ()
+
     def _look(self, activation: Activation, needs: Iterable[Need]) -> None:
         """For each detached need without a spike, take the newest live spike that fits, old enough if possible."""
         for need in needs:
@@ -141,7 +143,7 @@ class Holdings(Entries):
             if spike is not None and need.max_age != NEVER:
                 self._let_expire(spike, spike.born + need.max_age)
 
-    def _expire(self, spike: Spike, time: float) -> None:
+    def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in list(spike.holders):
             if holder.state is GATHERING:
@@ -150,6 +152,11 @@ class Holdings(Entries):
         for half in self.halves_of(spike):
             if spike.born + half.max_age <= time:
                 self._drop(spike, half)
+
+    def on_ripen(self, time: float, activation: Activation) -> None:
+        """Judge an activation again whose spikes are old enough now (L14)."""
+        activation.ripens = NEVER
+        self._update(activation)
 
     def _complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it: a writer asks for consent, and any other activation starts without it.
@@ -164,7 +171,7 @@ class Holdings(Entries):
         if clause.rule.slots and clause.firm_bits:
             self._asking[activation] = None
         else:
-            self._free.add(activation)
+            self._free.new.append(activation)
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
         """Take the spike of a need from an activation; `by` is the run that is the reason, or None."""
@@ -289,7 +296,8 @@ class Holdings(Entries):
         """Make an activation stop waiting, so that changes in its groups do not make it ask again."""
         self.waiting.pop(activation, None)
         self._refused.pop(activation, None)
-        self._stuck.pop(activation, None)
+        if self._stuck:
+            self._stuck.pop(activation, None)
         for hope in activation.hopes:
             hoping = self.hoping.get(hope)
             if hoping is not None:

@@ -20,6 +20,8 @@ from ravestate.policy.model import Need, SignalPlan
 class Matching(Halves):
     """The layer of the engine that creates spikes, groups them, and offers them to activations."""
 
+    __slots__ = ()
+
     def _parents(self, run: Activation | None) -> tuple[Spike, ...]:
         """Return the parents of the spikes that a run raises; none for a detached rule, or for code outside (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on
@@ -125,7 +127,8 @@ class Matching(Halves):
         for need in signal.others:
             self._offer(need, spike)
         if signal.halves:
-            self._offer_to_halves(signal, spike)
+            for need in self._offer_to_halves(signal, spike):
+                self._offer(need, spike)
         if signal.contests:
             self._offer_to_sets(signal, spike)
         if not (spike.holders or spike.entries):
@@ -183,6 +186,18 @@ class Matching(Halves):
                 held = activation.spikes[need.index]
                 if held is not None and held.id < spike.id:
                     self._swap(activation, need, spike)
+
+    def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
+        """Show a spike to a detached need for which it is old enough now (L19)."""
+        need, spike = looking
+        need = self.policy.clause_plans[need.clause.index].needs[need.index]  # a rule may have been added since
+        if self._fits(need, spike):
+            self._show(need, spike)
+
+    def on_watch(self, time: float, watch: Watch) -> None:
+        """Judge an `until` condition whose spikes are old enough now (L21)."""
+        watch.due = NEVER
+        self._judge(watch)
 
     def _watch(self, spike: Spike) -> None:
         """Offer a new spike to the `until` conditions of runs (L21)."""

@@ -18,6 +18,8 @@ from ravestate.policy.model import SlotPlan
 class Slots(Matching):
     """The layer of the engine that writes slots and raises their signals."""
 
+    __slots__ = ()
+
     def _mark_write(self, slot: SlotPlan, run: Activation | None) -> None:
         """Note that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
         if run is not None:

@@ -13,18 +13,8 @@ from typing import Any
 
 from ravestate.declare.condition import Holds
 from ravestate.declare.core import RuleFailure
-from ravestate.engine.activation import RUNNING, Activation
-from ravestate.engine.deadlines import (
-    EXPIRE,
-    LOOK,
-    PATIENCE,
-    RECHECK,
-    RIPEN,
-    TIMEOUT,
-    WATCH,
-    Deadlines,
-    Entry,
-)
+from ravestate.engine.activation import Activation
+from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
 from ravestate.engine.group import Group
@@ -42,6 +32,45 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 
 class State:
     """The slots, live spikes and activations of an engine, and the work that is still to be done."""
+
+    __slots__ = (
+        "_activations",
+        "_acts",
+        "_asking",
+        "_blamed",
+        "_busy",
+        "_deadlines",
+        "_dirty",
+        "_errors",
+        "_free",
+        "_groups",
+        "_hope_counts",
+        "_loops",
+        "_out",
+        "_refused",
+        "_spikes",
+        "_stirred",
+        "_stuck",
+        "_unseen",
+        "_watched_by",
+        "_watches",
+        "active",
+        "alternatives",
+        "dropped",
+        "gated",
+        "halves",
+        "hoping",
+        "lacking",
+        "live",
+        "now",
+        "policy",
+        "retired",
+        "running",
+        "tracer",
+        "values",
+        "waiting",
+        "watched",
+    )
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
@@ -92,7 +121,7 @@ class State:
         self._errors: list[tuple[RuleFailure, Lineage | None]] = []
         self._loops = Loops()
         self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
-        self._deadlines = Deadlines(self._stands)
+        self._deadlines: Deadlines
         self._busy: int = 0  # how many activations count for `core:activity`
         self._activations: int = 0  # the number of the newest activation
         self._spikes = 0
@@ -125,27 +154,9 @@ class State:
             ):
                 self._stirred[kind, number] = None
 
-    def _stands(self, entry: Entry) -> bool:
-        """Return whether a deadline still counts: its owner lives, and has no other deadline of this kind."""
-        time, kind, _, owner = entry
-        if kind is EXPIRE:
-            return bool(owner.holders) or owner in self.live.get(owner.signal.index, ())
-        if kind is RIPEN:
-            return owner.ripens == time
-        if kind is PATIENCE:
-            group, rival = owner
-            if isinstance(rival, int):
-                return bool(group.root().interested)
-            return rival.state < RUNNING and rival.pressed.get(group.root()) == time
-        if kind is LOOK:
-            return owner[1] in self.live.get(owner[1].signal.index, ())
-        if kind is RECHECK:
-            return owner.recheck == time
-        if kind is TIMEOUT:
-            return owner.deadline == time
-        if kind is WATCH:
-            return owner.due == time and owner.run.state == RUNNING
-        return owner in self.live.get(owner.signal.index, ())
+    def is_live(self, spike: Spike) -> bool:
+        """Return whether a spike is live: something holds it, or detached needs may look at it."""
+        return spike in self.live.get(spike.signal.index, ())
 
     def read(self, slot: int) -> Any:
         """Return the value of the slot with this number."""

@@ -16,7 +16,7 @@ from ravestate.policy.causes import Causes
 from ravestate.policy.completion import UNIT, Completion
 from ravestate.policy.connect import connect, find_contests, find_halves, find_kin
 from ravestate.policy.least import Least
-from ravestate.policy.model import RulePlan, SignalPlan
+from ravestate.policy.model import Clause, RulePlan, SignalPlan
 from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 from ravestate.policy.policy import Policy
@@ -148,6 +148,7 @@ def _in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
 
 
 PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the probability (L9)
+SAME = 1e-9  # base utilities whose relative difference is at most this are equal
 NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: above 0, so that its weight counts
 
 
@@ -173,4 +174,14 @@ def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], 
             # The sum is rounded because the information of a predicate is not a multiple of the unit.
             clause.utility = round(cost / UNIT + predicates * PREDICATE, 12)
             clause.base = (clause.utility or NO_INFORMATION) * rule.weight
+    _make_equal([clause for rule in rules for clause in rule.clauses])
     return completion
+
+
+def _make_equal(clauses: Iterable[Clause]) -> None:
+    """Give one base utility to clauses whose base utilities differ in their last digits alone: they are equals (L15)."""
+    last = 0.0
+    for clause in sorted(clauses, key=lambda clause: clause.base):
+        if clause.base - last <= SAME * clause.base:
+            clause.base = last
+        last = clause.base

@@ -20,9 +20,12 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 PATIENCE = 60.0
-"""The seconds that a check may take."""
+"""The seconds that a check waits for a message."""
 
 USERS = ("ada", "bob", "cleo", "dora", "emil")
+
+LAST = "the last message"
+"""The message with which each check ends, so that a doubled answer before it is seen."""
 
 echo = rs.Module("echo", requires=(rawio,))
 """The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""
@@ -75,8 +78,8 @@ async def check_answer(driver: Driver) -> None:
     async with _limited(driver):
         for n, text in enumerate(texts, start=1):
             await driver.say("ada", text)
-            said = await driver.read("ada", n)
-            _agree(said, texts[:n])
+            _agree(await _read(driver, "ada", n), texts[:n])
+        await _end(driver, "ada", texts)
 
 
 async def check_order(driver: Driver) -> None:
@@ -85,7 +88,7 @@ async def check_order(driver: Driver) -> None:
     async with _limited(driver):
         for text in texts:
             await driver.say("ada", text)
-        _agree(await driver.read("ada", len(texts)), texts)
+        await _end(driver, "ada", texts)
 
 
 async def check_users(driver: Driver) -> None:
@@ -94,9 +97,10 @@ async def check_users(driver: Driver) -> None:
         for n in range(3):
             await asyncio.gather(*(driver.say(user, f"{n} of {user}") for user in USERS))
         for user in USERS:
-            _agree(await driver.read(user, 3), [f"{n} of {user}" for n in range(3)])
+            texts = [f"{n} of {user}" for n in range(3)]
+            _agree(await _read(driver, user, 3), texts)
             await driver.say(user, "count")
-            _agree((await driver.read(user, 4))[3:], ["4"])
+            await _end(driver, user, [*texts, "4"])
 
 
 async def check_restart(driver: Driver) -> None:
@@ -111,13 +115,13 @@ async def check_restart(driver: Driver) -> None:
     async with _limited(driver):
         for n in range(2):
             await say_all(f"before {n}")
-            await driver.read(USERS[n], 2 * n + 1)
+            await _read(driver, USERS[n], 2 * n + 1)
             await driver.kill()
             await say_all(f"during {n}")
             await driver.restart()
         await say_all("after")
         for user in USERS:
-            _agree(await driver.read(user, len(texts[user])), texts[user])
+            await _end(driver, user, texts[user])
 
 
 CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (check_answer, check_order, check_users, check_restart)
@@ -126,9 +130,27 @@ CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (check_answer, check_o
 
 @contextlib.asynccontextmanager
 async def _limited(driver: Driver) -> AsyncGenerator[None]:
-    """Enter a driver, for at most `PATIENCE` seconds."""
-    async with driver, asyncio.timeout(PATIENCE):
+    """Enter a driver, for a limited time."""
+    async with driver, asyncio.timeout(5 * PATIENCE):
         yield
+
+
+async def _read(driver: Driver, user: str, count: int) -> list[str]:
+    """Wait until a user has received `count` messages; return all that they have received."""
+    try:
+        async with asyncio.timeout(PATIENCE):
+            return await driver.read(user, count)
+    except TimeoutError:
+        raise AssertionError(
+            f"{user} has not received message {count} within {PATIENCE:g} s: see whether the agent still runs, and what "
+            "it logs"
+        ) from None
+
+
+async def _end(driver: Driver, user: str, wanted: list[str]) -> None:
+    """Check that a user has received these messages and no others: the answer to one more message comes next."""
+    await driver.say(user, LAST)
+    _agree(await _read(driver, user, len(wanted) + 1), [*wanted, LAST])
 
 
 def _agree(found: list[str], wanted: list[str]) -> None:

@@ -196,6 +196,21 @@ async def test_the_end_of_the_session_stops_the_agent() -> None:
         await context.next(rawio.output.changed)
 
 
+async def test_the_end_of_the_session_waits_for_no_words_that_nobody_would_hear() -> None:
+    slow, begun, said = rs.Module("slow", requires=[rawio]), asyncio.Event(), list[str]()
+
+    @slow.rule(when=rs.startup, writes=rawio.output)
+    async def greet(ctx: rs.RuleContext) -> None:
+        begun.set()
+        await ctx.sleep(3)
+        said.append("Hello")
+        ctx[rawio.output] = "Hello"
+
+    async with session_with(slow):
+        await begun.wait()
+    assert said == []
+
+
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
 async def test_an_agent_comes_in_many_forms(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"

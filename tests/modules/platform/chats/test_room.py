@@ -57,6 +57,20 @@ async def test_beyond_the_limit_the_chat_that_was_silent_longest_rests(tmp_path:
 
 
 @in_virtual_time
+async def test_many_new_chats_at_once_soon_are_no_more_than_the_limit(tmp_path: Path) -> None:
+    post = Post()
+    async with room(tmp_path, post, chats=5) as opened:
+        opened.receive([letter("x", name) for name in "abcde"])
+        await post.said(10)
+        await past(1.0)
+        assert len(opened) == 5
+        opened.receive([letter("x", f"new {n}") for n in range(20)])
+        await post.said(50)
+        await past(1.0)
+        assert len(opened) == 5
+
+
+@in_virtual_time
 async def test_what_came_twice_is_heard_once(tmp_path: Path) -> None:
     post = Post()
     message = letter("one")

@@ -32,3 +32,15 @@ def test_afterwards_the_log_is_as_before(caplog: pytest.LogCaptureFixture) -> No
     assert logging.getLogRecordFactory() is before
     logging.getLogger("some.library").warning(TOKEN)
     assert TOKEN in caplog.text
+
+
+def test_a_platform_that_ends_does_not_show_the_secrets_of_another(caplog: pytest.LogCaptureFixture) -> None:
+    before, log = logging.getLogRecordFactory(), logging.getLogger("some.library")
+    first, second = secret(TOKEN, "password"), secret("another token", "password")
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    log.warning("another token and a password are still secret")
+    assert "[secret] and a [secret] are still secret" in caplog.text
+    second.__exit__(None, None, None)
+    assert logging.getLogRecordFactory() is before

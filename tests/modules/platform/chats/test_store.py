@@ -1,8 +1,10 @@
 """The store: what it keeps over the death of a process, and what it forgets."""
 
+import sqlite3
 import stat
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -10,7 +12,7 @@ import pytest
 from modules.platform.chats.messenger import letter
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import Outgoing, Person
-from ravestate.modules.platform.chats.store import TRIES, Answer, Entry, Store
+from ravestate.modules.platform.chats.store import SEEN, TRIES, Answer, Entry, Store
 
 
 def opened(path: Path) -> Store:
@@ -97,10 +99,62 @@ def test_the_answer_to_the_newest_message_alone_is_found_for_an_edit(tmp_path: P
     assert store.answer_to(unanswered) is None  # an edit of the first message came in between
 
 
-def test_a_message_that_kills_each_process_is_given_up(tmp_path: Path) -> None:
+def test_a_message_that_kills_each_process_is_given_up_and_one_that_nobody_heard_is_not(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("deadly"))
-    assert [len(store.pending()) for _ in range(TRIES + 2)] == [1] * TRIES + [0, 0]
+    store.take(letter("innocent"))
+    left: list[list[str]] = []
+    for _ in range(TRIES + 2):
+        entries = store.pending()
+        left.append([entry.message.text for entry in entries])
+        store.hear(entries[0])
+        if entries[0].message.text == "innocent":
+            store.unhear(entries[:1])  # the process ends in order
+    assert left == [["deadly", "innocent"]] * TRIES + [["innocent"]] * 2
+
+
+def test_a_change_of_a_message_that_is_not_heard_takes_its_place(tmp_path: Path) -> None:
+    store, message = opened(tmp_path), letter("one")
+    entry, edit = store.take(message), store.take(letter("two", id=message.id, kind="edit"))
+    assert entry is not None
+    assert edit is not None
+    assert store.hear(entry, [edit]).message.text == "two"
+    assert [each.message.text for each in store.pending()] == ["two"]
+    assert not store.knows("a", message.person)
+
+
+def test_a_message_that_is_forgotten_is_not_kept_again_when_it_is_heard(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("one"))
+    assert entry is not None
+    store.forget("a")
+    store.hear(entry)
+    assert store.pending() == []
+
+
+def test_the_keys_of_old_messages_are_deleted_while_the_agent_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, now = opened(tmp_path), time.time()
+    done, open_ = store.take(letter("one")), store.take(letter("two"))
+    assert done is not None
+    store.commit((), [done])
+    monkeypatch.setattr("time.time", lambda: now + SEEN + 60.0)
+    store.take(letter("three"))
+    assert [n for (n,) in store._all("SELECT n FROM inbox")] == [2, 3]
+    assert store.pending()[0] == open_
+
+
+def test_a_failed_commit_leaves_no_transaction_open(tmp_path: Path) -> None:
+    """SQLite checks a deferred reference at the commit: a way to let this step alone fail."""
+    store = opened(tmp_path)
+    store._db.execute("PRAGMA foreign_keys=ON")
+    store._db.execute("CREATE TABLE child (n REFERENCES inbox (n) DEFERRABLE INITIALLY DEFERRED)")
+    with pytest.raises(sqlite3.IntegrityError), store.batch():
+        store._db.execute("INSERT INTO child VALUES (99)")
+    store.take(letter("one"))
+    store.close()
+    assert [entry.message.text for entry in opened(tmp_path).pending()] == ["one"]
 
 
 def test_a_forgotten_chat_leaves_no_text_in_the_file(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import socket
+import sqlite3
 from typing import Any
 
 import httpx
@@ -15,6 +16,12 @@ from ravestate.modules.platform.chats import webhook
 
 def test_only_requests_with_the_secret_and_of_a_sane_size_are_taken() -> None:
     taken: list[Any] = []
+    full: list[bool] = []
+
+    def take(data: Any) -> None:
+        if full:
+            raise sqlite3.OperationalError("database or disk is full")
+        taken.append(data)
 
     async def test() -> None:
         port, ready = free_port(), asyncio.Event()
@@ -24,7 +31,7 @@ def test_only_requests_with_the_secret_and_of_a_sane_size_are_taken() -> None:
 
         address = ("127.0.0.1", port)
         task = asyncio.create_task(
-            webhook.listen("https://bot.example/in", address, "x-secret", "s3cret", taken.append, announce)
+            webhook.listen("https://bot.example/in", address, "x-secret", "s3cret", take, announce)
         )
         await ready.wait()
         url = f"http://127.0.0.1:{port}/in"
@@ -38,6 +45,9 @@ def test_only_requests_with_the_secret_and_of_a_sane_size_are_taken() -> None:
             assert await status({}, json={"update_id": 2}) == 403
             assert await status({"x-secret": "wrong"}, json={"update_id": 3}) == 403
             assert await status(right, content=b"no json") == 400
+            full.append(True)
+            assert await status(right, json={"update_id": 4}) == 503
+            full.clear()
             assert await status(right, content=b"x" * (webhook.LARGEST + 1)) == 413
             assert (await client.get(url)).status_code == 405
         task.cancel()

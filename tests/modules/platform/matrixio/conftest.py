@@ -130,6 +130,12 @@ class Account:
     async def upload(self, data: bytes) -> str:
         return (await self.call("POST", "media/v3/upload", data))["content_uri"]
 
+    async def kind(self, url: str) -> str:
+        """Return the content type of an uploaded file."""
+        path = f"{self.server.url}/_matrix/client/v1/media/download/{url.removeprefix('mxc://')}"
+        answer = await self._http.get(path, headers={"Authorization": f"Bearer {self.token}"})
+        return answer.raise_for_status().headers["Content-Type"]
+
     async def listen(self, count: int) -> list[str]:
         """Return the messages of others as "room: text", once there are `count`."""
         async with asyncio.timeout(60):

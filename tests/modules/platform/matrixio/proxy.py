@@ -12,7 +12,7 @@ class Fault:
     """A fault of the next `times` requests whose method and path contain a text.
 
     The kinds: an HTTP status; ``lost``: the server acts, and its answer never arrives; ``garbage``: the answer is cut;
-    ``hang``: neither an answer nor an end.
+    ``hang``: neither an answer nor an end; ``refuse``: the connection ends at once, and the server hears nothing.
     """
 
     request: str
@@ -62,6 +62,9 @@ class Proxy:
             return web.json_response(refusal, status=429)
         if kind.isdecimal():
             return web.Response(text="<html>Server Error</html>", status=int(kind))
+        if kind == "refuse" and request.transport is not None:
+            request.transport.close()
+            return web.Response()
         headers = {name: value for name, value in request.headers.items() if name not in ("Host", "Content-Length")}
         url = self._server + request.raw_path
         async with self._client.request(request.method, url, data=body or None, headers=headers) as found:

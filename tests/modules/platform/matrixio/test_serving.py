@@ -3,17 +3,21 @@
 import asyncio
 import contextlib
 import logging
+import sqlite3
 from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import ravestate as rs
 from modules.platform.matrixio.conftest import Account, Homeserver, accounts
 from modules.platform.matrixio.proxy import Proxy
 from modules.platform.telegramio.test_serving import host, parrot
 from ravestate.errors import PlatformError
-from ravestate.modules import matrixio
+from ravestate.modules import matrixio, rawio
+from ravestate.modules.platform.chats import Incoming, Store
+from ravestate.modules.platform.matrixio.account import JOINS
 from ravestate.runtime.agent import Agent
 
 
@@ -64,6 +68,12 @@ def _short_pages(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ravestate.modules.platform.matrixio.account.FILTER", {"room": {"timeline": {"limit": 4}}})
 
 
+@pytest.fixture
+def _short_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("FIRST_WAIT", "LONGEST_WAIT"):
+        monkeypatch.setattr(f"ravestate.modules.platform.chats.sender.{name}", 0.01)
+
+
 @pytest.mark.usefixtures("_short_pages")
 @live("Robin", "Ada")
 async def test_more_messages_than_fit_into_an_answer_are_all_heard(
@@ -77,6 +87,47 @@ async def test_more_messages_than_fit_into_an_answer_are_all_heard(
         await ada.say(room, f"message {n}")
     async with running(robin, tmp_path):
         assert (await ada.listen(15))[1:] == [f"{room}: message {n}" for n in range(14)]
+
+
+@pytest.mark.usefixtures("_short_pages", "_short_waits")
+@pytest.mark.parametrize("kind", ["429", "502", "lost"])
+def test_older_messages_are_asked_for_again_after_a_failure(homeserver: Homeserver, tmp_path: Path, kind: str) -> None:
+    @live("Robin", "Ada")
+    async def test(folder: Path, robin: Account, ada: Account) -> None:
+        room = await ada.room(robin.id)
+        async with running(robin, folder):
+            await ada.say(room, "first")
+            await ada.listen(1)
+        for n in range(9):
+            await ada.say(room, f"message {n}")
+        async with Proxy(homeserver.url) as proxy:
+            failed = proxy.fail("messages", kind, times=2)
+            async with running(robin, folder, homeserver=proxy.url):
+                await failed.met.wait()
+                assert (await ada.listen(10))[1:] == [f"{room}: message {n}" for n in range(9)]
+
+    test(homeserver, tmp_path)
+
+
+@pytest.mark.usefixtures("_short_waits")
+@pytest.mark.parametrize("kind", ["429", "refuse"])
+def test_a_room_that_cannot_be_joined_yet_delays_no_other(homeserver: Homeserver, tmp_path: Path, kind: str) -> None:
+    @live("Robin", "Ada")
+    async def test(folder: Path, robin: Account, ada: Account) -> None:
+        async with Proxy(homeserver.url) as proxy, running(robin, folder, homeserver=proxy.url):
+            first = await ada.room(robin.id)
+            await ada.say(first, "one")
+            await ada.listen(1)
+            failed = proxy.fail("join", kind, times=10**6)
+            second = await ada.room(robin.id)
+            await ada.say(second, "two")
+            await ada.say(first, "three")
+            assert await ada.listen(2) == [f"{first}: one", f"{first}: three"]
+            failed.times = JOINS + 3  # no number of such failures is too large
+            await failed.met.wait()
+            assert (await ada.listen(3))[2:] == [f"{second}: two"]
+
+    test(homeserver, tmp_path)
 
 
 @live("Robin", "Ada")
@@ -212,6 +263,30 @@ def test_nothing_is_lost_or_doubled_after_failed_requests(
     test(homeserver, tmp_path)
 
 
+@pytest.mark.usefixtures("_short_waits")
+def test_events_that_cannot_be_kept_come_again(
+    homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take, failures = Store.take, [sqlite3.OperationalError("database or disk is full")] * 2
+
+    def take_if_there_is_space(store: Store, message: Incoming) -> Any:
+        if failures:
+            raise failures.pop()
+        return take(store, message)
+
+    monkeypatch.setattr(Store, "take", take_if_there_is_space)
+
+    @live("Robin", "Ada")
+    async def test(folder: Path, robin: Account, ada: Account) -> None:
+        async with running(robin, folder):
+            room = await ada.room(robin.id)
+            await ada.say(room, "Hello")
+            assert await ada.listen(1) == [f"{room}: Hello"]
+
+    test(homeserver, tmp_path)
+    assert not failures
+
+
 # Synapse itself refuses worse ones.
 MALFORMED: list[tuple[str, dict[str, Any]]] = [
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": 7}),
@@ -231,6 +306,23 @@ async def test_malformed_events_are_left_out(tmp_path: Path, robin: Account, ada
             await ada.send(room, kind, content)
         await ada.say(room, "Hello")
         assert await ada.listen(1) == [f"{room}: Hello"]
+
+
+@live("Robin", "Ada")
+async def test_a_picture_is_sent_as_what_it_is(tmp_path: Path, robin: Account, ada: Account) -> None:
+    painter = rs.Module("painter", requires=(rawio,))
+
+    @painter.rule(when=rawio.input.changed, reads=matrixio.chat)
+    async def paint(ctx: rs.RuleContext) -> None:
+        ctx[matrixio.chat].send_picture(b"\xff\xd8 and so on", "a house")
+        ctx[matrixio.chat].send_picture(b"\x89PNG and so on", "a tree")
+
+    room = await ada.room(robin.id)
+    async with running(robin, tmp_path, painter):
+        await ada.say(room, "Paint!")
+        await ada.listen(2)
+    urls = [event["content"]["url"] for event in ada.heard if event["content"].get("msgtype") == "m.image"]
+    assert [await ada.kind(url) for url in urls] == ["image/jpeg", "image/png"]
 
 
 def test_an_invitation_outlives_a_failure_and_a_restart(

@@ -305,6 +305,8 @@ class Server:
             self.banned[bot, chat] = time.monotonic() + wait
             return JSONResponse({"ok": False, "error_code": 429, "description": f"Too Many Requests: retry after {wait}",
                                  "parameters": {"retry_after": wait}}, 429)  # fmt: skip
+        if kind == "400":
+            return JSONResponse({"ok": False, "error_code": 400, "description": fault["why"]}, 400)
         if kind == "404":
             return JSONResponse({"ok": False, "error_code": 404, "description": "Not Found"}, 404)
         if kind == "409":

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import logging
+import sqlite3
 from collections.abc import AsyncGenerator, Callable, Coroutine
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import ravestate as rs
 from modules.platform.telegramio.conftest import Bot, free_port
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio, telegramio
+from ravestate.modules.platform.chats import Incoming, Store
 from ravestate.modules.platform.chats.voice import spoken
 from ravestate.runtime.agent import Agent
 
@@ -298,8 +300,13 @@ async def test_a_voice_note_is_understood_and_answered_by_voice(bot: Bot, tmp_pa
         file = await bot.do("upload", hexed=note.hex())
         await bot.say(7, voice={**file, "duration": 2})
         [answer] = await bot.do("said", count=1)
+        why = "Bad Request: VOICE_MESSAGES_FORBIDDEN"
+        await bot.do("fault", method="sendVoice", kind="400", why=why)
+        await bot.say(7, voice={**file, "duration": 2})
+        [_, text] = await bot.do("said", count=2)
     assert "how are you" in answer["caption"].lower()
     assert answer["voice"]["file_size"] > 1000
+    assert "how are you" in text["text"].lower()
 
 
 @live
@@ -394,6 +401,26 @@ def test_a_server_that_does_not_answer_in_time_is_asked_again(
             assert len((await bot.do("called", method=method))["calls"]) > 1
 
     test(bot, tmp_path)
+
+
+def test_updates_that_cannot_be_kept_come_again(bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    take, failures = Store.take, [sqlite3.OperationalError("database or disk is full")] * 2
+
+    def take_if_there_is_space(store: Store, message: Incoming) -> Any:
+        if failures:
+            raise failures.pop()
+        return take(store, message)
+
+    monkeypatch.setattr(Store, "take", take_if_there_is_space)
+
+    @live
+    async def test(bot: Bot, folder: Path) -> None:
+        async with running(bot, folder):
+            await bot.say(7, "Hello")
+            assert await bot.said(1) == ["7: Hello"]
+
+    test(bot, tmp_path)
+    assert not failures
 
 
 @live

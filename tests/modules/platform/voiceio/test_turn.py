@@ -60,7 +60,21 @@ def test_german_has_words_of_its_own() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["Mhm.", "Mm-hmm.", "M-H-M.", "Hmm", "Yes.", "Yeah, okay.", "Ha ha ha!", "Hahaha", "Oh, I see.", "Uh-huh."]
+    "text",
+    [
+        "Mhm.",
+        "Mm-hmm.",
+        "M-H-M.",
+        "M.H.N.",
+        "M-A-K-M",
+        "Hmm",
+        "Yes.",
+        "Yeah, okay.",
+        "Ha ha ha!",
+        "Hahaha",
+        "Oh, I see.",
+        "Uh-huh.",
+    ],
 )
 def test_showing_that_one_listens_is_no_interruption(text: str) -> None:
     assert is_back_channel(text)

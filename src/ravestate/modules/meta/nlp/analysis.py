@@ -31,8 +31,30 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
 """Act of the user → the name of the signal of nlp for this act. Other acts have no signal."""
 
-MATCHERS = ("acts", "feelings")
+MATCHERS = ("acts", "feelings", "asks")
 """The names of the files of examples with which an analysis compares the user's sentences."""
+
+
+ADVICE = frozenset(
+    (
+        "recommend",
+        "how_to",
+        "should",
+        "guess",
+        "say_what",
+        "predict",
+        "what_if",
+        "okay",
+        "normal",
+        "judge_me",
+        "write",
+        "pick",
+        "permit",
+    )
+)
+"""Classes of ``asks.yaml`` that want advice or an opinion, and no fact."""
+ADVISED = 0.6
+"""The least confidence in such a class."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +80,21 @@ class Analysis:
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Class in ``feelings.yaml`` → the best match of a sentence for this feeling."""
 
+    asks: Mapping[str, Match] = field(default_factory=dict[str, Match])
+    """Class in ``asks.yaml``: a kind of question or request → the best match of a sentence for this kind."""
+
     move: Move | None = None
     """The move: what a good listener does next, such as rejoice, console, advise..."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""
+
+    @property
+    def advised(self) -> bool:
+        """Whether the user asks for advice, an opinion or a choice, and not for a fact."""
+        sure = {name for name, match in self.asks.items() if match.score >= ADVISED}
+        ours = any(said.subject_person in ("I", "you") or said.request for said in self.statements)
+        return bool(sure & ADVICE) or ("choose" in sure and ours)
 
     @property
     def acted(self) -> tuple[str, ...]:
@@ -119,14 +151,15 @@ def analyse(
         statements=statements,
         acts=acts(sentences),
         feelings=feelings(sentences, names),
+        asks=_by_name(bundled_matcher("asks").match_all(sentences)),
         move=bundled_moves().move(sentences, asks=question is not None or "?" in text),
-        intents=_intents(designed, sentences) if designed else {},
+        intents=_by_name(designed.match_all(sentences), ":") if designed else {},
     )
 
 
-def _intents(matcher: Matcher, sentences: Iterable[str]) -> dict[str, Match]:
-    """Return a map from each intent of the designer that a sentence matches to the best match."""
-    found = [match for match in matcher.match_all(tuple(sentences)) if match is not None and ":" in match.name]
+def _by_name(matches: Iterable[Match | None], part: str = "") -> dict[str, Match]:
+    """Return the best match of each class whose name contains `part`."""
+    found = [match for match in matches if match is not None and part in match.name]
     return {match.name: match for match in sorted(found, key=lambda match: match.score)}
 
 

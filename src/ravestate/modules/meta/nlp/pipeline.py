@@ -97,7 +97,7 @@ class Pipeline:
         with self._lock:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
-                # If no order waits, a thread took this order but was interrupted before it read the text.
+                # If the queue is empty, an earlier thread took this text but was interrupted before it read the text.
                 self._read(waiting or [order])
         if order.error is not None:
             raise order.error
@@ -160,7 +160,7 @@ class Pipeline:
 
 def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
     typed = normal.typed  # the tree keeps the capitals as typed, although the pipeline reads those of the normal form
-    # The tree leaves out white space, and marks that the normal form has added: no word depends on them.
+    # The tree leaves out white space, and the punctuation that the normal form has added: no word depends on them.
     numbers: dict[int, int] = {}
     for token in doc:
         if not token.is_space and not (token.is_punct and normal.adds(token.idx, token.idx + len(token))):

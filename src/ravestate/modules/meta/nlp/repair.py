@@ -56,7 +56,7 @@ def _mark_tag(tree: Tree, words: list[Word], word: Word) -> None:
 
 
 def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
-    """Turn the noun after an auxiliary and its subject into a verb: *end*, in *did the war end*."""
+    """If a noun follows an auxiliary and a subject, make the noun a verb: *end*, in *did the war end*."""
     before = tree.before(auxiliary)
     if auxiliary.low not in _INVERTING or (
         before and before in tree.children(auxiliary, "nsubj") and before.pos in ("PRON", "NOUN", "PROPN")

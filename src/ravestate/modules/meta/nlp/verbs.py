@@ -29,7 +29,7 @@ _SHORT = {
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:
-    """Return whether `word` heads a clause, as verbs do, and predicates whose *be* is missing or is an auxiliary."""
+    """Return whether `word` heads a clause: it is a verb, or a predicate whose *be* is missing or is an auxiliary."""
     if word.dep not in _HEADS:
         return False
     if word.pos not in VERBAL:

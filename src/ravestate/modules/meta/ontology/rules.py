@@ -13,7 +13,7 @@ from .opening import open_memory
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory at the place that the settings name. The slot gets it at once; operations wait until it is open."""
+    """Open memory at the place that the settings name. The slot holds the memory object at once; operations wait until the memory is open."""
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 
@@ -39,6 +39,6 @@ async def close(ctx: rs.RuleContext) -> None:
         return
     try:
         await ctx.quiet()
-        await asyncio.sleep(0)  # let the rules queue the last writes to bound slots
+        await asyncio.sleep(0)  # give the rules time to queue their last writes to slots that are saved in memory
     finally:
         await opened.close()

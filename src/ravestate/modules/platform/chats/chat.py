@@ -5,18 +5,21 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import secrets
+import sqlite3
 import zlib
 from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from ravestate.errors import PlatformError, RavestateError
 from ravestate.modules import interloc, rawio
-from ravestate.modules._text import printable, without_controls
+from ravestate.modules._text import printable
 
 from . import people
 from .commands import COMMANDS, FORGOTTEN, NOT_FORGOTTEN, UNCLEAR, UNHEARD, UNSEEN, Command, explanation
+from .draft import Draft
+from .files import fetched
 from .leaving import agent_left
 from .messages import DeliveryError, Outgoing, Person
 from .sender import back_off
@@ -35,20 +38,8 @@ GRACE = 0.05
 TURN = 1.0
 """The seconds for which a message waits for the answer to the message before it. Slow answers may be interrupted."""
 
-SLOW = 0.5
-"""The seconds of work after which the chat shows that the agent is writing."""
-
-SHOWN = 4.0
-"""The seconds for which a chat shows that the agent is writing. Messengers show it for five."""
-
-GROWTH = 1.0
-"""The minimum number of seconds between two views of a growing answer. Messengers allow about one a second."""
-
 FAREWELL = 10.0
 """The seconds that the agent has for a greeting and for a farewell."""
-
-FETCHES = 4
-"""The number of attempts to fetch a file."""
 
 
 class Chat:
@@ -71,11 +62,9 @@ class Chat:
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
         self._repeated: Counter[str] = Counter()  # answers that the store has from before a crash
-        self._partial = ""
-        self._grown = asyncio.Event()
-        self._mute = False
-        self._leave = False
-        self._gone = False
+        self._draft = Draft(id)
+        self._state: Literal["open", "leaving", "gone"] = "open"
+        self._mute = False  # whether the agent's words are dropped
         self._news = asyncio.Event()
         self._following: asyncio.Task[None] | None = None
         self._flush: asyncio.TimerHandle | None = None
@@ -88,40 +77,34 @@ class Chat:
         """Whether there are messages that are not done."""
         return bool(self._waiting or self._hearing or self._open)
 
+    @property
+    def leaving(self) -> bool:
+        """Whether the conversation ends."""
+        return self._state != "open"
+
     # ------------------------------------------------------------------------------------ from the messenger
 
     def take(self, entry: Entry) -> None:
         """Take a message that the store has kept."""
-        message = entry.message
-        if message.kind == "left":
-            self.close()
-            return
-        if message.kind == "edit" and (n := self._unheard(message.id)) is not None:
-            self._waiting[n] = self._room.store.change(self._waiting[n], message.text)
-            self._room.store.commit((), [entry])
-            return
         self._waiting.append(entry)
         self._news.set()
 
-    def _unheard(self, id: str) -> int | None:
-        return next((n for n, entry in enumerate(self._waiting) if entry.message.id == id), None)
-
     def rest(self) -> None:
         """Put the chat to rest; a message that comes later takes it up again."""
-        self._leave = True
-        self._news.set()
+        if self._state == "open":
+            self._state = "leaving"
+            self._news.set()
 
     def close(self) -> None:
-        """End the chat for good: the agent is no longer in it."""
-        self._gone = True
-        self._mute = True
+        """End the chat for good: the agent is no longer in it. The room cancels `live`, and forgets the messages."""
+        self._state = "gone"
         self._waiting.clear()
-        self.rest()
+        self._hearing, self._open, self._said = None, [], []
 
     async def live(self) -> None:
         """Hold conversations until no messages are left."""
         while self._waiting and not self._room.closing:
-            self._leave = False
+            self._state = "open"
             try:
                 await self._converse()
             except RavestateError as error:  # the other chats continue
@@ -130,48 +113,49 @@ class Chat:
             finally:
                 self._end(finished=False)
                 self.context = None
-        if self._gone:
-            self._room.store.forget(self.id)
 
     async def _converse(self) -> None:
         first = self._waiting[0]
         # If the process dies, the next one hears the same message with the same random choices.
         context = self._room.agent.context(seed=zlib.crc32(f"{self.id} {first.message.key}".encode()))
         async with context:
-            self.context = context
+            self.context, self._mute = context, False
             context.put(self._room.slot, self)
             try:
-                if not await agent_left(context, self._hear_all()):
+                if not (await agent_left(context, self._hear_all()) or self._mute):
                     await self._answered(FAREWELL)
                 self._end(finished=not self._room.closing)
             finally:
                 self._end(finished=False)
                 self._mute = True  # a chat is put to rest in silence
 
-    async def _answered(self, seconds: float) -> None:
-        """Wait until the agent has answered all that it has heard, or until `seconds` have passed."""
+    async def _answered(self, seconds: float) -> bool:
+        """Wait until the agent has answered all that it has heard, for `seconds` at most; return whether it has."""
         if self._following is not None:
             await asyncio.wait((self._following,), timeout=seconds)
+        return self._following is None
 
     def _end(self, finished: bool) -> None:
         """End a conversation. With `finished`, all its messages are done; the others are heard again at the next start."""
         if self._following is not None:
             self._following.cancel()
             self._following = None
-        if finished and self._hearing is not None:
-            self._open.append(self._hearing)
-        self._commit(self._open if finished else ())
+        heard = [*self._open, *([self._hearing] if self._hearing else [])]
+        if heard and not finished and self._room.closing:
+            self._room.store.unhear(heard)  # an end in order is no crash
+        self._open = heard
+        self._commit(heard if finished else ())
         self._hearing = None
         self._open = []
         self._repeated.clear()
 
     async def _hear_all(self) -> None:
-        while not self._leave:
+        while self._state == "open":
             if self._waiting:
                 self.last_active = asyncio.get_running_loop().time()
-                self._hearing = self._waiting.popleft()
-                await self._hear(self._hearing)
-                self._open.append(self._hearing)
+                entry = await self._next()
+                await self._hear(entry)
+                self._open.append(entry)
                 self._hearing = None
                 self._follow()
                 await self._answered(TURN)
@@ -183,6 +167,18 @@ class Chat:
             except TimeoutError:
                 if not self._open:
                     return
+
+    async def _next(self) -> Entry:
+        """Return the oldest message that waits, as the user has changed it since."""
+        entry = self._hearing = self._waiting.popleft()
+        edits: list[Entry] = []
+        if entry.message.kind in ("text", "edit"):
+            edits = [
+                each for each in self._waiting if each.message.kind == "edit" and each.message.id == entry.message.id
+            ]
+            self._waiting = deque(each for each in self._waiting if each not in edits)
+        self._hearing = await self._room.persist(lambda: self._room.store.hear(entry, edits))
+        return self._hearing
 
     async def _hear(self, entry: Entry) -> None:
         context, message = self.context, entry.message
@@ -208,27 +204,31 @@ class Chat:
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
-        self._mute = not new  # a person who was here before is not greeted again
+        # A person who was here before is not greeted again. Silence would swallow the answers to others, so they come first.
+        self._mute = not new and await self._answered(FAREWELL)
         await people.welcome(context, name, person, self._room.log)
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(FAREWELL):
                 await context.quiet()
         await people.recalled(context)
-        self._mute = self._gone
+        self._mute = False
         self._room.called.add(context.read(interloc.agent))
         return new
 
     async def _obey(self, context: Context, entry: Entry, new: bool) -> None:
         message, name = entry.message, self._room.name
         if message.text == "forget":
+            await self._answered(FAREWELL)
             try:
                 await people.forget(context, name, message.person)
                 reply = FORGOTTEN
             except RavestateError as error:
                 self._room.log.error("a person was not forgotten: %s", error)
                 reply = NOT_FORGOTTEN
-            self.utter(reply)
-            self._mute = True
+            self._reply(reply)
+            if reply == FORGOTTEN:
+                self._mute = True
+                self._keep_for_later(message.person)
             self._leave_soon(context, message.person, forgotten=reply == FORGOTTEN)
         elif message.text == "stop":
             self._leave_soon(context, message.person)
@@ -242,7 +242,13 @@ class Chat:
     def _leave_soon(self, context: Context, person: Person, forgotten: bool = False) -> None:
         people.leave(context, people.key(self._room.name, person))
         if not context.read(interloc.users) or forgotten:
-            self._leave = True
+            self.rest()
+
+    def _keep_for_later(self, gone: Person) -> None:
+        """Let the next conversation answer the messages of others that have no answer yet."""
+        others = [entry for entry in self._open if entry.message.person.id != gone.id]
+        self._open = [entry for entry in self._open if entry not in others]
+        self._waiting.extendleft(reversed(others))
 
     @property
     def _spoken(self) -> bool:
@@ -253,10 +259,10 @@ class Chat:
         """Show the agent a picture, or let it hear a voice note."""
         message = entry.message
         try:
-            data = await self._fetch(message.file)
+            data = await fetched(self._room.carrier, message.file)
         except DeliveryError as error:
             self._room.log.warning("a file was not fetched: %s", error)
-            self.utter(UNSEEN)
+            self._reply(UNSEEN)
             return
         if message.kind == "picture":
             context.put(rawio.picture, data)
@@ -266,32 +272,27 @@ class Chat:
                 text = await words_in(data)
             except PlatformError as error:
                 self._room.log.warning("a voice note was not understood: %s", error)
-                self.utter(UNHEARD)
+                self._reply(UNHEARD)
                 return
             if not text.strip():
-                self.utter(UNCLEAR)
+                self._reply(UNCLEAR)
         if text.strip():
             context.put(rawio.input, printable(text))
-
-    async def _fetch(self, file: str) -> bytes:
-        for attempt in range(FETCHES):
-            try:
-                return await self._room.carrier.fetch(file)
-            except DeliveryError as error:
-                if error.final or attempt == FETCHES - 1:
-                    raise
-                await asyncio.sleep(error.wait or back_off(attempt))
-        raise AssertionError("the last attempt raises")
 
     # ------------------------------------------------------------------------------------ from the agent
 
     def utter(self, text: str) -> None:
         """Take a whole utterance of the agent."""
-        self._partial = ""
-        text = printable(text).strip()
-        if not text or self._mute:
+        self._draft.text = ""
+        self._speak(printable(text).strip(), self._cause())
+
+    def _reply(self, text: str) -> None:
+        """Answer the message that the agent is about to hear, without a rule."""
+        self._speak(text, self._hearing)
+
+    def _speak(self, text: str, cause: Entry | None) -> None:
+        if not text or self._silent:
             return
-        cause = self._cause()
         emoji = self._room.carrier.can_react(text) and cause is not None
         for n, part in enumerate([text] if emoji else split(text, self._room.carrier.longest)):
             if self._repeated[part] > 0:  # the process died after this answer
@@ -301,8 +302,12 @@ class Chat:
 
     def send_picture(self, data: bytes, caption: str = "") -> None:
         """Send a picture (the bytes of a JPEG or PNG file) to the chat."""
-        if not self._mute:
+        if not self._silent:
             self._say(Outgoing(key="", chat=self.id, kind="picture", text=caption, data=data), self._cause())
+
+    @property
+    def _silent(self) -> bool:
+        return self._mute or self._state == "gone"
 
     def _cause(self) -> Entry | None:
         """Return the message that the agent now answers: the oldest without an answer (L12)."""
@@ -325,17 +330,16 @@ class Chat:
         key = secrets.token_hex(12)
         self._said.append(Answer(replace(message, key=key), None if cause is None else cause.n))
         if self._flush is None:
-            self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._commit)
+            self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._flush_said)
 
     def grow(self, piece: str) -> None:
         """Take a piece of an utterance that is still growing. It becomes a message once it is whole."""
-        self._partial += without_controls(piece)
-        self._grown.set()
+        self._draft.grow(piece)
 
     def fall_silent(self) -> None:
         """End a growing utterance that no rule has written as a whole."""
-        if self._partial:
-            self.utter(self._partial)
+        if self._draft.text:
+            self.utter(self._draft.text)
 
     # ------------------------------------------------------------------------------------ to the store
 
@@ -346,39 +350,35 @@ class Chat:
 
     async def _until_answered(self) -> None:
         assert self.context is not None  # the conversation runs
-        work = asyncio.create_task(self._show_work())
+        work = asyncio.create_task(self._draft.show(self._room, lambda: self._silent))
         try:
-            while self._open:
+            while self._open and self._state != "gone":
                 heard = tuple(self._open)
                 await self.context.quiet(rawio.output)
-                self._commit(heard)
+                await self._room.persist(lambda heard=heard: self._commit(heard))
         except RavestateError:
             return  # the conversation has failed
         finally:
             work.cancel()
-        self._following = None
+            if self._following is asyncio.current_task():
+                self._following = None
+        self._room.make_room()
 
-    async def _show_work(self) -> None:
-        await asyncio.sleep(SLOW)
-        while True:
-            self._grown.clear()
-            if not self._mute and self._room.sender.pace.spare():  # messages take priority
-                try:
-                    await self._room.carrier.show_work(self.id, printable(self._partial).strip())
-                except DeliveryError as error:  # a failure to show it does no harm
-                    await asyncio.sleep(error.wait)
-            await asyncio.sleep(GROWTH)
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(SHOWN - GROWTH):
-                    await self._grown.wait()
+    def _flush_said(self, attempt: int = 0) -> None:
+        """Keep the answers now, though the agent may still work; if the file fails, later."""
+        self._flush = None
+        try:
+            self._commit()
+        except sqlite3.Error as error:
+            self._room.log.warning("answers are not kept yet: %s", error)
+            self._flush = asyncio.get_running_loop().call_later(back_off(attempt), self._flush_said, attempt + 1)
 
     def _commit(self, done: Sequence[Entry] = ()) -> None:
-        """Keep the answers in the store, and that some messages are done."""
+        """Keep the answers in the store, and that some of the open messages are done."""
         if self._flush is not None:
             self._flush.cancel()
             self._flush = None
-        if self._gone:
-            return
+        done = [entry for entry in self._open if entry in done]
         if self._said or done:
             self._room.store.commit(self._said, done)
         if self._said:

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 import re
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, cast
+import sqlite3
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ravestate.folders import user_folder
 
 from .chat import Chat
 from .messages import Carrier, Incoming
-from .sender import Sender
-from .store import Store
+from .sender import Sender, back_off
+from .store import Entry, Store
 
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
     from .settings import ChatSettings
+
+T = TypeVar("T")
 
 LAST_WORDS = 5.0
 """The seconds that the agent has to answer and to send when it ends. All other work is done at the next start."""
@@ -57,7 +61,7 @@ class Room:
         """Whether the agent is being switched off."""
         self.sender = Sender(self.store, carrier, self._gone, self._moved, self.log)
         self._chats: dict[str, Chat] = {}
-        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._tasks: dict[Chat, asyncio.Task[None]] = {}
 
     def __len__(self) -> int:
         """Return the number of chats that do not rest."""
@@ -67,14 +71,14 @@ class Room:
         for chat in self.store.chats_to_send():
             self.sender.wake(chat)
         for entry in self.store.pending():
-            self._give(entry.message.chat).take(entry)
+            self._give(entry)
         return self
 
     async def __aexit__(self, *_: object) -> None:
         """Put all chats to rest, and deliver their last messages."""
         self.closing = True
         try:
-            for chat in self._chats.values():
+            for chat in self._tasks:
                 chat.rest()
             tasks = list(self._tasks.values())
             if tasks:
@@ -94,21 +98,42 @@ class Room:
             position: A name and a text to note in the same transaction, e.g. the position in a stream of events.
         """
         with self.store.batch():
-            entries = [entry for message in messages if (entry := self.store.take(message)) is not None]
+            entries = [entry for message in messages if (entry := self._taken(message)) is not None]
             if position is not None:
                 self.store.note(*position)
         for entry in entries:
             if not self.closing:  # otherwise the next process takes it up
-                self._give(entry.message.chat).take(entry)
+                self._give(entry)
 
-    def _give(self, id: str) -> Chat:
-        """Return a chat that does not rest."""
+    def _taken(self, message: Incoming) -> Entry | None:
+        entry = self.store.take(message)
+        if entry is not None and message.kind == "left":
+            self.store.forget(message.chat)
+        return entry
+
+    def _give(self, entry: Entry) -> None:
+        """Give a message to its chat. After the end of a chat, the next message begins a new one."""
+        id = entry.message.chat
+        if entry.message.kind == "left":
+            self._close(id)
+            return
         chat = self._chats.get(id)
         if chat is None:
-            self._make_room()
             chat = self._chats[id] = Chat(self, id)
-            self._tasks[id] = asyncio.create_task(self._run(chat))
-        return chat
+            self._tasks[chat] = task = asyncio.create_task(self._run(chat))
+            task.add_done_callback(lambda _: self._tasks.pop(chat))
+        chat.take(entry)
+        self.make_room()
+
+    async def persist(self, operate: Callable[[], T]) -> T:
+        """Return the result of an operation of the store. If the disk is full, try again until it succeeds."""
+        for attempt in itertools.count():
+            try:
+                return operate()
+            except sqlite3.Error as error:
+                self.log.warning("the chats' file cannot be written: %s", error)
+                await asyncio.sleep(back_off(attempt))
+        raise AssertionError("the loop ends with a result")
 
     async def _run(self, chat: Chat) -> None:
         try:
@@ -117,19 +142,26 @@ class Room:
             self.log.exception("%r failed", chat)
         finally:
             if self._chats.get(chat.id) is chat:
-                del self._chats[chat.id], self._tasks[chat.id]
+                del self._chats[chat.id]
 
-    def _make_room(self) -> None:
-        if len(self._tasks) >= self._limit:
-            idle = [chat for chat in self._chats.values() if not chat.busy]
-            if idle:
-                min(idle, key=lambda chat: chat.last_active).rest()
+    def make_room(self) -> None:
+        """Beyond the limit, put chats to rest that are not busy: first those that are silent for longest."""
+        if len(self._tasks) > self._limit:
+            staying = [chat for chat in self._tasks if not chat.leaving]
+            idle = sorted((chat for chat in staying if not chat.busy), key=lambda chat: chat.last_active)
+            for chat in idle[: max(0, len(staying) - self._limit)]:
+                chat.rest()
+
+    def _close(self, id: str) -> None:
+        """End a chat that the agent is no longer in."""
+        if (chat := self._chats.pop(id, None)) is not None:
+            chat.close()
+            self._tasks[chat].cancel()
 
     def _gone(self, id: str) -> None:
         self.log.warning("chat %s is closed to the agent", id)
         self.store.forget(id)
-        if id in self._chats:
-            self._chats[id].close()
+        self._close(id)
 
     def _moved(self, id: str, to: str) -> None:
         self.log.info("chat %s is now chat %s", id, to)

@@ -4,36 +4,64 @@ from __future__ import annotations
 
 import contextlib
 import logging
-from collections.abc import Generator
+from collections import Counter
+from collections.abc import Generator, Iterable
 from typing import Any
 
 HIDDEN = "[secret]"
 
 
-@contextlib.contextmanager
-def secret(*texts: str) -> Generator[None]:
-    """Replace secret texts in all log records that any logger makes in the body, tracebacks included."""
-    hidden = sorted((text for text in texts if len(text) >= 8), key=len, reverse=True)
-    make = logging.getLogRecordFactory()
-    plain = logging.Formatter()
+class Censor:
+    """Replaces secret texts in all log records that any logger makes, tracebacks included, while there are secrets."""
 
-    def without(text: str) -> str:
-        for each in hidden:
+    def __init__(self) -> None:
+        self._secrets: Counter[str] = Counter()
+        self._make = logging.LogRecord  # the factory that the censor covers
+        self._plain = logging.Formatter()
+
+    def add(self, secrets: Iterable[str]) -> None:
+        """Hide texts; the first ones install the censor."""
+        if not self._secrets:
+            self._make = logging.getLogRecordFactory()
+            logging.setLogRecordFactory(self.record)
+        self._secrets.update(secrets)
+
+    def remove(self, secrets: Iterable[str]) -> None:
+        """Hide texts no longer that nobody else hides; after the last ones, remove the censor."""
+        self._secrets -= Counter(secrets)
+        if not self._secrets:
+            logging.setLogRecordFactory(self._make)
+
+    def record(self, *values: Any, **named: Any) -> logging.LogRecord:
+        """Return a log record without secrets."""
+        record = self._make(*values, **named)
+        with contextlib.suppress(TypeError, ValueError):  # the wrong arguments of the message; a handler reports them
+            message = record.getMessage()
+            if (safe := self._without(message)) != message:
+                record.msg, record.args = safe, ()
+        if record.exc_info:
+            record.exc_text = self._without(self._plain.formatException(record.exc_info))
+        return record
+
+    def _without(self, text: str) -> str:
+        for each in sorted(self._secrets, key=len, reverse=True):
             text = text.replace(each, HIDDEN)
         return text
 
-    def make_without(*values: Any, **named: Any) -> logging.LogRecord:
-        record = make(*values, **named)
-        with contextlib.suppress(TypeError, ValueError):  # the wrong arguments of the message; a handler reports them
-            message = record.getMessage()
-            if (safe := without(message)) != message:
-                record.msg, record.args = safe, ()
-        if record.exc_info:
-            record.exc_text = without(plain.formatException(record.exc_info))
-        return record
 
-    logging.setLogRecordFactory(make_without)
+censor = Censor()
+"""The censor of this process: several platforms may have secrets at a time."""
+
+
+@contextlib.contextmanager
+def secret(*texts: str) -> Generator[None]:
+    """Replace secret texts in all log records that any logger makes in the body, tracebacks included."""
+    hidden = [text for text in texts if len(text) >= 8]
+    if not hidden:
+        yield
+        return
+    censor.add(hidden)
     try:
         yield
     finally:
-        logging.setLogRecordFactory(make)
+        censor.remove(hidden)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import random
+import sqlite3
 from collections.abc import Callable
 
 from .messages import Carrier, DeliveryError
@@ -15,6 +16,10 @@ IN_FLIGHT = 8
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
 """The seconds before the second attempt, and before the later ones at most. Each wait is twice the one before."""
+
+
+BURST = 0.15
+"""The seconds of pause whose turns may be made up for at once. At 25 a second, the first second has 28."""
 
 
 def back_off(attempt: int) -> float:
@@ -30,9 +35,9 @@ class Pace:
         self._next = 0.0
 
     async def turn(self) -> None:
-        """Wait for a turn. Up to a second's turns may come at once after a pause."""
+        """Wait for a turn. After a pause, a few turns may come at once."""
         now = asyncio.get_running_loop().time()
-        self._next = max(self._next + self._gap, now - 1.0)
+        self._next = max(self._next + self._gap, now - BURST)
         if self._next > now:
             await asyncio.sleep(self._next - now)
 
@@ -41,7 +46,7 @@ class Pace:
         now = asyncio.get_running_loop().time()
         if self._next + self._gap > now:
             return False
-        self._next = max(self._next + self._gap, now - 1.0)
+        self._next = max(self._next + self._gap, now - BURST)
         return True
 
 
@@ -98,26 +103,45 @@ class Sender:
 
     async def _drain(self, chat: str) -> None:
         attempt = 0
-        while (item := self._store.next(chat)) is not None:
-            error = await self._attempt(item)
+        while True:
+            try:
+                item = self._store.next(chat)
+                error = None if item is None else await self._attempt(item)
+                if item is None:
+                    return
+                if error is not None and not self._store.has(item):  # the chat was closed meanwhile
+                    error = None
+                if error is not None and self._is_elsewhere(chat, error):
+                    return
+                if error is not None and error.final:
+                    self._give_up(item, error)
+                    error = None
+            except sqlite3.Error as failure:
+                error = DeliveryError(f"the chats' file cannot be written: {failure}")
             if error is None:
                 attempt = 0
-            elif error.gone:
-                self._on_gone(chat)
-                return
-            elif error.moved:
-                self._on_moved(chat, error.moved)
-                return
-            elif error.final:
-                self._log.error("a message was refused: %s", error)
-                self._store.drop(item)
-            else:
-                wait = error.wait or back_off(attempt)
-                attempt += 1
-                self._log.log(
-                    logging.WARNING if attempt == 3 else logging.INFO, "sending again in %.1f s: %s", wait, error
-                )
-                await asyncio.sleep(wait)
+                continue
+            wait = error.wait or back_off(attempt)
+            attempt += 1
+            self._log.log(logging.WARNING if attempt == 3 else logging.INFO, "sending again in %.1f s: %s", wait, error)
+            await asyncio.sleep(wait)
+
+    def _is_elsewhere(self, chat: str, error: DeliveryError) -> bool:
+        """Return whether a chat is closed or has another id, after telling so."""
+        if error.gone:
+            self._on_gone(chat)
+        elif error.moved:
+            self._on_moved(chat, error.moved)
+        return error.gone or bool(error.moved)
+
+    def _give_up(self, item: Item, error: DeliveryError) -> None:
+        """Drop a message that was refused. If it is a voice note, its words become a text."""
+        if item.message.kind == "voice":
+            self._log.info("a voice note was refused, and is sent as text: %s", error)
+            self._store.write_out(item)
+        else:
+            self._log.error("a message was refused: %s", error)
+            self._store.drop(item)
 
     async def _attempt(self, item: Item) -> DeliveryError | None:
         """Try to deliver an item once; return the error of a failure."""
@@ -125,7 +149,7 @@ class Sender:
             await self.pace.turn()
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:
-                self._store.sent(begun, await self._carrier.send(begun.message, item.begun))
+                id = await self._carrier.send(begun.message, item.begun)
             except DeliveryError as error:
                 if not (item.begun or error.unsure):
                     self._store.undo(begun)
@@ -133,4 +157,5 @@ class Sender:
             except Exception as error:  # a mistake in the platform: the chat continues without the message
                 self._log.exception("a message was not sent")
                 return DeliveryError(repr(error), final=True)
+            self._store.sent(begun, id)
         return None

@@ -17,7 +17,7 @@ class ChatSettings(rs.Settings):
     rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
     """The seconds of silence after which a chat is put to rest."""
     chats: int = pydantic.Field(1000, ge=1)
-    """The maximum number of chats at a time that do not rest."""
+    """The maximum number of chats at a time that do not rest. Chats that are busy may exceed it for as long."""
     path: Path | None = None
     """The file with unanswered and undelivered messages. Default: one for each account in the user's data folder."""
 

@@ -20,7 +20,7 @@ SEEN = 3 * 24 * 3600.0
 """The seconds for which the store remembers the keys of messages. Messengers repeat a message for a day at most."""
 
 TRIES = 3
-"""The number of starts after which a message is given up: it may be the cause of the crashes."""
+"""The number of crashes after which a message is given up, if the agent was hearing it: it may be their cause."""
 
 PARTING = ("stop", "forget")
 """The commands after which the agent treats the person as somebody whom it has not met in the chat."""
@@ -30,6 +30,7 @@ CREATE TABLE IF NOT EXISTS inbox (
     n INTEGER PRIMARY KEY AUTOINCREMENT, key TEXT UNIQUE, chat TEXT, id TEXT, at REAL,
     tries INTEGER DEFAULT 0, answer TEXT DEFAULT '', data TEXT);
 CREATE INDEX IF NOT EXISTS of_chat ON inbox (chat, id);
+CREATE INDEX IF NOT EXISTS by_age ON inbox (at);
 CREATE TABLE IF NOT EXISTS outbox (
     n INTEGER PRIMARY KEY AUTOINCREMENT, chat TEXT, cause INTEGER, state TEXT DEFAULT 'queued', message TEXT, data BLOB);
 CREATE INDEX IF NOT EXISTS to_send ON outbox (chat, state);
@@ -89,7 +90,7 @@ class Store:
             with self._transaction():
                 for statement in TABLES.split(";"):
                     self._db.execute(statement)
-                self._db.execute("DELETE FROM inbox WHERE data IS NULL AND at < ?", (time.time() - SEEN,))
+                self._purge()
         except (sqlite3.Error, OSError) as error:
             why = "another agent uses it: end that one first" if "locked" in str(error) else str(error)
             raise PlatformError(f"the chats' file {path} cannot be opened: {why}") from None
@@ -106,10 +107,11 @@ class Store:
         self._db.execute("BEGIN IMMEDIATE")
         try:
             yield
+            self._db.execute("COMMIT")
         except BaseException:
-            self._db.execute("ROLLBACK")
+            if self._db.in_transaction:  # SQLite itself may have rolled it back
+                self._db.execute("ROLLBACK")
             raise
-        self._db.execute("COMMIT")
 
     batch = _transaction
     """Make the operations in the body of a ``with`` one transaction."""
@@ -119,9 +121,14 @@ class Store:
 
     # ------------------------------------------------------------------------------------ messages that came
 
+    def _purge(self) -> None:
+        """Delete the keys of old messages."""
+        self._db.execute("DELETE FROM inbox WHERE at < ? AND data IS NULL", (time.time() - SEEN,))
+
     def take(self, message: Incoming) -> Entry | None:
         """Keep a message until it is done; return None if a message of this key came before."""
         with self._transaction():
+            self._purge()
             data = json.dumps(asdict(message))
             cursor = self._db.execute(
                 "INSERT OR IGNORE INTO inbox (key, chat, id, at, data) VALUES (?, ?, ?, ?, ?)",
@@ -129,22 +136,33 @@ class Store:
             )
             return Entry(cursor.lastrowid or 0, message) if cursor.rowcount else None
 
-    def change(self, entry: Entry, text: str) -> Entry:
-        """Change the text of a message that is not done."""
-        message = replace(entry.message, text=text)
-        with self._transaction():
-            self._db.execute("UPDATE inbox SET data = ? WHERE n = ?", (json.dumps(asdict(message)), entry.n))
-        return Entry(entry.n, message)
-
     def pending(self) -> list[Entry]:
-        """Return the messages that are not done, in order. Give up those that were returned several times before."""
+        """Return the messages that are not done, in order. Give up those that the agent has heard too often."""
         with self._transaction():
-            self._db.execute("UPDATE inbox SET tries = tries + 1 WHERE data IS NOT NULL")
-            self._db.execute("UPDATE inbox SET data = NULL WHERE tries > ?", (TRIES,))
+            self._db.execute("UPDATE inbox SET data = NULL WHERE tries >= ?", (TRIES,))
             return [
                 Entry(n, _incoming(data, chat))
                 for n, data, chat in self._all("SELECT n, data, chat FROM inbox WHERE data IS NOT NULL ORDER BY n")
             ]
+
+    def hear(self, entry: Entry, edits: Sequence[Entry] = ()) -> Entry:
+        """Note that the agent hears a message; return the message with the text of its last edit."""
+        if edits:
+            entry = replace(entry, message=replace(entry.message, text=edits[-1].message.text))
+        with self._transaction():
+            data = json.dumps(asdict(entry.message))
+            self._db.execute(
+                "UPDATE inbox SET data = ?, tries = tries + 1 WHERE n = ? AND data IS NOT NULL", (data, entry.n)
+            )
+            for edit in edits:
+                self._db.execute("UPDATE inbox SET data = NULL WHERE n = ?", (edit.n,))
+        return entry
+
+    def unhear(self, entries: Iterable[Entry]) -> None:
+        """Note that messages were not heard to their end, although the process ends in order."""
+        with self._transaction():
+            for entry in entries:
+                self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
 
     def answer_to(self, edit: Entry) -> str | None:
         """Return the id of the answer to the message that was edited; an empty text if there is none yet.
@@ -195,6 +213,10 @@ class Store:
             return Item(n, _outgoing(message, data, chat), state == "begun")
         return None
 
+    def has(self, item: Item) -> bool:
+        """Return whether a message is still to be delivered."""
+        return bool(self._all("SELECT 1 FROM outbox WHERE n = ?", item.n))
+
     def begin(self, item: Item, trace: str) -> Item:
         """Note that an attempt to deliver begins, with the carrier's trace; return the item with the trace."""
         message = replace(item.message, trace=trace)
@@ -206,6 +228,12 @@ class Store:
         """Note that no attempt has delivered the message."""
         with self._transaction():
             self._db.execute("UPDATE outbox SET state = 'queued' WHERE n = ?", (item.n,))
+
+    def write_out(self, item: Item) -> None:
+        """Turn a voice note that was refused into a text."""
+        message = replace(item.message, kind="text", trace="")
+        with self._transaction():
+            self._db.execute("UPDATE outbox SET state = 'queued', message = ? WHERE n = ?", (_json(message), item.n))
 
     def sent(self, item: Item, id: str) -> None:
         """Note that a message is delivered, and its id on the messenger."""

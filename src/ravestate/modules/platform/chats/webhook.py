@@ -6,7 +6,9 @@ import asyncio
 import contextlib
 import hmac
 import json
+import logging
 import socket
+import sqlite3
 from collections.abc import Awaitable, Callable, Generator
 from typing import Any
 from urllib.parse import urlsplit
@@ -18,6 +20,8 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from ravestate.errors import PlatformError
+
+log = logging.getLogger("ravestate.chats")
 
 LARGEST = 1024 * 1024
 """The maximum number of bytes of a request."""
@@ -57,7 +61,11 @@ async def listen(
             found = json.loads(body)
         except ValueError:
             return Response(status_code=400)
-        take(found)
+        try:
+            take(found)
+        except sqlite3.Error as error:  # the messenger sends the request again
+            log.warning("a request is not kept: %s", error)
+            return Response(status_code=503)
         return Response()
 
     try:

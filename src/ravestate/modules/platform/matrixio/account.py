@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import json
 import logging
+import sqlite3
 import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
@@ -36,7 +38,7 @@ POLL = 30_000  # the milliseconds for which the server holds a request for event
 ANSWER = 20.0  # the seconds to wait for the answer to a request
 PAGE = 100  # the number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server knows a message that is repeated after a restart
-JOINS = 12  # the number of attempts to join a room, over six minutes
+JOINS = 12  # the number of refusals after which a room is not joined, over six minutes
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -109,8 +111,8 @@ class Inlet:
     async def _sync(self) -> None:
         attempt, first = 0, True
         while True:
-            since = self._room.store.noted("since")
             try:
+                since = self._room.store.noted("since")
                 async with asyncio.timeout(POLL / 1000 + ANSWER):  # nio itself waits for ever for the first answer
                     answer: Any = await self._client.sync(
                         timeout=0 if first else POLL, sync_filter=FILTER, since=since, full_state=first
@@ -122,7 +124,7 @@ class Inlet:
                 why: object = answer
                 if answer.status_code in REFUSED:
                     raise PlatformError("matrixio: the server has ended the login: start again, or renew the token")
-            except LOST as error:
+            except (*LOST, sqlite3.Error) as error:
                 why = repr(error)
             log.log(logging.WARNING if attempt == 3 else logging.INFO, "no events: %s", why)
             await asyncio.sleep(back_off(attempt))
@@ -147,10 +149,16 @@ class Inlet:
         self._room.receive(messages, ("since", answer.next_batch))
 
     async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
-        """Return the events that do not fit into an answer, because there are too many."""
+        """Return the events that do not fit into an answer, because there are too many.
+
+        Raises:
+            OSError: The server does not tell them now; the position must stay, so that the same answer comes again.
+        """
         found: list[Event] = []
         while start:
             page: Any = await self._client.room_messages(room, start, end, limit=PAGE)
+            if isinstance(page, ErrorResponse) and page.status_code not in GONE:
+                raise ConnectionError(f"older messages of {room} are missing: {page}")
             if isinstance(page, ErrorResponse) or not page.chunk:
                 break
             found += page.chunk
@@ -198,27 +206,27 @@ class Inlet:
     def _accept(self, room: str) -> None:
         """Join a room in a task. The server reports an invitation once, so it is kept until the agent has joined."""
         if room not in self._joining:
+            self._room.store.note("invited", json.dumps([*self._joining, room]))
             self._joining[room] = asyncio.create_task(self._join(room))
-            self._room.store.note("invited", json.dumps(list(self._joining)))
 
     async def _join(self, room: str) -> None:
-        for attempt in range(JOINS):
+        refusals = 0
+        for attempt in itertools.count():
+            answer: Any
             try:
-                answer: Any = await self._client.join(room)
-            except LOST as error:
-                why: object = repr(error)
-            else:
+                answer = await self._client.join(room)
                 if not isinstance(answer, ErrorResponse):
                     break
-                why = answer
-                if answer.status_code in GONE:
-                    attempt = JOINS - 1
-            if attempt == JOINS - 1:
-                log.warning("room %s cannot be joined: %s", room, why)
-                break
+                refusals += answer.status_code not in (None, "M_LIMIT_EXCEEDED")
+                if refusals == JOINS or answer.status_code in GONE:
+                    log.warning("room %s cannot be joined: %s", room, answer)
+                    break
+            except LOST as error:
+                answer = repr(error)
+            log.log(logging.WARNING if attempt == 3 else logging.INFO, "room %s is not joined yet: %s", room, answer)
             await asyncio.sleep(back_off(attempt))
         del self._joining[room]
-        self._room.store.note("invited", json.dumps(list(self._joining)))
+        await self._room.persist(lambda: self._room.store.note("invited", json.dumps(list(self._joining))))
 
     def _warn(self, concerned: str, what: str) -> None:
         if concerned not in self._warned:

@@ -20,6 +20,7 @@ LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
 """The failures after which a request may have reached the server."""
 
 FILE = 60.0  # the seconds that a file may take
+JPEG = b"\xff\xd8"  # the first bytes of a JPEG file
 WRITING = 5000  # the milliseconds for which a room shows that the agent is writing
 
 
@@ -57,7 +58,7 @@ class MatrixCarrier:
             change = {"rel_type": "m.replace", "event_id": to}
             return "m.room.message", {**content, "body": f"* {text}", "m.new_content": content, "m.relates_to": change}
         if message.kind == "picture":
-            url = await self._upload(message.data, "image/png")
+            url = await self._upload(message.data, "image/jpeg" if message.data.startswith(JPEG) else "image/png")
             content = {"msgtype": "m.image", "body": text or "picture", "url": url}
         elif message.kind == "voice" and (note := await spoken(text)) is not None:
             url = await self._upload(note, "audio/ogg")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import logging
+import sqlite3
 import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -141,7 +142,7 @@ class Inlet:
                     ) from None
                 log.warning("another program asks for the messages of this bot")
                 await asyncio.sleep(CONFLICT_WAIT * min(conflicts, CONFLICTS))
-            except (TelegramError, TypeError, KeyError, ValueError) as error:
+            except (TelegramError, sqlite3.Error, TypeError, KeyError, ValueError) as error:
                 log.log(logging.WARNING if attempt == 3 else logging.INFO, "no updates: %s", error)
                 await asyncio.sleep(error.seconds if isinstance(error, FloodError) else back_off(attempt))
                 attempt += 1

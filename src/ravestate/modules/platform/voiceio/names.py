@@ -78,7 +78,7 @@ class Settings(rs.Settings):
 module = rs.Module("voiceio", requires=[rawio, verbaliser], settings=Settings)
 
 another_speaks: rs.Signal[Turn] = module.signal("another_speaks", payload=cast("type[Turn]", object))
-"""Another person has gone on in a pause of the first person. The payload is the first person's turn."""
+"""Another person has gone on after the first person. The payload is the first person's turn."""
 
 utterance: rs.Signal[Utterance] = module.signal("utterance", payload=Utterance)
 """The user has finished a turn. The words also go to ``rawio.input`` if the recogniser is confident enough."""

@@ -27,8 +27,8 @@ ANOTHER = 0.03
 UNCLEAR = 0.3
 """The probability of the last word below which it is unclear, like a word that breaks off."""
 
-_SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+-?)+")
-"""Laughter, and hums as a recogniser writes them: "hahaha", "mm-hmm", "m-h-m"."""
+_SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+[-.]?)+|m(?:[-.][a-z]{1,2})*[-.][mnh]+")
+"""Laughter, and hums as a recogniser writes or spells them: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""
 _EDGES = ".,!?…;:\"'“”‘’()-–— "
 
 

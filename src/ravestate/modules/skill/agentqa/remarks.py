@@ -14,6 +14,8 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .life import Life
 
+SURE = 0.9
+"""The least confidence in an insult. Banter among friends resembles insults."""
 _YOU = frozenset(["you", "your"])
 
 
@@ -60,7 +62,8 @@ def act_in(analysis: Analysis, life: Life) -> Remark | None:
         for known in topic.acts:
             found = analysis.acts.get(known) or analysis.feelings.get(known)
             aside = known not in analysis.acts and len(analysis.sentences) > 1
-            if found is not None and not (aside and _YOU.isdisjoint(plain(found.text).split())):
+            sure = found is not None and found.score >= SURE and "say_word" not in analysis.asks  # "say damn"
+            if found is not None and sure and not (aside and _YOU.isdisjoint(plain(found.text).split())):
                 return Remark(name, plain(found.text))
     return None
 

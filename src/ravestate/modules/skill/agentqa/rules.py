@@ -92,6 +92,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
+    if {"choose", "permit"} & seen.asks.keys() and " or " not in found.example:
+        return rs.Resign("the user names options to choose from, or asks for leave")
     certain = CERTAIN if seen.question is not None or "?" in seen.text else STATED
     if seen.move is not None and found.score < certain and "self" not in (seen.move.name, seen.move.second):
         reason = f"{found.topic} is only likely, and the utterance calls for another kind of reply: {seen.move.name}"

@@ -293,6 +293,8 @@ def not_asked(heard: Parse, analysis: Analysis) -> str:
     )
     if analysis.move is not None and (analysis.move.listens or (told and analysis.move.name in LISTENING)):
         return f"the user wants another answer: {analysis.move.name}"
+    if analysis.advised:
+        return "the user wants advice or an opinion"
     if heard.kind is not None:
         return ""
     if any(match.score >= 0.5 for match in analysis.acts.values()):

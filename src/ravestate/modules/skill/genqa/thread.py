@@ -369,6 +369,8 @@ class _Follow:
         A part is the question word (*and when?*), the rank (*and the second highest?*), a name or a noun. A noun after
         the same preposition comes first (*and of Spain?*).
         """
+        if not new:
+            return
         text = text or self.tree.phrase(new)
         first, last = new[0], new[-1]
         for back, turn in enumerate(self.before):

@@ -59,6 +59,8 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     said = re.sub(r"^(?:i am|we are|i)\s+", "", _OPENERS.sub("", text), flags=re.IGNORECASE)
     rest = _END.split(f" {_PREPOSITIONS.sub('', said)}", maxsplit=1)[0].strip(" ,-'")
     where = _WHERE.search(rest) if about.kind in _PLACED else None
+    if where and about.kind in ("name", "people") and any(one.label in ("DATE", "TIME") for one in seen.entities):
+        return []  # "exam on Monday"
     found = tuple(_values(rest[: where.start()] if where else rest, about, seen))
     facts = [Fact(topic, found)] if found else []
     beside = next((one for one in TOPICS.values() if one.only_with == topic), None)

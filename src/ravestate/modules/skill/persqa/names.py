@@ -36,7 +36,7 @@ class Settings(rs.Settings):
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True
-    """Whether a user who gives a name in memory must answer a question, to prove that they are this person."""
+    """Whether a user who gives a name that memory already holds must answer a question, to prove that they are this person."""
     ignored: Annotated[int, Field(ge=1)] = 2
     """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
 

@@ -67,7 +67,8 @@ class Reader:
         self.tree = seen.tree
         self.words = {word.low for word in seen.tree.words}
         self.asked = asked
-        owned = (self.relative(said.object.head) for said in seen.statements if said.subject.person == "I")
+        mine = (said.object for said in seen.statements if said.subject.person == "I" or said.object.of("I"))
+        owned = (self.relative(object.head) for object in mine)
         self.person = person or next(filter(None, owned), "")
 
     def facts(self, known: Facts | None = None) -> list[Fact]:
@@ -100,6 +101,12 @@ class Reader:
         for topic, values in self.named():
             if topic not in gone and (topic != NAME or topic not in told):
                 _add(told, topic, values)
+        if told and (found := _INSTEAD.search(self.tree.text)):  # "Ada here, no wait, it's Ida"
+            for said in self.seen.statements:
+                later = said.verb == "be" and said.subject.text.lower() == "it"
+                if later and self.tree.text.find(said.object.text) > found.end():
+                    topic = [*told][-1]
+                    told[topic] = self._fitting(topic, [said.object.text]) or told[topic]
         if self.asked == "home" and "origin" in told and "home" not in told:
             told["home"] = told.pop("origin")
         for topic in told:  # "I live in Paris. I don't live in Paris."
@@ -316,7 +323,7 @@ class Reader:
     def _is_capital(self, phrase: Phrase) -> bool:
         """Return whether words begin with a capital as a name does: *I am Anneke*, but not *I am Greek*, *I'm a Leo*."""
         found = re.search(rf"(\w+) {re.escape(phrase.text)}(?!\w)", self.seen.text)
-        labels = {entity.label for entity in self.seen.entities if phrase.text in entity.text} - {"PERSON"}
+        labels = {entity.label for entity in self.seen.entities if phrase.text in entity.text} - {"PERSON", "ORG"}
         return bool(found and phrase.text.istitle() and not labels and found[1].lower() not in WORDS["determiners"])
 
     def ended(self, said: nlp.Statement) -> str:

@@ -118,7 +118,7 @@ class _Hearing:
             return Meaning("declined", topic=topic, aloud=not asks and not self.sum)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
-        if asks or "ask_everything" in self.acts:
+        if (asks and (not seen.advised or self.reader.asks())) or "ask_everything" in self.acts:
             inquiry = self.inquiry()
             if inquiry and (not inquiry.facts[0].topic or inquiry.facts[0].topic in (EVERYTHING, *self.known)):
                 return inquiry
@@ -146,7 +146,7 @@ class _Hearing:
             before = _before_question(self.text) if asks and self.waits else ""
             side = answer(before, topic, seen) if before else []
             mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
-            if asks and not side and "ask_own" in self.acts and any(mine):
+            if asks and not side and not seen.advised and "ask_own" in self.acts and any(mine):
                 return Meaning("asked", (Fact(""),))
             return Meaning("told" if side else "nothing", tuple(side), topic, self.leave, aloud=False)
         if (relative := self.reader.without_name()) and not self.known.get(relative):

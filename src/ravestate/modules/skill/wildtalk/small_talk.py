@@ -100,7 +100,7 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
     words = [answer for answer in answers if any(map(str.isalpha, answer))]
     if words and words[-1:] != list(state.said[-1:]):  # another module has answered since
         asked = Pending(words[-1]) if words[-1].endswith("?") else None
-        state = replace(state, pending=asked, moment="", game=None)
+        state = replace(state.having_said(words[-1], words[-1]), pending=asked, moment="", game=None)
     return state
 
 

@@ -36,7 +36,7 @@ def seen(text: str) -> Analysis:
 
 @pytest.fixture(scope="session", autouse=True)
 def _models() -> None:
-    for name in ("acts", "feelings"):
+    for name in ("acts", "feelings", "asks"):
         bundled_matcher(name).load()
     bundled_moves().load()
     Listener().load()

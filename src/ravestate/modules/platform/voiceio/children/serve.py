@@ -1,8 +1,8 @@
 """The process of one model: it answers requests on standard input, one after another.
 
-`model_process` runs this file with the name of a backend beside it: ``python -P serve.py whisper``. The first request is
-the backend's configuration. A request and an answer are a line of JSON, and then as many bytes as its ``size`` says.
-The process ends when standard input ends, and so with its parent.
+`model_process` runs this file. The argument names a backend, which is a file in the same folder: ``python -P serve.py
+whisper``. The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by
+as many bytes as the line's ``size`` says. The process ends when standard input ends, so it also ends when its parent does.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any, BinaryIO
 
 def main() -> None:
     """Load the backend, and answer requests until standard input ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who closes this process in order
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then closes this process
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # the prints of libraries are no answers
     requests = os.fdopen(os.dup(0), "rb")

@@ -1,7 +1,7 @@
 """The backend of speech recognition by faster-whisper. `serve` runs this file.
 
 Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So sounds of up to 28 seconds
-are not filled up with silence: a sentence then takes a tenth of the time. In such a short window, the model often does not
+are not filled up with silence: a sentence then takes a fifth of the time. In such a short window, the model often does not
 notice the end, and writes the same words again. The repetition is cut off.
 """
 
@@ -14,7 +14,7 @@ from typing import Any
 
 WINDOW = 28.0
 """The longest sound (seconds) that is recognised in one shortened window."""
-TAIL = 2.0
+TAIL = 5.0
 """The seconds of silence behind the sound. With less silence, the model repeats itself more often."""
 MOST = 8
 """The maximum number of tokens in a second of speech. People say at most five words."""

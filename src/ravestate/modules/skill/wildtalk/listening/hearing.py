@@ -12,13 +12,12 @@ from dataclasses import dataclass, field
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
-from ravestate.language.matcher import Match
-from ravestate.language.normal import plain
-from ravestate.language.shape import shape
+from ravestate.language.matcher import Match, bundled_matcher
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
+from .asked import Asked, asked_in
 from .material import Material, Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
@@ -92,6 +91,7 @@ class Hearing:
     topic: Moment | None = None
     thing: str = ""
     """The thing about which the user asks the agent's opinion."""
+    asked: Asked | None = None
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
@@ -112,6 +112,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.moves = likely(phrases, seen)
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
+    request = is_request(seen) and seen.question is None
+    found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
@@ -132,7 +134,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
-    choice = _choice_in(seen)
     tags = {
         kind: True,
         "pending": pending is not None,
@@ -151,12 +152,18 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "called": called != "",
         "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
         and not statement.conditional and "thing" in roles.values,
-        "request": is_request(seen) and seen.question is None and len(seen.sentences) == 1,
+        "request": request and len(seen.sentences) == 1,
+        "asked": found.asked is not None,
+        "advised": seen.advised,
+        "again": found.asked is not None and bool({"another", "meant"} & seen.asks.keys()) and state.asked is not None,
+        "wording": found.asked is not None and found.asked.kind in ("repeat", "shorter", "say_word"),
+        "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
+        found.asked.kind if found.asked else "": True,
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
     if asking:
-        tags |= _question_tags(found, phrases, seen, asking, low) | {"choice": choice[0] != ""}
+        tags |= _question_tags(found, phrases, seen, asking, low)
     elif statement is not None:
         tags |= _statement_tags(phrases, seen, statement, roles)
         heads = {
@@ -166,7 +173,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         } & {statement.object.head, statement.subject.head}
         found.topic = next((one for one in phrases.topics.values() if heads & one.words), None)
     found.tags |= {tag for tag, holds in tags.items() if holds}
-    found.roles = roles.having(called=called, first=choice[0], second=choice[1])
+    found.roles = roles.having(called=called, **(found.asked.values if found.asked else {}))
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
@@ -183,36 +190,16 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
     about = _about_in(seen)
     about = about if about.split()[-1:] and about.split()[-1].lower() in asking.lower() else ""
     found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
-    opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
-    polar, modal = seen.question is QuestionWord.YES_NO, {word.low for word in seen.tree.words if word.tag == "MD"}
-    words = re.findall(r"[\w']+", asking.lower())
-    addressed = bool({"you", "u", "your", "yourself"}.intersection(words))
-    opened = bool(words) and (words[0] in _ASKING or not polar)
-    pointed = asked is not None and asked.subject.text.lower() in ("it", "this", "that", "there", "everything")
-    feeling = "tone" in found.tags or any(word.pos == "ADJ" for word in seen.tree.words)
+    polar, modal = seen.question is QuestionWord.YES_NO, any(word.tag == "MD" for word in seen.tree.words)
     mine = asked is not None and (asked.subject.of("I") or asked.object.of("I"))
+    opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
     return {
         "question": True,
-        "polar": polar,
         "offer": _OFFER.match(asking) is not None,
-        "will": bool(modal & {"will", "'ll"}),
-        "worried": polar
-        and not addressed
-        and not low & {"should", "if"}
-        and (subject == "I" or (pointed and (feeling or "will" in modal))),
-        "world": not polar or (opened and (subject in ("", "other") or asked is None or asked.verb == "know")),
-        "are_you": polar and subject == "you" and asked is not None and asked.verb == "be",
-        "may": polar and subject == "I" and bool(modal & {"can", "may", "could"}),
-        "should": not polar and subject == "I" and (seen.question is QuestionWord.FORM or bool(modal)),
+        "are_you": polar and not modal and subject == "you" and asked is not None and asked.verb == "be",
         "told": (not polar and (mine or subject == "I") and subject != "you" and not modal)
         or bool({"remember", "recall"} & low and "you" in low)
-        or ("know" in words and subject == "you" and "my" in words),
-        "to_agent": addressed and (asked is None or subject == "you" or asked.subject.of("you")),
-        "able": polar
-        and subject == "you"
-        and bool(modal & {"can", "could"})
-        and asked is not None
-        and asked.verb not in phrases.plain["able"].words,
+        or ("know" in low and subject == "you" and "my" in low),
         "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
@@ -298,11 +285,19 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
             continue
         found = phrases.moments[match.name]
         few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry" beside another sentence
-        told = asking != "" and shape(plain(match.example))[3] == 0
-        fits = match.score >= EXACT or (not told and _fits(found, heard.moves) and not imagined)
+        asked = heard.asked
+        better = asked is not None and (asked.own or (heard.tags >= {"sad"} and found.tone != "sad"))
+        alike = asked is None or (not better and asked.kind == kind_of(match.example))
+        fits = match.score >= EXACT or (alike and _fits(found, heard.moves) and not imagined)
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
+
+
+def kind_of(sentence: str) -> str:
+    """Return the kind of a question or request; empty for a statement."""
+    match = bundled_matcher("asks").match(sentence)
+    return "" if match is None else match.name
 
 
 def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
@@ -382,15 +377,3 @@ def _about_in(seen: Analysis) -> str:
         if word.dep in ("pobj", "pcomp") and seen.tree.head(word).low in ("of", "about", "on"):
             return turned(seen.tree, [part for part in seen.tree.subtree(word) if part.dep != "punct"])
     return ""
-
-
-def _choice_in(seen: Analysis) -> tuple[str, str]:
-    """Return the alternatives of *cats or dogs?*."""
-    tree = seen.tree
-    for word in tree.words:
-        first, seconds = tree.head(word), tree.children(tree.head(word), "conj")
-        if word.low == "or" and word.dep == "cc" and seconds and first.pos in ("NOUN", "PROPN", "ADJ", "NUM"):
-            left = {"cc", "conj", "punct"}
-            kept = [part for part in tree.subtree(first) if part.dep not in left and tree.head(part).dep != "conj"]
-            return turned(tree, kept), turned(tree, tree.subtree(seconds[0]))
-    return "", ""

@@ -52,6 +52,8 @@ class _Source:
     """Whether the phrases fit nearly every utterance. After two questions, such a source asks no third question."""
     stance: str = ""
     """The opinion that the phrases express."""
+    asked: tuple[str, str] | None = None
+    """The kind and the area of the question that the phrases answer."""
 
 
 class Listener:
@@ -94,7 +96,8 @@ class Listener:
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
         hearing = hear(self._phrases, heard, state)
-        played = self._play(heard, state, chance, hearing.moment)
+        own = hearing.asked is not None and "wording" in hearing.tags  # "say that again" starts no other performance
+        played = self._play(heard, state, chance, "" if own or state.asked else hearing.moment)
         if played is not None:
             text, after = played
             after = after.toned("").having_said(text, text)
@@ -154,8 +157,13 @@ class Listener:
                 continue
             moment = source.moment
             after = state.toned(moment.tone, moment.lasts) if moment is not None else state.toned("")
-            after = replace(after, being=roles.being or state.being, moment="" if moment is None else moment.name)
+            after = replace(
+                after,
+                being=roles.being or state.being,
+                moment=(source.asked or ("",))[0] if moment is None else moment.name,
+            )
             after = replace(after, asks=after.asks and after.moment != "no_questions")
+            after = replace(after, asked=source.asked or after.asked)
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
             return _said(line, roles, after)
@@ -201,6 +209,13 @@ class Listener:
                 past = {"past"} & hearing.tags
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
             yield _Source(moment.lines(*groups, "say", "again"), moment)
+
+    def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the answers to a question or request, by its kind and its area of life."""
+        asked = hearing.asked
+        if asked is not None:
+            about = asked.kind, "" if asked.area is None else asked.area.name
+            yield _Source(asked.lines(self._phrases, state.tone), asked=about)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""

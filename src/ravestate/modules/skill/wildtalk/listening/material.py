@@ -97,6 +97,11 @@ class Material:
         """One matcher per file. Several small matchers learn faster than one with all examples."""
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
+        self.asked, self.areas = _moments("asked"), _moments("areas")
+        self.vague = self.asked.pop("vague").words
+        """Nouns that name nothing, such as *thing*."""
+        self.area_by_word = {word: one.name for one in reversed(self.areas.values()) for word in one.words}
+        self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = {**_moments("plain"), **self.replies}
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")

@@ -168,7 +168,7 @@ def _being(seen: Analysis, material: Material) -> Being | None:
         ):
             kind, gender = material.beings[word.lemma.lower()]
             return Being(f"your {word.low}", kind, gender, word.tag == "NNS")
-    people = [entity.text for entity in seen.entities if entity.label == "PERSON"]
+    people = [entity.text for entity in seen.entities if entity.label == "PERSON" and entity.text[:1].isupper()]
     return Being(people[0], "person") if people else None
 
 

@@ -89,6 +89,8 @@ class State:
     """The jokes, songs, stories and riddles of this talk."""
     show: str = ""
     """The kind of the latest performance."""
+    asked: tuple[str, str] | None = None
+    """The kind and the area of the user's last question that was answered by them, for *something else*."""
     asks: bool = True
     """Whether the listener may ask questions. False after the user has asked for no more questions."""
 

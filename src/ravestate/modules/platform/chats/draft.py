@@ -1,0 +1,54 @@
+"""The draft of an answer, and the sign that the agent is writing."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ravestate.modules._text import printable, without_controls
+
+from .messages import DeliveryError
+
+if TYPE_CHECKING:
+    from .room import Room
+
+SLOW = 0.5
+"""The seconds of work after which the chat shows that the agent is writing."""
+
+SHOWN = 4.0
+"""The seconds for which a chat shows that the agent is writing. Messengers show it for five."""
+
+GROWTH = 1.0
+"""The minimum number of seconds between two views of a growing answer. Messengers allow about one a second."""
+
+
+class Draft:
+    """An answer of the agent in a chat that is still growing."""
+
+    def __init__(self, chat: str) -> None:
+        self.text = ""
+        """The words so far."""
+        self._chat = chat
+        self._grown = asyncio.Event()
+
+    def grow(self, piece: str) -> None:
+        """Add a piece."""
+        self.text += without_controls(piece)
+        self._grown.set()
+
+    async def show(self, room: Room, silent: Callable[[], bool]) -> None:
+        """Show until cancelled that the agent is writing, with the words so far, except while it is silent."""
+        await asyncio.sleep(SLOW)
+        while True:
+            self._grown.clear()
+            if not silent() and room.sender.pace.spare():  # messages take priority
+                try:
+                    await room.carrier.show_work(self._chat, printable(self.text).strip())
+                except DeliveryError as error:  # a failure to show it does no harm
+                    await asyncio.sleep(error.wait)
+            await asyncio.sleep(GROWTH)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(SHOWN - GROWTH):
+                    await self._grown.wait()

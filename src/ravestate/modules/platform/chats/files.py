@@ -1,0 +1,27 @@
+"""The files that users send: pictures and voice notes."""
+
+from __future__ import annotations
+
+import asyncio
+
+from .messages import Carrier, DeliveryError
+from .sender import back_off
+
+FETCHES = 4
+"""The number of attempts to fetch a file."""
+
+
+async def fetched(carrier: Carrier, file: str) -> bytes:
+    """Return the bytes of a file; try again after failures.
+
+    Raises:
+        DeliveryError: There is no such file, or all attempts have failed.
+    """
+    for attempt in range(FETCHES):
+        try:
+            return await carrier.fetch(file)
+        except DeliveryError as error:
+            if error.final or attempt == FETCHES - 1:
+                raise
+            await asyncio.sleep(error.wait or back_off(attempt))
+    raise AssertionError("the last attempt raises")

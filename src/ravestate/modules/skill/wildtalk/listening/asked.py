@@ -1,0 +1,266 @@
+"""The kind of a question or request (language/examples/asks.yaml), its area of life, and the words that it names.
+
+An answer is looked up by kind and area (areas.yaml), else by kind alone (asked.yaml). The words come from the parse: the
+options of a choice, the thing that the question is about, and the words that ask, such as *how many eggs*.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ravestate.language.contractions import word_set
+from ravestate.language.feelings import SORROWS
+from ravestate.language.moves import LISTENING
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS
+from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
+
+from .material import Line, Material, Moment
+from .roles import turned
+from .state import State
+
+SURE, ORDERED, UNASKED = 0.4, 0.6, 0.7
+"""The least confidence in a kind, for a question, for an order, and for any other utterance."""
+ALIKE: Mapping[str, tuple[str, ...]] = {
+    "choose": ("recommend",),
+    "you_think": ("you_think", "should", "worth"),
+    "would_you": ("would_you", "favourite"),
+    "risk": ("risk",),
+    "say_what": ("say_what",),
+}
+"""The classes whose answers in an area serve a kind, the best first. By default, only its own."""
+OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
+"""Kinds that are a choice if options are named."""
+OWN = word_set("about_you would_you favourite")
+"""Kinds that ask about the agent."""
+_POINTING = word_set("it its that this he him his she her they them there")
+_YOU = word_set("you your yours yourself u ur")
+BRIEF = 4
+"""The maximum number of words of a choice without a verb: *tea or coffee*."""
+CALM = ("fact", "why", "about_you")
+"""Kinds that count only if the user does not want to be heard: *but who takes me at 52*, *are you even listening*."""
+MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
+_SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
+                  r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
+_CUT = ("VERB", "AUX", "ADP", "SCONJ", "PRON", "PUNCT", "INTJ")
+_BARE = word_set("not what something anything so else whatever")
+"""Words after *or* that are no option."""
+_NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
+"""The relations of a noun that a question is about, the likeliest first."""
+_PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
+WEIGHTS = {
+    "dobj": 1.3,
+    "attr": 1.3,
+    "ROOT": 1.2,
+    "xcomp": 1.2,
+    "ccomp": 1.2,
+    "nsubj": 1.05,
+    "npadvmod": 0.5,
+    "acomp": 1.4,
+}
+"""How much a word with a relation counts for the area; other words have the weight 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A question or request."""
+
+    kind: str
+    """Its class in asks.yaml."""
+    area: Moment | None
+    values: Mapping[str, str]
+    """The values of the roles: ``first`` and ``second``, ``about``, ``wh``, ``word``, ``short``, ``picked``."""
+    groups: tuple[str, ...]
+    """The groups of asked.yaml to try, the most specific first."""
+
+    @property
+    def own(self) -> list[Sequence[Line]]:
+        """The answers of the area."""
+        if self.area is None or (self.kind == "choose" and "first" in self.values):
+            return []
+        return [self.area.groups[kind] for kind in ALIKE.get(self.kind, (self.kind,)) if kind in self.area.groups]
+
+    def lines(self, phrases: Material, tone: str) -> list[Sequence[Line]]:
+        """Return the groups of answers, the most specific first."""
+        general = phrases.asked[self.kind]
+        named = [self.area.name] if self.area else []
+        first = general.lines("picked") if "picked" in self.groups else []
+        return [*first, *self.own, *general.lines(*named, tone, *self.groups, "say")]
+
+
+def asked_in(
+    phrases: Material, seen: Analysis, asking: str, state: State, moves: Sequence[str], *, request: bool
+) -> Asked | None:
+    """Return the question or request of an utterance; None if it has none.
+
+    Args:
+        phrases: The authored answers.
+        seen: The analysis of the utterance.
+        asking: The sentence that asks something, or an empty text.
+        state: The state of the talk, for *say that again*.
+        moves: The agent's likely next moves.
+        request: Whether the utterance is an order.
+    """
+    words = _words_of(seen.tree, asking)
+    options = _options(seen.tree, words)
+    least = SURE if asking else ORDERED if request else UNASKED
+    found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
+    best = max(found, key=lambda one: one.score, default=None)
+    kind = "" if best is None else best.name
+    if options and (not kind or kind in OPEN):
+        kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
+    if asking and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
+        kind = "fact"
+    area = area_of(phrases, seen.tree, words, state.before, kind)
+    if kind in ("another", "meant") and state.asked:
+        last = phrases.areas.get(state.asked[1])
+        area = last or area if kind == "another" else area or last
+        kind = state.asked[0]
+    heard = len(moves) == 1 and moves[0] in LISTENING
+    if not kind or (kind in CALM and heard) or (best is None and moves[:1] == ("apologise",)):
+        return None  # "but who takes me at 52?" asks for nothing
+    last = state.said[-1] if state.said else ""
+    values = {
+        "first": options[0] if options else "",
+        "second": options[1] if options else "",
+        "about": about(phrases, seen.tree, words),
+        "wh": _wh(seen.tree, words),
+        "word": _word(seen),
+        "last": last,
+        "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
+        "picked": _picked(phrases, words, len(state.said)),
+    }
+    values = {name: value for name, value in values.items() if value}
+    verbal = options is not None and options[2]
+    able = any(word.low in ("can", "could") for word in words[:1])
+    groups = (["act"] if verbal else ["two"]) if options else []
+    groups += ["picked"] * (kind in ("pick", "recommend") and "picked" in values)
+    groups += ["can"] * able + ["wh", "about", "last", "short", "word"]
+    return Asked(kind, area, values, tuple(groups))
+
+
+def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, kind: str) -> Moment | None:
+    """Return the area of life of a question: that of its main verb and nouns, else of the words around it.
+
+    Args:
+        phrases: The areas.
+        tree: The parse of the utterance.
+        words: The words of the question.
+        before: The previous utterance of the user.
+        kind: The kind of the question. A poem *about rain* has the area of the rain.
+    """
+    weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
+    inside = {word.index for word in words}
+    scores: dict[str, float] = {}
+    for word in tree.words:
+        area = phrases.area_by_word.get(word.lemma.lower()) or phrases.area_by_word.get(word.low)
+        if area and word.pos not in ("PRON", "AUX", "ADP", "DET"):
+            near = 1.0 if word.index in inside else 0.45
+            near *= weights.get(word.dep, 1.0)
+            scores[area] = max(scores.get(area, 0.0), near - 0.001 * word.index)
+    if not scores and not _POINTING.isdisjoint(word.low for word in words):
+        for text in re.findall(r"[a-z]+", before.lower()):
+            area = next(
+                filter(None, (phrases.area_by_word.get(text.removesuffix(end)) for end in ("", "s", "ing", "ed"))), ""
+            )
+            if area:
+                scores.setdefault(area, 0.1)
+    ranked = [phrases.areas[name] for name in sorted(scores, key=lambda name: -scores[name])]
+    return next((one for one in ranked if one.groups.keys() & ALIKE.get(kind, {kind})), next(iter(ranked), None))
+
+
+def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
+    """Return the noun phrase that a question is about, from the agent's view; empty if there is none."""
+    for relation in _NAMING:
+        for word in words:
+            if word.dep != relation or word.pos not in ("NOUN", "PROPN") or word.lemma.lower() in phrases.vague:
+                continue
+            parts = [part for part in tree.subtree(word) if part is word or _left(tree, part, word)]
+            asks = any(part.low in QUESTION_WORDS for part in parts)
+            text = "" if asks else turned(tree, [part for part in parts if part.low not in ("a", "an")])
+            if text:
+                return text
+    return ""
+
+
+def _left(tree: Tree, part: Word, noun: Word) -> bool:
+    return part.index < noun.index and part.dep in _PART and noun.index in (part.head, tree.head(part).head)
+
+
+def _words_of(tree: Tree, sentence: str) -> list[Word]:
+    """Return the words of a sentence of the text; all words if it is not found."""
+    start = tree.text.lower().find(sentence.lower()) if sentence else 0
+    if start < 0:
+        return list(tree.words)
+    end = start + len(sentence) if sentence else len(tree.text)
+    return [word for word in tree.words if start <= word.start < end]
+
+
+def _options(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
+    """Return the options of *soup or salad* and *text her or wait*, and whether they are acts."""
+    at = next((place for place, word in enumerate(words) if word.low == "or"), 0)
+    after = words[at + 1 :]
+    if not at or not after or after[0].low in _BARE or after[0].low in AUXILIARIES | {"i", "is", "did"}:
+        return None
+    verbal = after[0].tag in ("VB", "VBP") and after[0].pos == "VERB"
+    if verbal:
+        subject = next((place for place, word in enumerate(words[:at]) if word.dep in SUBJECTS), -1)
+        start = next((place for place in range(subject + 1, at) if words[place].pos == "VERB"), at)
+        second = _until(after, ("PUNCT",))
+    else:
+        start = at
+        while start and not _cuts(words[start - 1]):
+            start -= 1
+        second = _until(after, ("PUNCT", "ADP", "SCONJ", "PRON", "AUX"))
+    first = [word for word in words[start:at] if word.pos != "PUNCT"]
+    one, two = turned(tree, first), turned(tree, second)
+    return (one, two, verbal) if one and two and len(first) <= 6 and len(second) <= 6 else None
+
+
+def _cuts(word: Word) -> bool:
+    """Return whether a word cannot be part of the option that follows it."""
+    return word.pos in _CUT or word.tag in ("JJR", "RBR", "WDT", "WP") or word.low in ("better", "either")
+
+
+def _until(words: Sequence[Word], ends: Sequence[str]) -> list[Word]:
+    place = next((place for place, word in enumerate(words) if word.pos in ends), len(words))
+    return list(words[:place])
+
+
+def _wh(tree: Tree, words: Sequence[Word]) -> str:
+    """Return the words that ask, with their noun: *which boots*, *how often*, *when*."""
+    place = next((place for place, word in enumerate(words) if word.low in QUESTION_WORDS), None)
+    if place is None or words[place].low == "why":
+        return ""
+    found = [words[place]]
+    for word in words[place + 1 : place + 5]:
+        subject = word.dep in SUBJECTS and found[-1].pos not in ("ADJ", "DET")
+        if word.pos not in ("ADJ", "ADV", "NOUN", "DET") or word.low in AUXILIARIES or subject:
+            break
+        found.append(word)
+    alone = len(found) == 1
+    if (alone and found[0].low not in ("who", "when", "where")) or (found[0].low == "how" and found[-1].low == "come"):
+        return ""
+    return turned(tree, found).lower()
+
+
+def _word(seen: Analysis) -> str:
+    """Return the words that the agent is asked to say."""
+    match = _SAY.search(seen.normal.text)
+    text = match[1].strip() if match else ""
+    own = {word.lower() for word in text.split()} & {"my", "me", "your", "that", "it", "this"}
+    rude = "insult" in seen.acts or SORROWS & set(seen.feelings)
+    return "" if own or rude or len(text.split()) > 4 else text
+
+
+def _picked(phrases: Material, words: Sequence[Word], turn: int) -> str:
+    """Return things of the kind that a noun names: for *three animals*, three of them."""
+    for word in reversed(words):
+        things = phrases.picks.get(word.lemma.lower(), ())
+        if things and word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "VERB"):
+            many = max((MANY.get(one.low, 1) for one in words), default=1)
+            chosen = [things[(turn + place) % len(things)] for place in range(min(many, len(things)))]
+            return ", ".join(chosen[:-1]) + " and " * (many > 1) + chosen[-1]
+    return ""

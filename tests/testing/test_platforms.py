@@ -1,0 +1,92 @@
+"""The checks of platforms: a platform in memory passes them, and one with a fault does not."""
+
+import asyncio
+from collections import defaultdict
+from collections.abc import Awaitable, Callable
+
+import pytest
+
+from ravestate.testing import CHECKS, Driver, platforms
+from ravestate.testing.platforms import check_answer, check_order, check_restart, check_users
+
+
+class Memory:
+    """The users of a platform in memory. It answers one message twice."""
+
+    def __init__(self, doubled: str = "") -> None:
+        self._doubled = doubled
+        self._answers: dict[str, list[str]] = defaultdict(list)
+
+    async def __aenter__(self) -> None:
+        pass
+
+    async def __aexit__(self, *_: object) -> None:
+        pass
+
+    async def say(self, user: str, text: str) -> None:
+        answers = self._answers[user]
+        answer = str(len(answers) + 1) if text == "count" else text
+        answers += [answer] * (2 if text == self._doubled else 1)
+
+    async def read(self, user: str, count: int) -> list[str]:
+        assert len(self._answers[user]) >= count
+        return list(self._answers[user])
+
+    async def kill(self) -> None:
+        pass
+
+    async def restart(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_a_platform_without_faults_passes(check: Callable[[Driver], Awaitable[None]]) -> None:
+    async def test() -> None:
+        await check(Memory())
+
+    asyncio.run(test())
+
+
+class Late(Memory):
+    """A platform whose second answer to a message is late: it comes with the next message."""
+
+    def __init__(self, doubled: str) -> None:
+        super().__init__()
+        self._late = doubled
+        self._owed: dict[str, str] = {}
+
+    async def say(self, user: str, text: str) -> None:
+        if owed := self._owed.pop(user, ""):
+            await super().say(user, owed)
+        await super().say(user, text)
+        if text == self._late:
+            self._owed[user] = text
+
+
+@pytest.mark.parametrize("platform", [Memory, Late])
+@pytest.mark.parametrize(
+    ("check", "last"),
+    [(check_answer, "x" * 3000), (check_order, "message 11"), (check_users, "count"), (check_restart, "after of emil")],
+)
+def test_a_doubled_last_message_is_a_fault(
+    check: Callable[[Driver], Awaitable[None]], last: str, platform: Callable[[str], Memory]
+) -> None:
+    async def test() -> None:
+        with pytest.raises(AssertionError, match="the user should have received"):
+            await check(platform(last))
+
+    asyncio.run(test())
+
+
+class Silent(Memory):
+    """A platform that answers nobody."""
+
+    async def read(self, user: str, count: int) -> list[str]:
+        await asyncio.Event().wait()
+        return []
+
+
+def test_an_answer_that_never_comes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(platforms, "PATIENCE", 0.01)
+    with pytest.raises(AssertionError, match=r"ada has not received message 1 within 0\.01 s: see whether the agent"):
+        asyncio.run(check_answer(Silent()))
