@@ -40,8 +40,8 @@ GONE = 250
 class Leak:
     """The expected share of the loudspeaker's power in the cleaned sound of the microphone.
 
-    A line without echo (headphones, a recording) hides nobody. It is told by the likeness of the two sounds, because a user
-    who speaks while the agent speaks is as loud as an echo.
+    A line without echo (headphones, a recording) hides nobody. The likeness of the two sounds tells such a line. Their levels
+    cannot tell it, because a user who speaks at the same time is as loud as an echo.
     """
 
     def __init__(self) -> None:
