@@ -1,8 +1,10 @@
 """Opening a conversation: the parts that a line needs, and what is closed with it."""
 
 import asyncio
+import gc
 import threading
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -13,6 +15,7 @@ from ravestate.modules.platform.voiceio import Settings, opening, sound
 from ravestate.modules.platform.voiceio.ear import Turn
 from ravestate.modules.platform.voiceio.echo import EchoCanceller
 from ravestate.modules.platform.voiceio.recogniser import Recognised
+from ravestate.modules.platform.voiceio.turn import Melody
 from ravestate.modules.platform.voiceio.wav_line import WavLine
 from ravestate.modules.platform.webio.line import PageLine
 
@@ -179,3 +182,35 @@ def test_files_and_devices_go_together(
     assert (tmp_path / "out.wav").exists() == written
     if written:
         assert len(sound.decode(tmp_path / "out.wav", 24000)) == 24000
+
+
+def test_words_that_nobody_waits_for_any_more_may_fail_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At Ctrl-C, the process of the model is killed in the middle of its work."""
+    failures: list[object] = []
+    judging = threading.Event()
+
+    class Slow:
+        def complete(self, pcm: bytes) -> float:
+            assert judging.wait(10)
+            return 1.0
+
+    async def talk() -> None:
+        asyncio.get_running_loop().set_exception_handler(lambda _, what: failures.append(what))
+        conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+        conversation.melody = cast(Melody, Slow())
+        rule = asyncio.create_task(conversation.judge(Turn(0.0, 1.0)))
+        while not heard.heard:  # noqa: ASYNC110  # a thread sets it
+            await asyncio.sleep(0)
+        rule.cancel()
+        judging.set()
+        await asyncio.wait([rule])
+        del rule
+        conversation.close()
+        for _ in range(3):
+            await asyncio.sleep(0)
+        gc.collect()
+
+    heard = Scripted(PlatformError("voiceio: the process of whisper ended (killed by signal 9)"))
+    monkeypatch.setattr(opening, "Recogniser", heard)
+    run(talk)
+    assert not failures

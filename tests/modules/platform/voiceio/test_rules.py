@@ -91,6 +91,27 @@ def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypa
     assert runs[0] == runs[1]
 
 
+@pytest.mark.parametrize("name", ["piper", "espeak:en-us"])
+def test_a_user_who_goes_on_while_the_agent_begins_interrupts_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    heard = script(monkeypatch, "Tell me a story.", "About the sea, and my grandmother.")
+    begin = spoken("Please tell me a story.")
+    rest = 0.5 + len(begin) / 32000 + 0.35  # the agent begins at this time
+    parts = (0.5, begin), (rest, "About the sea, the mountains, and my grandmother.")
+    said = talk(
+        wav(tmp_path / "in.wav", track(*parts, length=8.0)),
+        tmp_path / "out.wav",
+        storyteller(),
+        settings=settings(voice=name),
+    )
+    assert sides(said, "user") == ["Tell me a story.", "About the sea, and my grandmother."]
+    story = next(one for one in said if one.speaker == "agent")
+    assert story.cut and story.end < rest + 0.7
+    assert [one.start for one in said] == sorted(one.start for one in said)
+    assert heard.heard[-1] > 2.2  # the whole rest of the sentence
+
+
 def test_the_user_interrupts_and_the_agent_stops_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Tell me a story.", "Stop, that is enough.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))

@@ -33,6 +33,7 @@ class Conversation:
     recogniser: Recogniser
     melody: Melody | None
     settings: Settings
+    closed: bool = False
 
     def close(self, *, linger: bool = False) -> None:
         """Close the line, and let go of the models, which stay loaded for a while if they may `linger`.
@@ -40,6 +41,7 @@ class Conversation:
         Raises:
             PlatformError: The file of the loudspeaker's sound cannot be written. Everything is closed all the same.
         """
+        self.closed = True
         with ExitStack() as parts:  # if one cannot be closed, the others are
             parts.callback(self.mouth.voice.close, linger=linger)
             parts.callback(self.recogniser.close, linger=linger)
@@ -74,7 +76,7 @@ class Conversation:
             complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
             found = await hearing
         finally:
-            hearing.cancel()
+            hearing.cancel()  # nobody waits for the words of a turn that goes on, nor for their error
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:

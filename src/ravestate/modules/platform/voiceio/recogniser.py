@@ -60,8 +60,9 @@ class Recogniser:
                 raise PlatformError("voiceio.recogniser=grammar needs pocketsphinx: pip install 'ravestate[voice]'")
             grammar = Path(settings.model).expanduser().absolute()
             if not settings.model or not grammar.is_file():
+                missing = f"there is no file {settings.model!r}" if settings.model else "none is named"
                 raise PlatformError(
-                    f"voiceio.recogniser=grammar needs a grammar file (JSGF), not {settings.model!r}: "
+                    f"voiceio.recogniser=grammar needs a grammar file (JSGF), but {missing}: "
                     "--set voiceio.model=commands.gram"
                 )
             self._process = model_process.take("grammar", {"path": str(grammar)})

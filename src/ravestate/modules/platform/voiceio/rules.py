@@ -150,6 +150,8 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
         try:
             found = await talk.words(turn.sound, partial=True)
         except PlatformError as error:
+            if talk.closed:  # its process was ended in the middle of the work
+                return rs.Resign("the line is closed")
             ctx.log.warning("%s", error)
             continue
         if found.text:
@@ -172,6 +174,8 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         found, silence = await talk.judge(turn)
     except PlatformError as error:
+        if talk.closed:
+            return rs.Resign("the line is closed")
         ctx.log.error("%s", error)
         found, silence = Recognised("", 0.0), 0.0
         talk.ear.take()
@@ -201,6 +205,8 @@ async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         found, _ = await talk.judge(turn)
     except PlatformError as error:
+        if talk.closed:
+            return rs.Resign("the line is closed")
         ctx.log.error("%s", error)
         return None
     what, text = talk.verdict(turn, found)
@@ -320,7 +326,8 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                 await mouth.played_out()
                 saying.heard = saying.text.strip()
             except PlatformError as error:
-                ctx.log.error("%s", error)
+                if not talk.closed:
+                    ctx.log.error("%s", error)
                 saying.heard = saying.text.strip()  # the text is on the screen, if there is one
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)
