@@ -131,6 +131,7 @@ def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_in_order(folder: Path) -> None:
+    """A thread takes real time, else the virtual clock would reach the end before the signal comes."""
     (folder / "slow.py").write_text(
         STORYTELLER
         + """

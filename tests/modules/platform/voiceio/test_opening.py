@@ -199,15 +199,12 @@ def test_words_that_nobody_waits_for_any_more_may_fail_quietly(monkeypatch: pyte
         conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
         conversation.melody = cast(Melody, Slow())
         rule = asyncio.create_task(conversation.judge(Turn(0.0, 1.0)))
-        while not heard.heard:  # noqa: ASYNC110  # a thread sets it
-            await asyncio.sleep(0)
+        await asyncio.to_thread(heard.begun.wait, 10)
         rule.cancel()
         judging.set()
         await asyncio.wait([rule])
         del rule
         conversation.close()
-        for _ in range(3):
-            await asyncio.sleep(0)
         gc.collect()
 
     heard = Scripted(PlatformError("voiceio: the process of whisper ended (killed by signal 9)"))
