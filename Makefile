@@ -72,9 +72,10 @@ quality: setup ## measure how well text is understood
 setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the environment for development, run nothing
 	@:
 
+# Three processes on two cores: tests with a browser or a server often wait.
 .PHONY: test
 test: setup $(APART) $(DONE)/ros1 $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
-	@$(BIN)/python -m pytest -n 2 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
+	@$(BIN)/python -m pytest -n 3 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
 check: lint types layers docs pages compatibility test ## run everything that continuous integration runs

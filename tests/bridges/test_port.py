@@ -104,6 +104,21 @@ def test_pieces_and_the_whole_text_are_one_utterance() -> None:
     converse(talk, talker)
 
 
+def test_pieces_that_end_in_a_space_are_not_said_twice() -> None:
+    module = rs.Module("module", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def count(ctx: rs.RuleContext) -> None:
+        for piece in ("one ", "two "):
+            ctx.emit(rawio.piece, piece)
+        ctx[rawio.output] = "one two"
+
+    async def talk(conversation: Conversation, _: list[Utterance]) -> None:
+        assert await answer(conversation, "count") == ["one |two "]
+
+    converse(talk, module)
+
+
 def test_a_text_unlike_the_pieces_is_an_utterance_of_its_own() -> None:
     module = rs.Module("module", requires=[rawio])
 

@@ -164,3 +164,15 @@ def test_asking_the_documents_without_the_extra_says_what_to_type(tmp_path: Path
     run = without_the_extra("genqa", "ask", "What is the capital of Peru?", "--index", str(tmp_path / "index"))
     assert run.returncode == 1 and "Traceback" not in run.stderr
     assert "pip install 'ravestate[nlp]'" in complaints(run.stderr)
+
+
+def test_a_missing_microphone_is_told_before_the_agent_greets(started: Any, capsys: Capture) -> None:
+    code, out, errors = call(capsys, "chat", "voiceio", "--set", "voiceio.source=no such microphone")
+    assert (code, out, started) == (1, "", [])
+    assert "no microphone: " in errors or "no recogniser: " in errors
+
+
+def test_a_recording_needs_no_microphone(started: Any, capsys: Capture) -> None:
+    files = ("--set", "voiceio.source=in.wav", "--set", "voiceio.sink=out.wav", "--set", "voiceio.model=tiny.en")
+    assert call(capsys, "chat", "voiceio", *files) == (0, "", "")
+    assert len(started) == 1

@@ -64,3 +64,11 @@ def test_ctrl_c_ends_it_in_order(folder: Path) -> None:
 def test_an_unfit_setting_is_a_fault_of_the_agent(capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = call(capsys, "run", "idle", "--set", "idle.bored_after=abc")
     assert code == 1 and "setting idle.bored_after = 'abc': " in errors
+
+
+def test_a_platform_without_a_user_is_told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """A platform that serves all users leaves none for the console."""
+    monkeypatch.setattr("ravestate.runtime.run.run", lambda *_, **__: None)
+    code, _, errors = call(capsys, "run", "telegramio", "conio", "voiceio")
+    assert code == 0 and "conio and voiceio will have no user: telegramio serves all users" in errors
+    assert call(capsys, "run", "webio", "voiceio") == (0, "", "")  # the page has a microphone

@@ -1,12 +1,15 @@
 """``ravestate voice``: what is missing, transcripts, speech, and conversations with a recording."""
 
 import re
+import signal
+import subprocess
+import sys
 import wave
 from pathlib import Path
 
 import pytest
 
-from cli.examples import call
+from cli.examples import call, complaints
 from modules.platform.voiceio.speech import PEOPLE, noise, track, wav
 
 TINY = ("--set", "voiceio.model=tiny.en", "--set", "voiceio.voice=espeak")
@@ -73,6 +76,8 @@ def test_say_writes_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
         assert file.getframerate() == 24000 and 0.8 < file.getnframes() / 24000 < 4
     code, _, errors = call(capsys, "voice", "say", "Good morning.", "-o", "none/out.wav")
     assert code == 2 and "there is no folder none" in errors
+    code, _, errors = call(capsys, "voice", "say", "Good morning.", "-o", "out.mp3")
+    assert code == 2 and "ends in .wav" in errors
 
 
 def test_talk_holds_a_conversation(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -96,3 +101,60 @@ def test_wrong_use_is_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert code == 2 and "there is no file none.wav" in errors
     code, _, errors = call(capsys, "voice", "check", "--set", "voiceio.half=1")
     assert code == 2 and "half_duplex" in errors
+
+
+def test_a_recording_is_never_overwritten(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = wav(folder / "q.wav", track((0.3, "What time is it?")))
+    before = file.read_bytes()
+    code, _, errors = call(capsys, "voice", "talk", "q.wav", "-o", "./q.wav", "rawio")
+    assert code == 2 and "would be overwritten" in errors and file.read_bytes() == before
+
+
+def test_files_of_another_kind_are_refused_with_the_mend(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wav(folder / "rec.sound", noise(0.1, 500))
+    code, _, errors = call(capsys, "voice", "talk", "rec.sound", "-o", "out.wav", "rawio")
+    assert code == 2 and "rec.sound: name a recording that ends in .wav" in errors
+    code, _, errors = call(capsys, "voice", "say", "Good morning.", "-o", "x.mp3")
+    assert code == 2 and "ends in .wav" in errors and not (folder / "x.mp3").exists()
+    code, _, errors = call(capsys, "voice", "transcribe", str(folder))
+    assert code == 1 and "is a folder" in errors
+
+
+def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A console whose input is no terminal would end the agent at once."""
+    (folder / "echo.py").write_text(STORYTELLER)
+    (folder / "agent.yaml").write_text("modules: [conio, ./echo.py]\nsettings: {conio: {plain: true}}\n")
+    wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
+    code, out, errors = call(capsys, "voice", "talk", "in.wav", "-o", "out.wav", "agent.yaml", *TINY)
+    assert code == 0 and "runs without conio" in errors
+    assert out.splitlines()[-1].endswith("You said something about the weather today.")
+
+
+def test_ctrl_c_ends_a_conversation_in_order(folder: Path) -> None:
+    """A thread takes real time, else the virtual clock would reach the end before the signal comes."""
+    (folder / "slow.py").write_text(
+        STORYTELLER
+        + """
+@module.rule(when=rs.startup)
+async def begin(ctx):
+    print("begun", flush=True)
+
+@module.rule(when=rs.startup.detached(), background=True)
+async def wait(ctx):
+    await ctx.sleep(100000)
+
+@module.rule(when=rs.startup.detached())
+async def keep(ctx):
+    import asyncio, time
+    while True:
+        await asyncio.to_thread(time.sleep, 0.05)
+"""
+    )
+    wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
+    command = [str(Path(sys.executable).parent / "ravestate"), "voice", "talk", "in.wav", "-o", "out.wav", "./slow.py"]
+    with subprocess.Popen([*command, *TINY], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "begun\n"
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert (process.returncode, complaints(errors)) == (130, "")

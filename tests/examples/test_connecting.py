@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import ravestate as rs
+from ravestate.modules import rawio
 from repo.snippets import STAND_INS, blocks_in, save
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "connect-speech-or-a-robot.md"
@@ -52,6 +53,11 @@ def test_a_robot_is_heard_and_told_what_to_say() -> None:
     assert asyncio.run(talk()) == ["Good night.", "Good night."]
     assert "ros" not in [thread.name for thread in threading.enumerate()]
     assert asyncio.run(talk()) == ["Good night.", "Good night."]  # it may be begun again
+
+
+def test_the_telephone_is_a_whole_line() -> None:
+    telephone = import_module("telephone").Telephone
+    assert {name for name in vars(rawio.Line) if not name.startswith("_")} <= set(dir(telephone))
 
 
 def test_a_program_speaks_and_is_silent_when_cancelled(tmp_path: Path) -> None:

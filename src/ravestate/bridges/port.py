@@ -217,10 +217,8 @@ class Conversation:
 
     def _utter(self, text: str) -> None:
         growing = self._growing
-        so_far = "" if growing is None else growing.text.strip()  # pieces may end in a space that the whole lacks
-        if growing is not None and text.strip().startswith(so_far):
-            rest = text.strip()[len(so_far) :]
-            growing.grow(rest.lstrip() if growing.text[-1:].isspace() else rest)
+        if growing is not None and (rest := rawio.rest(text, growing.text)) is not None:
+            growing.grow(rest)
             self._fall_silent()
         elif text.strip():
             utterance = Utterance()

@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ravestate.errors import UsageError
-from ravestate.loading.spec import AgentSpec
+from ravestate.loading.spec import AgentSpec, with_required
 from ravestate.modules import BUILT_IN
 
 
@@ -64,6 +64,36 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
     if options.seed is not None:
         agent.seed = options.seed
     return agent
+
+
+def announce_platforms(agent: AgentSpec, command: str) -> None:
+    """Print which platforms have no user, because another one serves all users."""
+    modules = with_required(agent.modules)
+    servers = [module.name for module in modules if module.serve is not None]
+    # The page of webio has a microphone of its own, for which it needs voiceio.
+    idle = [name for name in ("conio", "voiceio") if any(module.name == name for module in agent.modules)]
+    idle = [name for name in idle if name != "voiceio" or "webio" not in servers]
+    if servers and idle:
+        print(
+            f"ravestate {command}: {' and '.join(idle)} will have no user: {' and '.join(servers)} serves all users",
+            file=sys.stderr,
+        )
+
+
+def check_voice(agent: AgentSpec) -> None:
+    """Check the parts of speech before the agent greets, if the agent listens to this machine's microphone.
+
+    Raises:
+        PlatformError: A part is missing.
+    """
+    modules = with_required(agent.modules)
+    if all(module.name != "voiceio" for module in modules) or any(module.serve is not None for module in modules):
+        return
+    from ravestate.modules import voiceio
+    from ravestate.modules.platform.voiceio.checking import require
+    from ravestate.settings import load_settings
+
+    require(load_settings([voiceio.module], {"voiceio": agent.settings.get("voiceio", {})})["voiceio"])
 
 
 def listing() -> str:

@@ -21,6 +21,8 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.runtime.run import run as run_modules
 
     chosen = agent.load_agent(options, ["conio", *complete.names(options)])
+    agent.check_voice(chosen)
+    agent.announce_platforms(chosen, options.command)
     complete.leave_out_absent(chosen, options.command)
     complete.choose_small_talk(chosen, options.command)
     run_modules(*chosen.modules, **chosen.options())

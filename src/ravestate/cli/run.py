@@ -18,5 +18,6 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.runtime.run import run as run_modules
 
     chosen = agent.load_agent(options)
+    agent.announce_platforms(chosen, options.command)
     run_modules(*chosen.modules, **chosen.options())
     return 0

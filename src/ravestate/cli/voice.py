@@ -11,6 +11,7 @@ from ravestate.cli import complete
 from ravestate.cli.agent import load_agent
 from ravestate.errors import PlatformError, UsageError
 from ravestate.loading.spec import AgentSpec
+from ravestate.modules import BUILT_IN
 
 if TYPE_CHECKING:
     from ravestate.modules.platform.voiceio import Settings
@@ -107,14 +108,11 @@ def _transcribe(options: argparse.Namespace) -> int:
     settings = settings_of(options)
     failed = 0
     for file in options.files:
-        if not file.is_file():
-            print(f"ravestate voice: there is no file {file}", file=sys.stderr)
-            failed = 1
-            continue
         try:
+            _check_source(file)
             found = voiceio.transcribe(file, settings)
-        except PlatformError as error:
-            if len(options.files) == 1:
+        except (PlatformError, UsageError) as error:
+            if len(options.files) == 1 and isinstance(error, PlatformError):
                 raise
             print(f"ravestate voice: {error}", file=sys.stderr)
             failed = 1
@@ -133,11 +131,15 @@ def _say(options: argparse.Namespace) -> int:
 
 
 def _talk(options: argparse.Namespace) -> int:
+    from ravestate.modules.platform.voiceio.opening import is_file
     from ravestate.testing import talk
 
-    if not options.recording.is_file():
-        raise UsageError(f"there is no file {options.recording}")
+    _check_source(options.recording)
+    if not is_file(str(options.recording)):
+        raise UsageError(f"{options.recording}: name a recording that ends in .wav, .ogg, .mp3, .flac, .m4a or .opus")
     _check_target(options.output)
+    if options.output.exists() and options.output.samefile(options.recording):
+        raise UsageError(f"-o {options.output} is the recording itself, which would be overwritten: name another file")
     complete_agent = not options.modules and not options.file
     if complete_agent:
         options.without = []
@@ -145,6 +147,7 @@ def _talk(options: argparse.Namespace) -> int:
     if complete_agent:
         complete.leave_out_absent(agent, "voice")
         complete.choose_small_talk(agent, "voice")
+    _leave_out_platforms(agent)
     talk(options.recording, options.output, *agent.modules, settings=agent.settings, seed=agent.seed, show=_show)
     return 0
 
@@ -154,6 +157,27 @@ def _show(one: Said) -> None:
     print(f"{one.start:8.2f} {one.end:8.2f}  {one.speaker + ':':<6} {one.text}{mark}", flush=True)
 
 
+def _leave_out_platforms(agent: AgentSpec) -> None:
+    """Remove the other platforms: the recording is the user, and a console without a terminal would end the agent."""
+    out = [one.name for one in agent.modules if BUILT_IN.get(one.name) == "platform" and one.name != "voiceio"]
+    if out:
+        agent.modules = [one for one in agent.modules if one.name not in out]
+        for name in out:
+            agent.settings.pop(name, None)
+        print(
+            f"ravestate voice: the user is the recording, so the agent runs without {', '.join(out)}", file=sys.stderr
+        )
+
+
+def _check_source(path: Path) -> None:
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder: name a recording")
+    if not path.is_file():
+        raise UsageError(f"there is no file {path}")
+
+
 def _check_target(path: Path) -> None:
+    if path.suffix.lower() != ".wav":
+        raise UsageError(f"cannot write {path}: the sound is written as WAV, so name a file that ends in .wav")
     if not path.parent.is_dir():
         raise UsageError(f"cannot write {path}: there is no folder {path.parent}")

@@ -80,24 +80,24 @@ class Group:
         if self.interested is NOTHING:
             self.interested = {activation: None}
         else:
-            self.interested[activation] = None  # type: ignore[index]  # as above
+            self.interested[activation] = None  # type: ignore[index]  # a dict, as it is not NOTHING
 
     def forget(self, activation: Activation) -> None:
         """Remove an activation that no longer waits from `interested`."""
         if activation in self.interested:
-            self.interested.pop(activation)  # type: ignore[attr-defined]  # as above
+            self.interested.pop(activation)  # type: ignore[attr-defined]  # a dict: NOTHING is empty
 
     def enter(self, spike: Spike) -> None:
         """Note that a half holds a spike of the group."""
         if self.entries is NOTHING:
             self.entries = {spike: None}
         else:
-            self.entries[spike] = None  # type: ignore[index]  # as above
+            self.entries[spike] = None  # type: ignore[index]  # a dict, as it is not NOTHING
 
     def leave(self, spike: Spike) -> None:
         """Note that no half holds the spike any more."""
         if spike in self.entries:
-            self.entries.pop(spike)  # type: ignore[attr-defined]  # as above
+            self.entries.pop(spike)  # type: ignore[attr-defined]  # a dict: NOTHING is empty
 
     def absorb(self, other: Group) -> None:
         """Make `other` part of this group. A slot that is taken for good in either group stays taken."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal
 
+from ravestate.declare.core import shutdown
 from ravestate.declare.module import Module
 from ravestate.errors import EngineError
 from ravestate.runtime.context import Context
@@ -63,10 +64,11 @@ def talk(
         record: Called with each record of the trace.
 
     Raises:
-        PlatformError: The recording cannot be read, or a model or a program is missing.
+        PlatformError: The recording cannot be read, the output is no WAV file or cannot be written, or a model or a program is missing.
         EngineError: An event loop runs in this thread already.
     """
     from ravestate.modules import voiceio
+    from ravestate.modules.platform.voiceio.wav_line import check_target
 
     try:
         asyncio.get_running_loop()
@@ -82,21 +84,21 @@ def talk(
             show(one)
 
     given = {name: dict(values) for name, values in (settings or {}).items()}
-    files = {"source": str(Path(recording).absolute())} | ({"sink": str(Path(output).absolute())} if output else {})
+    if output:
+        check_target(Path(output))
+    files = {"source": str(Path(recording).absolute()), "sink": str(Path(output).absolute()) if output else ""}
     given["voiceio"] = {**given.get("voiceio", {}), **files}
     context = Context(*modules, voiceio, _witness(note), settings=given, seed=seed, trace=record or False)
-    loop = VirtualLoop()
 
     async def hold() -> None:
+        loop = asyncio.get_running_loop()
+        assert isinstance(loop, VirtualLoop)
         async with context:
             loop.busy = context.plain_functions
             await context.until_stopped()
 
-    try:
-        loop.run_until_complete(hold())
-        loop.run_until_complete(loop.shutdown_asyncgens())
-    finally:
-        loop.close()
+    with asyncio.Runner(loop_factory=VirtualLoop) as runner:  # at Ctrl-C, it lets the agent end in order
+        runner.run(hold())
     return said
 
 
@@ -106,12 +108,21 @@ def _witness(note: Callable[[Said], None]) -> Module:
 
     witness = Module("transcript", requires=[voiceio])
     begun: list[Speech] = []
+    waiting: list[Said] = []
+
+    def show_waiting() -> None:
+        """Note the user's utterances, after the agent's utterance that they interrupted."""
+        if not any(one.start and not one.over for one in begun):
+            for one in waiting:
+                note(one)
+            waiting.clear()
 
     @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
     async def hear_user(ctx: RuleContext) -> None:
         """Note an utterance of the user."""
         one = ctx.payload(voiceio.utterance)
-        note(Said("user", one.text, one.start, one.end))
+        waiting.append(Said("user", one.text, one.start, one.end))
+        show_waiting()
 
     @witness.rule(when=voiceio.speech.max_age(None).detached(), background=True)
     async def wait_for_agent(ctx: RuleContext) -> None:
@@ -129,6 +140,13 @@ def _witness(note: Callable[[Said], None]) -> Module:
             if one.heard.strip():
                 cut = one.heard.strip() != one.text.strip()
                 note(Said("agent", one.heard.strip(), one.start, one.end, cut, not one.counts))
+        show_waiting()
 
-    del hear_user, wait_for_agent, hear_agent
+    @witness.rule(when=shutdown)
+    async def end(ctx: RuleContext) -> None:
+        """Note the rest."""
+        begun.clear()
+        show_waiting()
+
+    del hear_user, wait_for_agent, hear_agent, end
     return witness

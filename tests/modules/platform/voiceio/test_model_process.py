@@ -175,3 +175,22 @@ def test_processes_that_linger_end_with_the_interpreter(children: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     with pytest.raises(ProcessLookupError):
         os.kill(int(done.stdout), 0)
+
+
+def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: ModelProcess) -> None:
+    """The answers to superseded requests would keep the last one waiting."""
+    unwanted, refused = threading.Event(), list[str]()
+
+    def ask() -> None:
+        with pytest.raises(PlatformError, match="was dropped") as caught:
+            process.request({"do": "die"}, seconds=20, unwanted=unwanted)
+        refused.append(str(caught.value))
+
+    process.start()
+    with process._turn:  # another request is under way
+        waiting = threading.Thread(target=ask)
+        waiting.start()
+        unwanted.set()
+    waiting.join()
+    assert refused and process.request({"do": "go on"}, seconds=20, unwanted=threading.Event())[0]["pid"] == process.pid
+    assert process.restarts == 0

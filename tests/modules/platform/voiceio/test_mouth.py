@@ -161,21 +161,10 @@ def test_a_growing_text_gives_its_sentences() -> None:
             speech.grow(piece)
             await _wait(0.1)
             assert len(found) == count
-        speech.finish("Once there was a robot. It lived in a museum. The end.")
+        speech.grow(" The end.")
+        speech.finish()
         await following
         assert "".join(text for _, text in found) == speech.text
         assert found[1][0] == 23
-
-    run(listen)
-
-
-def test_another_text_is_spoken_from_its_beginning() -> None:
-    async def listen() -> None:
-        speech = Speech()
-        speech.grow("Once there was a robot. It")
-        sentences = speech.sentences()
-        assert (await anext(sentences))[1] == "Once there was a robot."
-        speech.finish("Good night to you.")
-        assert [text async for _, text in sentences] == ["Good night to you."]
 
     run(listen)

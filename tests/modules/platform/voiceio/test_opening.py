@@ -1,12 +1,21 @@
 """Opening a conversation: the parts that a line needs, and what is closed with it."""
 
+import asyncio
+import gc
+import threading
+from pathlib import Path
+from typing import cast
+
 import pytest
 
-from modules.platform.voiceio.speech import FAST, Scripted
+from modules.platform.voiceio.speech import FAST, Scripted, wav
 from modules.platform.voiceio.test_wav_line import run
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.voiceio import Settings, opening
+from ravestate.modules.platform.voiceio import Settings, opening, sound
+from ravestate.modules.platform.voiceio.ear import Turn
 from ravestate.modules.platform.voiceio.echo import EchoCanceller
+from ravestate.modules.platform.voiceio.recogniser import Recognised
+from ravestate.modules.platform.voiceio.turn import Melody
 from ravestate.modules.platform.voiceio.wav_line import WavLine
 from ravestate.modules.platform.webio.line import PageLine
 
@@ -45,7 +54,11 @@ def test_a_device_is_closed_again_if_a_later_part_is_missing(monkeypatch: pytest
         raise PlatformError("no model of voice activity")
 
     monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))
-    monkeypatch.setattr(opening, "_device", lambda _: line)
+
+    async def opened(_: Settings) -> WavLine:
+        return line
+
+    monkeypatch.setattr(opening, "_line", opened)
     monkeypatch.setattr(opening, "Ear", fail)
 
     async def talk() -> None:
@@ -54,3 +67,147 @@ def test_a_device_is_closed_again_if_a_later_part_is_missing(monkeypatch: pytest
         assert [block async for block in line.blocks()] == []
 
     run(talk)
+
+
+def test_all_parts_are_closed_if_the_sound_cannot_be_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    closed: list[str] = []
+    scripted = Scripted("Hello.")
+    monkeypatch.setattr(scripted, "close", lambda **_: closed.append("recogniser"))
+    monkeypatch.setattr(opening, "Recogniser", scripted)
+
+    async def talk() -> None:
+        line = WavLine(None, tmp_path / "out.wav")
+        line.begin()
+        conversation = await opening.open_conversation(line, Settings(**FAST["voiceio"]), pytest.fail)
+        monkeypatch.setattr(conversation.mouth.voice, "close", lambda **_: closed.append("voice"))
+        (tmp_path / "out.wav").unlink()
+        (tmp_path / "out.wav").mkdir()
+        with pytest.raises(PlatformError, match="cannot write"):
+            conversation.close()
+
+    run(talk)
+    assert closed == ["recogniser", "voice"]
+
+
+def test_words_of_a_turn_that_goes_on_are_unwanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The user speaks again while the words of the first part are recognised."""
+    scripted, begun, asked = Scripted("Hello."), threading.Event(), list[threading.Event]()
+
+    def recognise(_: bytes, *, partial: bool = False, unwanted: threading.Event) -> Recognised:
+        asked.append(unwanted)
+        begun.set()
+        assert unwanted.wait(20.0)
+        return Recognised("", 0.0)
+
+    monkeypatch.setattr(scripted, "recognise", recognise)
+    monkeypatch.setattr(opening, "Recogniser", scripted)
+
+    async def talk() -> None:
+        conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+        judging = asyncio.create_task(conversation.judge(Turn(0.0, 1.0, chunks=[bytes(32000)])))
+        await asyncio.to_thread(begun.wait)
+        judging.cancel()
+        await asyncio.wait([judging])
+        assert judging.cancelled() and asked[0].is_set()
+        conversation.close()
+
+    asyncio.run(talk())
+
+
+def test_the_model_of_melodies_stays_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))
+
+    async def talk() -> None:
+        found: list[object] = []
+        for _ in range(2):
+            conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+            found.append(conversation.melody)
+            conversation.close()
+        assert found[0] is found[1] is not None
+
+    run(talk)
+
+
+class Devices(WavLine):
+    """The machine's devices, in place of PortAudio."""
+
+    def __init__(self, *names: str) -> None:
+        super().__init__(None)
+        self.names = names
+
+
+@pytest.mark.parametrize(
+    ("source", "sink", "devices", "written"),
+    [
+        ("in.wav", "default", ("", "default"), False),
+        ("default", "out.wav", ("default", ""), True),
+        ("default", "", ("default", ""), False),
+        ("default", "Headset", ("default", "Headset"), False),
+        ("in.wav", "out.wav", None, True),
+        ("in.wav", "", None, False),
+    ],
+)
+def test_files_and_devices_go_together(
+    source: str,
+    sink: str,
+    devices: tuple[str, str] | None,
+    written: bool,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    opened: list[Devices] = []
+
+    def open_devices(*names: str) -> Devices:
+        opened.append(Devices(*names))
+        return opened[0]
+
+    monkeypatch.setattr(opening, "_devices", open_devices)
+    monkeypatch.chdir(tmp_path)
+    wav(tmp_path / "in.wav", b"\1\1" * 16000)
+
+    async def talk() -> None:
+        line = await opening._line(Settings(source=source, sink=sink))
+        line.play(b"\2\2" * 12000)
+        block = await anext(aiter(line.blocks()))
+        assert any(block) == (source == "in.wav")
+        await line.drained()
+        assert line.played == 0.5
+        assert bool(opened) == (devices is not None)
+        if opened:
+            assert opened[0].names == devices
+            assert bool(opened[0].played) == (sink in ("default", "Headset"))
+        line.close()
+
+    run(talk)
+    assert (tmp_path / "out.wav").exists() == written
+    if written:
+        assert len(sound.decode(tmp_path / "out.wav", 24000)) == 24000
+
+
+def test_words_that_nobody_waits_for_any_more_may_fail_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At Ctrl-C, the process of the model is killed in the middle of its work."""
+    failures: list[object] = []
+    judging = threading.Event()
+
+    class Slow:
+        def complete(self, pcm: bytes) -> float:
+            assert judging.wait(10)
+            return 1.0
+
+    async def talk() -> None:
+        asyncio.get_running_loop().set_exception_handler(lambda _, what: failures.append(what))
+        conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+        conversation.melody = cast(Melody, Slow())
+        rule = asyncio.create_task(conversation.judge(Turn(0.0, 1.0)))
+        await asyncio.to_thread(heard.begun.wait, 10)
+        rule.cancel()
+        judging.set()
+        await asyncio.wait([rule])
+        del rule
+        conversation.close()
+        gc.collect()
+
+    heard = Scripted(PlatformError("voiceio: the process of whisper ended (killed by signal 9)"))
+    monkeypatch.setattr(opening, "Recogniser", heard)
+    run(talk)
+    assert not failures

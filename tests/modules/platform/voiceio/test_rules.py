@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import wave
 from pathlib import Path
 from typing import Any
@@ -90,6 +91,27 @@ def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypa
     assert runs[0] == runs[1]
 
 
+@pytest.mark.parametrize("name", ["piper", "espeak:en-us"])
+def test_a_user_who_goes_on_while_the_agent_begins_interrupts_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    heard = script(monkeypatch, "Tell me a story.", "About the sea, and my grandmother.")
+    begin = spoken("Please tell me a story.")
+    rest = 0.5 + len(begin) / 32000 + 0.35  # the agent begins at this time
+    parts = (0.5, begin), (rest, "About the sea, the mountains, and my grandmother.")
+    said = talk(
+        wav(tmp_path / "in.wav", track(*parts, length=8.0)),
+        tmp_path / "out.wav",
+        storyteller(),
+        settings=settings(voice=name),
+    )
+    assert sides(said, "user") == ["Tell me a story.", "About the sea, and my grandmother."]
+    story = next(one for one in said if one.speaker == "agent")
+    assert story.cut and story.end < rest + 0.7
+    assert [one.start for one in said] == sorted(one.start for one in said)
+    assert heard.heard[-1] > 2.2  # the whole rest of the sentence
+
+
 def test_the_user_interrupts_and_the_agent_stops_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Tell me a story.", "Stop, that is enough.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))
@@ -168,6 +190,44 @@ def test_low_confidence_asks_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     said = talk(wav(tmp_path / "in.wav", track(TELL, length=3.0)), None, storyteller(), settings=FAST)
     (answer,) = sides(said, "agent")
     assert any(word in answer for word in ("catch", "again", "repeat"))
+
+
+def teller(pieces: tuple[str, ...], *outputs: str) -> rs.Module:
+    """An agent that says pieces without the flag ``rawio.speaking``, and then writes these utterances."""
+    module = rs.Module("teller", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        for piece in pieces:
+            await ctx.sleep(0.1)
+            ctx.emit(rawio.piece, piece)
+        for text in outputs:
+            ctx[rawio.output] = text
+
+    del tell
+    return module
+
+
+@pytest.mark.parametrize(
+    ("pieces", "outputs", "spoken"),
+    [
+        (("Once there ", "was a robot. "), ("Once there was a robot.",), ["Once there was a robot."]),
+        (("Once there ", "was"), ("Once there was a robot.",), ["Once there was a robot."]),
+        (("It was a ",), ("Sorry, I forgot it.",), ["It was a", "Sorry, I forgot it."]),
+    ],
+)
+def test_pieces_are_spoken_once_and_another_text_follows_them(
+    pieces: tuple[str, ...],
+    outputs: tuple[str, ...],
+    spoken: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Also if the pieces end in a space that the whole utterance lacks, and without the flag ``rawio.speaking``."""
+    script(monkeypatch, "Tell me a story.")
+    file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
+    said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
+    assert sides(said, "agent") == spoken
 
 
 def test_a_filler_is_spoken_when_the_answer_takes_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -296,6 +356,28 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
 
     run(follow)
     assert opened[0] is opened[1]
+
+
+def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the conversation, or at its end if the file is lost only then."""
+    script(monkeypatch, "Hello.")
+    file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
+    with pytest.raises(PlatformError, match=r"ends in \.wav"):
+        talk(file, tmp_path / "out", storyteller(), settings=FAST)
+
+    def lose(_: Said) -> None:
+        if out.is_file():
+            out.unlink()
+            out.mkdir()
+
+    with pytest.raises(PlatformError, match="cannot write"):
+        talk(file, out, storyteller(), settings=FAST, show=lose)
+
+
+def test_the_names_in_the_readme_are_there() -> None:
+    readme = (Path(voiceio.__file__).parent / "README.md").read_text(encoding="utf-8")
+    names = re.findall(r"^\| `voiceio\.(\w+)", readme, re.MULTILINE)
+    assert len(names) > 10 and set(names) <= set(voiceio.__all__)
 
 
 def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:

@@ -27,3 +27,17 @@ def test_the_parts_make_the_whole() -> None:
 def test_emoji_and_marks_are_not_spoken_and_places_stay() -> None:
     assert speakable("*Hi* there 😊!") == " Hi  there  !"
     assert speakable("😊 …") == ""
+
+
+def test_chinese_and_japanese_sentences_end_without_a_space() -> None:
+    text = "从前有一个机器人，它住在博物馆里。有一天晚上，它听到了奇怪的声音！“那是什么？”它"
+    assert [sentence for _, sentence in sentences(text, whole=False)] == [
+        "从前有一个机器人，它住在博物馆里。",
+        "有一天晚上，它听到了奇怪的声音！",
+    ]
+    assert list(sentences("这是一个很长很长的句子吗？", whole=False)) == []  # another mark may follow
+    quoted = "「昔々、ロボットがいたそうです。」と彼女は静かに言いました。次"
+    assert [sentence for _, sentence in sentences(quoted, whole=False)] == [
+        "「昔々、ロボットがいたそうです。」",
+        "と彼女は静かに言いました。",
+    ]

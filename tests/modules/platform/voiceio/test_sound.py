@@ -67,3 +67,15 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match="cannot write"):
         sound.write_wav(tmp_path / "none" / "out.wav", bytes(100), 16000)
+
+
+def test_a_long_sound_is_cut_in_quiet_moments() -> None:
+    loud = np.random.default_rng(0).normal(0, 3000, 16000 * 70).astype("<i2")
+    for second in (10, 24, 45):  # the first one is too early for a cut
+        loud[16000 * second : 16000 * second + 6400] //= 50
+    found = list(sound.pieces(loud.tobytes(), 16000, 28.0))
+    assert b"".join(found) == loud.tobytes()
+    lengths = [len(piece) / 32000 for piece in found]
+    assert lengths[:2] == [pytest.approx(24.2, abs=0.1), pytest.approx(21.0, abs=0.1)] and max(lengths) <= 28.0
+    assert list(sound.pieces(b"\1\1" * 100, 16000, 28.0)) == [b"\1\1" * 100]
+    assert max(len(piece) for piece in sound.pieces(bytes(32000 * 600), 16000, 28.0)) <= 28 * 32000

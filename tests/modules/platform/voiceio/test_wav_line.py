@@ -81,3 +81,10 @@ def test_a_missing_recording_is_refused(tmp_path: Path) -> None:
             WavLine(tmp_path / "none.wav")
 
     run(follow)
+
+
+@pytest.mark.parametrize("name", ["folder.wav", "none/out.wav", "out.mp3", "out"])
+def test_a_sink_that_cannot_be_written_is_refused_at_once(name: str, tmp_path: Path) -> None:
+    (tmp_path / "folder.wav").mkdir()
+    with pytest.raises(PlatformError, match="cannot write"):
+        WavLine(None, tmp_path / name)

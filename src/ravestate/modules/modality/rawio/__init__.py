@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .line import IN_RATE, OUT_RATE, Line
-from .listener import Listener, carry
+from .listener import Listener, carry, rest
 from .names import heard, hearing, hush, input, module, output, picture, piece, reaction, sound, speaking, typing
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ __all__ = [
     "picture",
     "piece",
     "reaction",
+    "rest",
     "say",
     "sound",
     "speaking",

@@ -24,6 +24,11 @@ class Line(Protocol):
         """Whether the user's sound comes without the loudspeaker's echo, as from a browser."""
         ...
 
+    @property
+    def ended(self) -> bool:
+        """Whether the user's sound has come to its end, as a recording does. Only silence follows."""
+        ...
+
     def blocks(self) -> AsyncIterator[bytes]:
         """Yield the user's sound at `IN_RATE`, in blocks of about 20 ms, until the line is closed."""
         ...

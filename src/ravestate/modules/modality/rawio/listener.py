@@ -25,6 +25,27 @@ class Listener(Protocol):
         ...
 
 
+def rest(text: str, pieces: str) -> str | None:
+    """Return the part of an utterance that follows its pieces; None if the pieces belong to another utterance.
+
+    Space at the ends does not count, because the pieces of a model often end in a space that the utterance lacks.
+
+    Args:
+        text: The whole utterance, from ``output``.
+        pieces: The pieces so far, from ``piece``.
+
+    Example:
+        >>> rest("Once there was", "Once "), rest("Once", "Once "), rest("Hello", "Once ")
+        ('there was', '', None)
+    """
+    text, pieces = text.lstrip(), pieces.lstrip()
+    shown = pieces.rstrip()
+    space, after = pieces[len(shown) :], text[len(shown) :]
+    if not text.startswith(shown) or (space and after[:1].isalnum()):
+        return None
+    return after.removeprefix(space) if after.strip() else ""
+
+
 def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
     """Declare the rules that carry ``output`` and ``piece`` to the `Listener` in a slot of the module."""
 

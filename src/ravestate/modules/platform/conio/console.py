@@ -12,6 +12,7 @@ from typing import Literal, Protocol, TextIO
 
 from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
+from ravestate.modules import rawio
 from ravestate.modules._text import printable, without_controls
 
 _FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
@@ -126,8 +127,8 @@ class Console:
         another way, the streamed line ends first, and later pieces continue on a new line.
         """
         text = printable(text)
-        if self._streamed and text.startswith(self._streamed):
-            self.grow(text[len(self._streamed) :])
+        if self._streamed and (rest := rawio.rest(text, self._streamed)) is not None:
+            self.grow(rest)
             self.fall_silent()
         else:
             self._end_line()

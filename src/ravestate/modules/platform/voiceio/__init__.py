@@ -7,6 +7,7 @@ from .manner import Prosody
 from .names import (
     Settings,
     agent_speaking,
+    another_speaks,
     back_channel,
     barge_in,
     conversation,
@@ -28,6 +29,7 @@ __all__ = [
     "Settings",
     "Utterance",
     "agent_speaking",
+    "another_speaks",
     "back_channel",
     "barge_in",
     "conversation",

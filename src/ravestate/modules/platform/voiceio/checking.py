@@ -36,6 +36,17 @@ def check(settings: Settings) -> list[Line]:
     ]
 
 
+def require(settings: Settings) -> None:
+    """Check the recogniser, the microphone and the loudspeaker before a conversation begins.
+
+    Raises:
+        PlatformError: A part is missing; the message says how to get it.
+    """
+    for line in (_packages(settings), _recogniser(settings), *_devices(settings)):
+        if not line.present:
+            raise PlatformError(f"no {line.part}: {line.text}")
+
+
 def _packages(settings: Settings) -> Line:
     wanted = ["numpy", "onnxruntime", "av", "faster_whisper"]
     wanted += ["pocketsphinx"] if settings.recogniser == "grammar" else []
@@ -48,7 +59,7 @@ def _packages(settings: Settings) -> Line:
 def _recogniser(settings: Settings) -> Line:
     if settings.recogniser == "grammar":
         there = Path(settings.model).expanduser().is_file()
-        text = settings.model if there else f"no grammar {settings.model!r}: --set voiceio.model=commands.gram"
+        text = settings.model if there else f"there is no file {settings.model!r}: --set voiceio.model=commands.gram"
         return Line("grammar", there, True, text)
     try:
         chosen = whisper_model(settings.model)
@@ -125,6 +136,9 @@ def _devices(settings: Settings) -> list[Line]:
     else:
         why = "no device: plug one in, speak through the web page (`make demo`), or name WAV files"
     for part, name, channel in (("microphone", settings.source, 1), ("loudspeaker", settings.sink, 2)):
+        if not name:
+            lines.append(Line(part, False, False, "none: the sound is dropped"))
+            continue
         if is_file(name):
             lines.append(Line(part, True, False, f"the file {name}"))
             continue

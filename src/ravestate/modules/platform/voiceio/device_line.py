@@ -17,7 +17,7 @@ BLOCK = 0.02
 WAITING = 200
 """The blocks of sound that wait for a slow agent; older ones are dropped."""
 GONE = 2.0
-"""The seconds without a block after which the microphone counts as unplugged."""
+"""The seconds after which a device that neither brings nor takes sound counts as unplugged."""
 AGAIN = 2.0
 """The seconds between two attempts to open a device that was unplugged."""
 
@@ -26,7 +26,7 @@ class DeviceLine:
     """A microphone and a loudspeaker.
 
     Args:
-        source, sink: The devices' names, or parts of them; ``default`` for the system's choice.
+        source, sink: The devices' names, or parts of them; ``default`` for the system's choice; empty for none.
 
     Raises:
         PlatformError: PortAudio is missing, or a device cannot be opened.
@@ -34,6 +34,8 @@ class DeviceLine:
 
     cancels_echo = False
     """Whether the sound comes without the loudspeaker's echo."""
+    ended = False
+    """Whether the microphone's sound has come to its end."""
 
     def __init__(self, source: str = "default", sink: str = "default") -> None:
         self._names = source, sink
@@ -46,46 +48,51 @@ class DeviceLine:
         self._empty.set()
         self._closed = False
         self._streams: list[Any] = []
+        self._taken = self._given = 0.0
         self.lost = 0
         """How often a device was unplugged."""
         self._open()
+        self._watch = asyncio.create_task(self._keep_open())
 
-    def _open(self) -> None:
+    def _open(self, *, again: bool = False) -> None:
+        """Open the devices; `again`, do without a loudspeaker that is still away, so that the agent goes on listening."""
         sound = portaudio()
-        source, sink = (None if name == "default" else name for name in self._names)
-        common = {"channels": 1, "dtype": "int16"}
-        streams: list[Any] = []
-        try:
-            streams.append(
-                sound.RawInputStream(IN_RATE, round(BLOCK * IN_RATE), device=source, callback=self._take, **common)
-            )
-            streams.append(
-                sound.RawOutputStream(OUT_RATE, round(BLOCK * OUT_RATE), device=sink, callback=self._give, **common)
-            )
-            for stream in streams:
-                stream.start()
-        except (sound.PortAudioError, ValueError) as error:
-            for stream in streams:
-                stream.close()
-            what = ("loudspeaker", "sink") if streams else ("microphone", "source")
-            raise PlatformError(
-                f"voiceio cannot open the {what[0]} ({error}): choose one with --set voiceio.{what[1]}=NAME; "
-                "`ravestate voice check` lists the devices"
-            ) from error
-        self._streams = streams
+        parts = (
+            ("microphone", "source", sound.RawInputStream, IN_RATE, self._take),
+            ("loudspeaker", "sink", sound.RawOutputStream, OUT_RATE, self._give),
+        )
+        self._taken = self._given = self._loop.time()
+        for name, (what, setting, stream, rate, callback) in zip(self._names, parts, strict=True):
+            if not name:
+                continue
+            device = None if name == "default" else name
+            try:
+                self._streams.append(
+                    stream(rate, round(BLOCK * rate), device=device, callback=callback, channels=1, dtype="int16")
+                )
+                self._streams[-1].start()
+            except (sound.PortAudioError, ValueError) as error:
+                if again and what == "loudspeaker":
+                    self.stop()  # nobody hears it; the next sound looks for the loudspeaker again
+                    continue
+                self._shut()
+                raise PlatformError(
+                    f"voiceio cannot open the {what} ({error}): choose one with --set voiceio.{setting}=NAME; "
+                    "`ravestate voice check` lists the devices"
+                ) from error
 
     async def blocks(self) -> AsyncIterator[bytes]:
         """Yield the microphone's sound. An unplugged device is opened again when it is back."""
-        while not self._closed:
-            try:
-                async with asyncio.timeout(GONE):
-                    block = await self._blocks.get()
-            except TimeoutError:
-                await self._reopen()
-                continue
-            if block is None:
-                return
+        while not self._closed and (block := await self._blocks.get()) is not None:
             yield block
+
+    async def _keep_open(self) -> None:
+        """Open the devices again if one was unplugged: it then neither fails nor works."""
+        while not self._closed:
+            await asyncio.sleep(GONE / 4)
+            late = self._loop.time() - GONE
+            if (self._names[0] and self._taken < late) or (self._queue and self._given < late):
+                await self._reopen()
 
     async def _reopen(self) -> None:
         self.lost += 1
@@ -93,14 +100,17 @@ class DeviceLine:
         while not self._closed:
             with contextlib.suppress(PlatformError):
                 await asyncio.to_thread(restart)
-                self._open()
+                self._open(again=True)
                 return
+            self.stop()
             await asyncio.sleep(AGAIN)
 
     def play(self, sound: bytes) -> None:
         """Queue sound for the loudspeaker."""
         with self._lock:
             if sound and not self._closed:
+                if not self._queue:
+                    self._given = self._loop.time()
                 self._queue += sound
                 self._empty.clear()
 
@@ -122,6 +132,7 @@ class DeviceLine:
     def close(self) -> None:
         """Close the devices."""
         self._closed = True
+        self._watch.cancel()
         self._shut()
         self.stop()
         self._put(None)
@@ -136,11 +147,13 @@ class DeviceLine:
     # The following methods run in PortAudio's threads.
 
     def _take(self, data: Any, *_: Any) -> None:
+        self._taken = self._loop.time()
         with contextlib.suppress(RuntimeError):  # the loop is closed
             self._loop.call_soon_threadsafe(self._put, bytes(data))
 
     def _give(self, data: Any, *_: Any) -> None:
         with self._lock:
+            self._given = self._loop.time()
             part = bytes(self._queue[: len(data)])
             del self._queue[: len(data)]
             self._played += len(part)
@@ -179,7 +192,14 @@ def portaudio() -> Any:
 
 
 def restart() -> None:
-    """Make PortAudio look for devices again: it knows those that were there at its start."""
+    """Make PortAudio look for devices again: it knows those that were there at its start.
+
+    Raises:
+        PlatformError: PortAudio does not start.
+    """
     sound = portaudio()
-    sound._terminate()
-    sound._initialize()
+    try:
+        sound._terminate()
+        sound._initialize()
+    except sound.PortAudioError as error:
+        raise PlatformError(f"voiceio: PortAudio does not start again: {error}") from error

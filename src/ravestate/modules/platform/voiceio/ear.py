@@ -148,8 +148,10 @@ class Ear:
         while len(self._frames) >= 2 * FRAME:
             near, played = bytes(self._frames[: 2 * FRAME]), bytes(self._far[: 2 * FRAME])
             del self._frames[: 2 * FRAME], self._far[: 2 * FRAME]
-            self._leak.play(samples(played))
-            clean += near if self._canceller is None else self._canceller.clean(near, played)
+            self._leak.play(samples(near), samples(played))
+            cleaned = near if self._canceller is None else self._canceller.clean(near, played)
+            # Without an echo, the canceller would only harm a user who speaks while the agent speaks.
+            clean += cleaned if self._leak.echoes else near
         return bytes(clean)
 
     def _hear(self, chunk: bytes, now: float, agent_speaks: bool) -> Iterator[Event]:

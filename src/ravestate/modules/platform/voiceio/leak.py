@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections import deque
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .echo import FRAME
+from .likeness import FAR, NEAR, likeness
 from .sound import Samples
 
 MEMORY = 16
@@ -20,28 +23,80 @@ CLEAR = 10.0
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
 """The factors by which a chunk changes the expected share: less power than expected, more, another voice."""
 
+ALIKE = 25.0
+"""The `likeness` above which the microphone hears the loudspeaker."""
+TWICE = 2
+"""Comparisons in a row that prove an echo. A moment of two voices may be alike by chance."""
+DOUBTFUL = 12
+"""Frames with sound on both sides in which no echo is found, before a line counts as one without echo: 0.24 s."""
+QUIET = 0.25
+"""The weight of a frame in which the microphone is silent: an echo may be late."""
+OFTEN, SELDOM = 2, 8
+"""Frames between two comparisons before and after that: one takes a few milliseconds."""
+GONE = 250
+"""The same for a line that had an echo: 5 s. Somebody may speak louder than the echo."""
+
 
 class Leak:
-    """The expected share of the loudspeaker's power in the cleaned sound of the microphone."""
+    """The expected share of the loudspeaker's power in the cleaned sound of the microphone.
+
+    A line without echo (headphones, a recording) hides nobody. The likeness of the two sounds tells such a line. Their levels
+    cannot tell it, because a user who speaks at the same time is as loud as an echo.
+    """
 
     def __init__(self) -> None:
         self.share = FIRST
         self._far: deque[float] = deque(maxlen=MEMORY)
+        self._near_sound: NDArray[np.float32] = np.zeros(NEAR, np.float32)
+        self._far_sound: NDArray[np.float32] = np.zeros(FAR, np.float32)
+        self._unlike, self._limit = 0.0, DOUBTFUL
+        self._frame = self._alike = 0
+        self.echoes = False
+        """Whether an echo has been found, so that the microphone's sound needs cleaning."""
 
-    def play(self, far: Samples) -> None:
-        """Note a frame of the loudspeaker's sound."""
+    @property
+    def possible(self) -> bool:
+        """Whether there is an echo, or it is too early to tell."""
+        return self._unlike < self._limit
+
+    def play(self, near: Samples, far: Samples) -> None:
+        """Note a frame of the microphone's sound before it is cleaned, and one of the loudspeaker's sound."""
         self._far.append(_power(far))
+        self._near_sound = _shifted(self._near_sound, near)
+        self._far_sound = _shifted(self._far_sound, far)
+        if max(self._far) < SILENT:
+            return
+        if _power(near) < SILENT:
+            self._unlike += QUIET
+            return
+        self._unlike += 1
+        self._frame += 1
+        every = OFTEN if self._limit == DOUBTFUL else SELDOM
+        if self._frame % every == 0:
+            alike = likeness(self._near_sound, self._far_sound) > ALIKE
+            self._alike = self._alike + 1 if alike else 0
+        if self._alike >= TWICE:
+            self.echoes = True
+            self._unlike, self._limit = 0, GONE
+        elif not self.possible:
+            self.echoes, self._limit = False, 0
 
     def hides(self, near: Samples) -> bool:
         """Return whether a chunk of the microphone's cleaned sound may be the loudspeaker's, and learn from it."""
         far = max(self._far, default=0.0)
-        if far < SILENT:
+        if far < SILENT or not self.possible:
             return False
+        if not self.echoes:
+            return True
         ratio = _power(near) / far
         hidden = ratio < CLEAR * self.share
         step = DOWN if ratio < self.share else UP if hidden else SLOWLY
         self.share = min(MOST, max(LEAST, self.share * step))
         return hidden
+
+
+def _shifted(sound: NDArray[np.float32], frame: Samples) -> NDArray[np.float32]:
+    return np.concatenate([sound[FRAME:], frame.astype(np.float32)])
 
 
 def _power(sound: Samples) -> float:

@@ -73,14 +73,29 @@ class ModelProcess:
         with self._turn:
             self._start()
 
-    def request(self, header: Mapping[str, Any], data: bytes = b"", *, seconds: float) -> tuple[dict[str, Any], bytes]:
+    def request(
+        self,
+        header: Mapping[str, Any],
+        data: bytes = b"",
+        *,
+        seconds: float,
+        unwanted: threading.Event | None = None,
+    ) -> tuple[dict[str, Any], bytes]:
         """Send a request, and return its answer. The first request loads the model.
+
+        Args:
+            header, data: The request.
+            seconds: The longest time that the answer may take, once the model has begun.
+            unwanted: Set in another thread if the answer is of no use any more. If the request still waits for earlier
+                ones, it is then dropped.
 
         Raises:
             PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within
-                `seconds`. In the last two cases, the next request starts a fresh process.
+                `seconds`. In the last two cases, the next request starts a fresh process. Or the request was dropped.
         """
         with self._turn:
+            if unwanted is not None and unwanted.is_set():
+                raise PlatformError(f"voiceio: a request to {self.kind} was dropped, because another one replaces it")
             self._start()
             answer, sound = self._exchange(header, data, seconds)
         if "error" in answer:

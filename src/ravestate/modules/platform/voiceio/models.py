@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -67,9 +69,14 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
     partial = folder.with_name(folder.name + ".part")
     try:
         partial.mkdir(parents=True, exist_ok=True)
-        download_model(name, output_dir=str(partial))
+        with warnings.catch_warnings(action="ignore"):  # an option that faster-whisper passes on is out of date
+            download_model(name, output_dir=str(partial))
         os.replace(partial, folder)
     except Exception as error:
+        if not any(
+            file.is_file() and file.stat().st_size > 1000 for file in partial.rglob("*")
+        ):  # else the next attempt goes on from there
+            shutil.rmtree(partial, ignore_errors=True)
         raise PlatformError(f"voiceio: cannot fetch {name!r}: {error}") from error
     return folder
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -24,6 +25,8 @@ QUIET = 200
 """The level of a sample below which the end of a word counts as silence: the pause behind it is no part of it."""
 DRIFT = 0.06
 """Seconds by which the play-out may differ from its regular course before the echo's reference jumps there."""
+LEAD = 4.0
+"""Seconds of sound in the loudspeaker's queue that are enough: no more text is made into sound."""
 KEPT = 30.0
 """Seconds of sound that are kept as the echo's reference."""
 
@@ -58,12 +61,8 @@ class Speech:
         self.text += piece
         self._grown.set()
 
-    def finish(self, text: str | None = None) -> None:
-        """End the text; `text` is the complete one."""
-        if text is not None:
-            if not text.startswith(self.text[: self._given]):
-                self._given = 0  # the complete text is another text: speak it from its beginning
-            self.text = text
+    def finish(self) -> None:
+        """End the text."""
         self.whole = True
         self._grown.set()
 
@@ -194,6 +193,14 @@ class Mouth:
             if self._held_at is None:
                 return
             await self._released.wait()
+
+    async def room(self) -> None:
+        """Wait until little sound is left in the queue, also if the line drops the sound because nobody hears it."""
+        while (left := self.lead - LEAD) > 0.0:
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(max(0.05, left)):
+                    await self.played_out()
+                    self._end = self.line.played
 
     def stop(self) -> None:
         """Silence the loudspeaker, and drop the rest of the utterance."""

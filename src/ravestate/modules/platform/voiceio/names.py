@@ -30,7 +30,7 @@ class Settings(rs.Settings):
     source: str = "default"
     """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` comes first."""
     sink: str = "default"
-    """The loudspeaker: ``default``, a device's name, or a WAV file."""
+    """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
     """Whether the agent is deaf while it speaks: for a loud loudspeaker beside the microphone. Nothing then interrupts it."""
     echo_cancellation: bool = True
@@ -45,7 +45,7 @@ class Settings(rs.Settings):
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """Seconds after which a recogniser counts as stuck, and starts again."""
+    """Seconds for a piece of at most 25 s of sound, after which a recogniser counts as stuck, and starts again."""
     captions: Seconds = 1.0
     """Seconds between two captions (``rawio.hearing``) while the user speaks; 0 for none."""
 

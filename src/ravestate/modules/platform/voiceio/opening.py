@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravestate.errors import PlatformError
 from ravestate.modules.modality.rawio.line import Line
 
 from .ear import Ear, Turn
@@ -15,9 +16,10 @@ from .echo import EchoCanceller
 from .models import smart_turn
 from .mouth import Mouth
 from .names import Settings
+from .pair import Pair
 from .recogniser import Recognised, Recogniser
 from .synthesiser import Synthesiser
-from .turn import Melody, is_back_channel, is_echo, wanted_silence
+from .turn import Melody, is_back_channel, is_echo, melody_of, wanted_silence
 from .wav_line import WavLine
 
 
@@ -31,13 +33,36 @@ class Conversation:
     recogniser: Recogniser
     melody: Melody | None
     settings: Settings
+    closed: bool = False
 
     def close(self, *, linger: bool = False) -> None:
-        """Close the line, and let go of the models, which stay loaded for a while if they may `linger`."""
-        self.line.close()
-        self.ear.close()
-        self.recogniser.close(linger=linger)
-        self.mouth.voice.close(linger=linger)
+        """Close the line, and let go of the models, which stay loaded for a while if they may `linger`.
+
+        Raises:
+            PlatformError: The file of the loudspeaker's sound cannot be written. Everything is closed all the same.
+        """
+        self.closed = True
+        with ExitStack() as parts:  # if one cannot be closed, the others are
+            parts.callback(self.mouth.voice.close, linger=linger)
+            parts.callback(self.recogniser.close, linger=linger)
+            parts.callback(self.ear.close)
+            parts.callback(self.line.close)
+
+    async def words(self, sound: bytes, *, partial: bool = False) -> Recognised:
+        """Return the words of a sound. If the call is cancelled, its request no longer keeps later ones waiting.
+
+        Args:
+            sound: The sound (16 kHz).
+            partial: Whether the sound is the beginning of an utterance, for a caption.
+
+        Raises:
+            PlatformError: The recogniser fails.
+        """
+        unwanted = threading.Event()
+        try:
+            return await asyncio.to_thread(self.recogniser.recognise, sound, partial=partial, unwanted=unwanted)
+        finally:
+            unwanted.set()
 
     async def judge(self, turn: Turn) -> tuple[Recognised, float]:
         """Return the words of a turn, and the seconds of silence after which it is over.
@@ -46,9 +71,12 @@ class Conversation:
             PlatformError: The recogniser fails.
         """
         sound, melody = turn.sound, self.melody
-        hearing = asyncio.create_task(asyncio.to_thread(self.recogniser.recognise, sound))
-        complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
-        found = await hearing
+        hearing = asyncio.create_task(self.words(sound))
+        try:
+            complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
+            found = await hearing
+        finally:
+            hearing.cancel()  # nobody waits for the words of a turn that goes on, nor for their error
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
@@ -82,8 +110,9 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
         recorded = given is None and is_file(settings.source)  # the same recording gives the same conversation
         voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
-        melody = await asyncio.to_thread(_melody, warn)
-        line = given or await asyncio.to_thread(_read, settings) or _device(settings)
+        if (melody := await asyncio.to_thread(_melody)) is None:
+            warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")
+        line = given or await _line(settings)
         ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(line, settings, warn))
     except BaseException:
         if line is not None and given is None:
@@ -100,26 +129,33 @@ def is_file(name: str) -> bool:
     return Path(name).suffix.lower() in (".wav", ".ogg", ".mp3", ".flac", ".m4a", ".opus")
 
 
-def _read(settings: Settings) -> WavLine | None:
-    if is_file(settings.source):
-        return WavLine(Path(settings.source).expanduser(), Path(settings.sink) if is_file(settings.sink) else None)
-    return None
+async def _line(settings: Settings) -> Line:
+    """Open the line between the files or devices that the settings name. A file may go with a device."""
+    source, sink = _file(settings.source), _file(settings.sink)
+    by_clock = sink is not None or not settings.sink
+    files = await asyncio.to_thread(WavLine, source, sink) if source or by_clock else None
+    if files is not None and source and by_clock:
+        return files
+    devices = _devices("" if source else settings.source, "" if by_clock else settings.sink)
+    if files is None:
+        return devices
+    files.begin()
+    return Pair(files, devices) if source else Pair(devices, files)
 
 
-def _device(settings: Settings) -> Line:
+def _file(name: str) -> Path | None:
+    return Path(name).expanduser() if is_file(name) else None
+
+
+def _devices(source: str, sink: str) -> Line:
     from .device_line import DeviceLine
 
-    if is_file(settings.sink):
-        raise PlatformError(f"voiceio.sink={settings.sink!r} is a file: name a file in voiceio.source as well")
-    return DeviceLine(settings.source, settings.sink)
+    return DeviceLine(source, sink)
 
 
-def _melody(warn: Callable[[str], None]) -> Melody | None:
+def _melody() -> Melody | None:
     file = smart_turn()
-    if file is None:
-        warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")
-        return None
-    return Melody(file)
+    return None if file is None else melody_of(file)
 
 
 def _canceller(line: Line, settings: Settings, warn: Callable[[str], None]) -> EchoCanceller | None:

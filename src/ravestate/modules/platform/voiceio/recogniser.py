@@ -8,12 +8,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Event
 
 from ravestate.errors import PlatformError
+from ravestate.modules.modality.rawio.line import IN_RATE
 
 from . import model_process
 from .models import whisper_model
 from .names import Settings
+from .sound import pieces
+
+LONGEST = 25.0
+"""The seconds of sound that are recognised at once. A whisper model reads 30 s, with the silence that follows."""
 
 _MARKS = re.compile(r"\[[^\]]*\]|\([^)]*\)|\*[^*]*\*|[♪♫]+")
 """Notes of a recogniser about sounds other than speech, such as ``[Music]`` or ``(coughs)``."""
@@ -54,8 +60,9 @@ class Recogniser:
                 raise PlatformError("voiceio.recogniser=grammar needs pocketsphinx: pip install 'ravestate[voice]'")
             grammar = Path(settings.model).expanduser().absolute()
             if not settings.model or not grammar.is_file():
+                missing = f"there is no file {settings.model!r}" if settings.model else "none is named"
                 raise PlatformError(
-                    f"voiceio.recogniser=grammar needs a grammar file (JSGF), not {settings.model!r}: "
+                    f"voiceio.recogniser=grammar needs a grammar file (JSGF), but {missing}: "
                     "--set voiceio.model=commands.gram"
                 )
             self._process = model_process.take("grammar", {"path": str(grammar)})
@@ -83,23 +90,38 @@ class Recogniser:
         """Load the model, unless it is loaded."""
         self._process.start()
 
-    def recognise(self, pcm: bytes, *, partial: bool = False) -> Recognised:
+    def recognise(self, pcm: bytes, *, partial: bool = False, unwanted: Event | None = None) -> Recognised:
         """Return the words of a sound (16 kHz).
+
+        A long sound is recognised in pieces. So it may be of any length, and requests of others come between the pieces.
 
         Args:
             pcm: The sound.
             partial: Whether the sound is the beginning of an utterance, for a caption: quicker, and less exact.
+            unwanted: Set in another thread if the words are of no use any more. Then no further piece is recognised.
 
         Raises:
-            PlatformError: The recogniser fails, or does not answer in time, also at the second attempt.
+            PlatformError: The recogniser fails, or does not answer in time, also at the second attempt; or the words
+                are unwanted.
         """
+        found: list[tuple[float, Recognised]] = []
+        for piece in pieces(pcm, IN_RATE, LONGEST):
+            one = self._recognise(piece, partial, unwanted)
+            if one.text:
+                found.append((float(len(one.text)), one))
+        if len(found) < 2:
+            return found[0][1] if found else Recognised("", 0.0)
+        confidence = sum(length * one.confidence for length, one in found) / sum(length for length, _ in found)
+        return Recognised(" ".join(one.text for _, one in found), confidence, found[-1][1].last)
+
+    def _recognise(self, pcm: bytes, partial: bool, unwanted: Event | None) -> Recognised:
         header = {"language": self._language, "partial": partial}
         try:
-            answer, _ = self._process.request(header, pcm, seconds=self._patience)
+            answer, _ = self._process.request(header, pcm, seconds=self._patience, unwanted=unwanted)
         except PlatformError:
-            if partial:
+            if partial or (unwanted is not None and unwanted.is_set()):
                 raise
-            answer, _ = self._process.request(header, pcm, seconds=self._patience)
+            answer, _ = self._process.request(header, pcm, seconds=self._patience, unwanted=unwanted)
         found = _cleaned(answer["text"], answer["confidence"], answer["no_speech"])
         return replace(found, last=answer.get("last", {})) if found.text else found
 

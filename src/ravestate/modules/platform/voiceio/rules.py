@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 DEAF = 0.25
 """half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
-LEAD = 4.0
-"""Seconds of sound in the loudspeaker's queue that are enough: no more text is made into sound."""
 LONGEST_END = 300.0
 """The greatest number of seconds for which an agent may go on after the end of a recording."""
 
@@ -82,9 +80,14 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     finally:
         ctx[user_speaking] = False
         ctx[conversation] = None
-        talk.close(linger=line is not None)  # a page may open its microphone again
-    if line is None:
-        ctx.stop()
+        fault = None
+        try:
+            talk.close(linger=line is not None)  # a page may open its microphone again
+        except PlatformError as error:
+            fault = error
+            ctx.log.error("%s", fault)
+        if line is None:
+            ctx.stop(fault)
     return None
 
 
@@ -110,7 +113,7 @@ async def _follow(ctx: rs.RuleContext, talk: Conversation) -> None:
             if ear.clipped and not clipped:
                 clipped = True
                 ctx.log.warning("the microphone's sound is too loud and is clipped: lower its level")
-            if getattr(line, "ended", False):
+            if line.ended:
                 ended_at = min(ended_at, ctx.now)
                 if quiet is None and ctx.now - ended_at > settings.longest_pause + 0.5:
                     quiet = asyncio.ensure_future(ctx.quiet())
@@ -145,8 +148,10 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
         if (turn := talk.ear.turn) is None or talk.recogniser.busy:
             continue
         try:
-            found = await asyncio.to_thread(talk.recogniser.recognise, turn.sound, partial=True)
+            found = await talk.words(turn.sound, partial=True)
         except PlatformError as error:
+            if talk.closed:  # its process was ended in the middle of the work
+                return rs.Resign("the line is closed")
             ctx.log.warning("%s", error)
             continue
         if found.text:
@@ -169,6 +174,8 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         found, silence = await talk.judge(turn)
     except PlatformError as error:
+        if talk.closed:
+            return rs.Resign("the line is closed")
         ctx.log.error("%s", error)
         found, silence = Recognised("", 0.0), 0.0
         talk.ear.take()
@@ -198,6 +205,8 @@ async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         found, _ = await talk.judge(turn)
     except PlatformError as error:
+        if talk.closed:
+            return rs.Resign("the line is closed")
         ctx.log.error("%s", error)
         return None
     what, text = talk.verdict(turn, found)
@@ -248,7 +257,7 @@ async def speak_early(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=rawio.output.changed.max_age(None).detached(),
-    reads=conversation,
+    reads=(conversation, rawio.speaking),
     writes=rawio.heard,
     emits=speech,
     background=True,
@@ -262,12 +271,14 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
     if (talk := ctx[conversation]) is None:
         return rs.Resign("the line is closed")
     growing = talk.mouth.growing
-    if growing is not None and text.startswith(growing.text):
+    rest = None if growing is None else rawio.rest(text, growing.text)
+    if growing is not None and (rest is not None or not ctx[rawio.speaking]):
         talk.mouth.growing = None
-        growing.finish(text)
-        if growing.over:  # it was cut while it grew: its history is complete only now
+        growing.grow(rest or "")
+        growing.finish()  # without the flag, another utterance is the only sign that this one was given up
+        if growing.over and rest is not None:  # it was cut while it grew: its history is complete only now
             ctx[rawio.heard] = growing.heard
-    elif speakable(text):
+    if rest is None and speakable(text):
         ctx.emit(speech, Speech(text, whole=True))
     return None
 
@@ -311,13 +322,13 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                             ctx[held] = True
                         else:
                             ctx[agent_speaking] = True
-                    while (lead := mouth.lead) > LEAD:
-                        await ctx.sleep(max(0.05, lead - LEAD))
+                    await mouth.room()
                 await mouth.played_out()
-                saying.heard = saying.text
+                saying.heard = saying.text.strip()
             except PlatformError as error:
-                ctx.log.error("%s", error)
-                saying.heard = saying.text  # the text is on the screen, if there is one
+                if not talk.closed:
+                    ctx.log.error("%s", error)
+                saying.heard = saying.text.strip()  # the text is on the screen, if there is one
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)
                 raise

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-_END = re.compile(r"[.!?…。！？]+[\"”’')\]]*(?=\s)|\n+")
+# A mark of Chinese or Japanese ends a sentence without a space behind it.
+_END = re.compile(r"[.!?…]+[\"”’')\]]*(?=\s)|[。！？]+[\"”’'」』）)\]]*(?=[^。！？\"”’'」』）)\]])|\n+")
 _ABBREVIATION = re.compile(r"\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|e\.g|i\.e|etc|[A-Z])\.$")
 _UNSPEAKABLE = re.compile(
     "[\U0001f000-\U0001faff\u2600-\u27bf\u2b00-\u2bff\u2300-\u23ff\u200d\u20e3\ufe0e\ufe0f\U000e0020-\U000e007f*_`#]"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,10 @@ Samples = NDArray[np.int16]
 
 LONGEST = 3600.0
 """The seconds of a file that are read."""
+FRAME = 0.02
+"""The seconds of the frames among which `pieces` looks for a quiet moment."""
+QUIET = 15
+"""The number of frames of a quiet moment: 0.3 s."""
 
 
 def samples(pcm: bytes) -> Samples:
@@ -31,6 +36,19 @@ def seconds(pcm: bytes, rate: int) -> float:
 def silence(length: float, rate: int) -> bytes:
     """Return `length` seconds of silence."""
     return bytes(2 * max(0, round(length * rate)))
+
+
+def pieces(pcm: bytes, rate: int, longest: float) -> Iterator[bytes]:
+    """Yield a sound in pieces of at most `longest` seconds, cut in the quietest moment of the last third of each."""
+    sound, most, frame = samples(pcm), round(longest * rate), round(FRAME * rate)
+    while len(sound) > most:
+        first = most * 2 // 3
+        frames = sound[first : first + (most - first) // frame * frame].reshape(-1, frame).astype(np.float64)
+        power = np.convolve((frames**2).mean(axis=1), np.ones(QUIET), "valid")
+        cut = first + (int(power.argmin()) + QUIET // 2) * frame
+        yield sound[:cut].tobytes()
+        sound = sound[cut:]
+    yield sound.tobytes()
 
 
 def resample(pcm: bytes, old: int, new: int) -> bytes:

@@ -61,6 +61,16 @@ class Melody:
         return float(found.reshape(-1)[0])
 
 
+@lru_cache(maxsize=1)
+def melody_of(file: Path) -> Melody:
+    """Return the model in a file. It stays loaded for the next conversation: it keeps nothing of the sounds.
+
+    Raises:
+        PlatformError: The file cannot be loaded.
+    """
+    return Melody(file)
+
+
 def wanted_silence(
     text: str, complete: float | None, settings: Settings, last: Mapping[str, float] | None = None
 ) -> float:

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator
 from pathlib import Path
 
+from ravestate.errors import PlatformError
 from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 from .playout import PlayOut
@@ -23,13 +24,15 @@ class WavLine:
         sink: The WAV file for the loudspeaker's sound, on the time line of the recording; None to drop the sound.
 
     Raises:
-        PlatformError: The recording cannot be read.
+        PlatformError: The recording cannot be read, or the WAV file cannot be written.
     """
 
     cancels_echo = False
     """Whether the sound comes without the loudspeaker's echo."""
 
     def __init__(self, source: Path | None, sink: Path | None = None) -> None:
+        if sink is not None:
+            check_target(sink)
         self._sound = b"" if source is None else decode(source, IN_RATE)
         self._sink = sink
         self._out = PlayOut()
@@ -39,10 +42,14 @@ class WavLine:
         self.ended = False
         """Whether the recording has ended."""
 
+    def begin(self) -> float:
+        """Begin the time line now, and return its beginning; `blocks` does it as well."""
+        self._begun = _now()
+        return self._begun
+
     async def blocks(self) -> AsyncIterator[bytes]:
         """Yield the recording in blocks of 20 ms, and then silence."""
-        loop = asyncio.get_running_loop()
-        begun = self._begun = loop.time()
+        loop, begun = asyncio.get_running_loop(), self.begin()
         size = 2 * round(BLOCK * IN_RATE)
         number = 0
         while not self._closed:
@@ -79,7 +86,11 @@ class WavLine:
                 pass
 
     def close(self) -> None:
-        """End the line, and write the file."""
+        """End the line, and write the file.
+
+        Raises:
+            PlatformError: The file cannot be written.
+        """
         if self._closed:
             return
         self._closed = True
@@ -93,6 +104,20 @@ class WavLine:
             at = 2 * round((time - begin) * OUT_RATE)
             sound[at : at + len(part)] = part
         return bytes(sound)
+
+
+def check_target(path: Path) -> None:
+    """Make sure that a WAV file can be written, before a long conversation ends in a fault.
+
+    Raises:
+        PlatformError: The name does not end in ``.wav``, or the file cannot be written.
+    """
+    if path.suffix.lower() != ".wav":
+        raise PlatformError(f"cannot write {path}: the sound is written as WAV, so name a file that ends in .wav")
+    try:
+        path.open("ab").close()
+    except OSError as error:
+        raise PlatformError(f"cannot write {path}: {error.strerror}") from error
 
 
 def _now() -> float:

@@ -71,6 +71,8 @@ class PageLine:
 
     cancels_echo = True
     """Whether the visitor's sound comes without the loudspeaker's echo: browsers remove it."""
+    ended = False
+    """Whether the visitor's sound has come to its end: they may turn the microphone on again."""
 
     def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
         self.window: Window | None = None

@@ -34,7 +34,7 @@ Kind = Literal[
     "which",  # the user only said yes, so the agent must ask for the value
     "mentioned",  # the user mentioned a relative without a name
     "asked",  # the user asked about themselves
-    "asked_told",  # the user asked about an earlier free statement
+    "asked_told",  # the user asked about something that they said earlier, and that no topic covers
     "vouched",  # the user answered the question that tests who they are
     "identified",  # the user said "it's me", perhaps with a name
     "mistaken",  # the user is not the person that the agent takes them for
@@ -93,7 +93,7 @@ class _Hearing:
         self.reader = Reader(seen, asked, talk.person)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
-        self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" asks for a result
+        self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
         self.leave = "farewell" in seen.acts
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -132,7 +132,9 @@ class _Hearing:
         free = tuple(told_in(self.reader, self.talk.said)[0])
         aside = self.leave or asks
         if facts or free:
-            aloud = any(fact.gone or fact.topic == NAME or not self.sorry for fact in facts)  # other modules console
+            aloud = any(
+                fact.gone or fact.topic == NAME or not self.sorry for fact in facts
+            )  # another module comforts a sad user
             return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
         if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
             return corrected
@@ -191,7 +193,9 @@ class _Hearing:
             return Meaning(
                 "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
             )
-        known = plain(seen.text) in bundled_matcher("answers").exact  # similar words may be a statement
+        known = (
+            plain(seen.text) in bundled_matcher("answers").exact
+        )  # words that only resemble an answer may be a statement
         mere = known and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         return Meaning("which", topic=topic) if mere else None
 
@@ -247,7 +251,7 @@ class _Hearing:
         for said in filter(self.is_wish, wishes):
             object, low = said.object, said.object.text.lower()
             if low == "it":
-                continue  # an idiom: never mind
+                continue  # "forget it" is an idiom for "never mind"
             if object.person == "I" or (object.head or low) in WORDS["everything"] or low.endswith(" data"):
                 about_me = object.person == "I" or re.search(r"\b(?:me|my|i)\b", self.seen.text, re.IGNORECASE)
                 return Meaning("forget") if about_me else None
@@ -279,7 +283,7 @@ class _Hearing:
 
 
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
-"""Feelings after which the agent may ask about something else."""
+"""Feelings that do not stop the agent from asking its next question."""
 _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
 
 

@@ -1,7 +1,7 @@
 """The backend of speech recognition by faster-whisper. `serve` runs this file.
 
-Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So sounds of up to 28 seconds
-are not filled up with silence: a sentence then takes a fifth of the time. In such a short window, the model often does not
+Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So sounds, of at most 25
+seconds, are not filled up with silence: a sentence then takes a fifth of the time. In such a short window, the model often does not
 notice the end, and writes the same words again. The repetition is cut off.
 """
 
@@ -12,8 +12,6 @@ import math
 import zlib
 from typing import Any
 
-WINDOW = 28.0
-"""The longest sound (seconds) that is recognised in one shortened window."""
 TAIL = 5.0
 """The seconds of silence behind the sound. With less silence, the model repeats itself more often."""
 MOST = 8
@@ -87,7 +85,7 @@ def load(config: dict[str, Any]) -> Any:
     def whole(sound: Any, language: str) -> dict[str, Any]:
         found, _ = model.transcribe(
             sound, language=language or (None if model.model.is_multilingual else "en"), beam_size=5,
-            condition_on_previous_text=False, without_timestamps=len(sound) < WINDOW * 16000,
+            condition_on_previous_text=False, without_timestamps=True,
         )  # fmt: skip
         segments = list(found)
         if not segments:
@@ -104,13 +102,10 @@ def load(config: dict[str, Any]) -> Any:
     def handle(header: dict[str, Any], data: bytes) -> tuple[dict[str, Any], bytes]:
         sound = np.frombuffer(data, "<i2").astype(np.float32) / 32768
         language = header["language"] if model.model.is_multilingual else "en"
-        if len(sound) > WINDOW * 16000:
-            found = whole(sound, language)
-        else:
-            found = quick(sound, language)
-            if not header["partial"] and (found["logprob"] < POOR or _repeats(found["text"])):
-                again = whole(sound, language)
-                found = again if again["logprob"] > found["logprob"] or _repeats(found["text"]) else found
+        found = quick(sound, language)
+        if not header["partial"] and (found["logprob"] < POOR or _repeats(found["text"])):
+            again = whole(sound, language)
+            found = again if again["logprob"] > found["logprob"] or _repeats(found["text"]) else found
         found["confidence"] = math.exp(min(0.0, found.pop("logprob")))
         return found, b""
 

@@ -1,0 +1,28 @@
+"""Models that are fetched: what stays behind a failure."""
+
+from pathlib import Path
+
+import faster_whisper
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.voiceio import models
+
+
+def test_a_download_that_fails_leaves_nothing_but_what_it_has_fetched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(models, "folders", lambda: (tmp_path,))
+    fetched: list[bytes] = []
+
+    def fail(name: str, output_dir: str) -> None:
+        for content in fetched:
+            (Path(output_dir) / "model.bin").write_bytes(content)
+        raise OSError("offline")
+
+    monkeypatch.setattr(faster_whisper, "download_model", fail)
+    for _ in range(2):
+        with pytest.raises(PlatformError, match=r"cannot fetch 'tiny\.en': offline"):
+            models.fetch_whisper("tiny.en", str)
+        assert [one.name for one in tmp_path.iterdir()] == (["tiny.en.part"] if fetched else [])
+        fetched.append(b"half" * 1000)
