@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .games import GUESSER, HOLDER, Played, Turn, named
-from .hearing import ALIKE, ASKED, SIMILAR, Heard, Hearing, feeling_of, hear, is_living
+from .hearing import ALIKE, ASKED, SIMILAR, Heard, Hearing, feeling_of, hear, is_living, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
@@ -94,6 +94,11 @@ class Listener:
         size = len(heard.text.split())
         short = size < 4 and not has_verb(seen) and not (seen.acts.keys() - {"contradiction"})
         return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
+
+    def knows(self, seen: Analysis) -> bool:
+        """Return whether the bank has almost the same words."""
+        near = near_in(self._phrases, seen, "", State(), None)
+        return bool(near) and near[0].score >= ALIKE
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
