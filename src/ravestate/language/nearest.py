@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 SHAPE = 0.12
 """The share of their similarity that two sentences lose if their shapes have nothing in common."""
+ASKING = 0.05
+"""The share of their similarity that a question and a statement lose."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +84,8 @@ class _Learnt:
         shapes = np.array([shape(text) for text in plains], dtype=np.int8)
         scores: NDArray[Any] = self._encoder.encode(plains) @ self._meanings.T
         scores *= 1 + SHAPE * (likeness(shapes, self._shapes) - 1)
+        asks = np.array([texts[text].rstrip().endswith("?") for text in plains]) | (shapes[:, 3] > 0)
+        scores *= 1 - ASKING * (asks[:, None] != (self._shapes[:, 3] > 0)[None, :])
         found: list[Near] = []
         for text, row in zip(plains, scores, strict=True):
             order = np.argsort(-row, kind="stable")[:most]

@@ -29,6 +29,13 @@ _ADVICE = re.compile(
 )
 """Questions for advice, a favour or an opinion, not for memories."""
 
+_SAID = re.compile(r"\b(?:did|had|was|have) (?:i|we) (?:just |already |been )?(?:say|said|tell|telling|told|mention)", re.IGNORECASE)
+
+
+def asks_to_repeat(seen: nlp.Analysis) -> bool:
+    """Return whether the user asks for their own words: *what sum did I say?*."""
+    return seen.question is not None and _SAID.search(seen.text) is not None
+
 
 def asks_for_words(seen: nlp.Analysis) -> bool:
     """Return whether the user asks for something that they may have told in this conversation."""

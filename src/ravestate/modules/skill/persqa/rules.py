@@ -115,7 +115,9 @@ async def listen(ctx: rs.RuleContext) -> None:
     if seen is None:
         return
     before = acquaintance_of(ctx)
-    meaning = understand(seen, before.talk, before.known, ctx.now, settings.within, before.told.values())
+    meaning = await asyncio.to_thread(
+        understand, seen, before.talk, before.known, ctx.now, settings.within, tuple(before.told.values())
+    )
     if meaning.kind == "asked_words":
         words = await asyncio.to_thread(recollect, seen.text, before.talk.words)
         meaning = replace(meaning, words=(words,) if words else ())

@@ -15,7 +15,7 @@ from ravestate.modules import nlp
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader
-from .recollection import asks_for_words
+from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
 from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
@@ -127,6 +127,8 @@ class _Hearing:
         told = asks and (not seen.advised or self.reader.asks() or asks_for_words(seen))
         if told or "ask_everything" in self.acts:
             inquiry = self.inquiry()
+            if self.talk.words and asks_to_repeat(seen):
+                return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
             if inquiry and (not inquiry.facts[0].topic or inquiry.facts[0].topic in (EVERYTHING, *self.known)):
                 return inquiry
             if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
