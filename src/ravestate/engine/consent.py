@@ -184,7 +184,7 @@ def _kept(engine: Engine, activation: Activation) -> Iterator[Activation]:
                 theirs is not clause
                 and other.state < RUNNING
                 and not theirs.rule.slotset.isdisjoint(slots)
-                and engine.standing.refuses(clause, theirs)
+                and engine.standing.overtakes(clause, theirs)
             ):
                 yield other
 
