@@ -55,7 +55,7 @@ def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgott
     )
     play = Play(world)
     assert runs(play.play()) == ["r0"]
-    assert play.engine.dropped == {"m:s0": 1}
+    assert play.engine.state.dropped == {"m:s0": 1}
 
 
 @pytest.mark.parametrize("end", ["resigned", "failed"])
@@ -161,7 +161,7 @@ def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another
     play = Play(world).play()
     assert runs(play) == ["r2", "r0"]
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("3.5 s < Run(")
-    assert not play.engine.waiting
+    assert not play.engine.state.waiting
 
 
 def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_joined() -> None:
