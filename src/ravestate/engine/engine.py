@@ -316,7 +316,7 @@ HANDLERS: dict[type, Any] = {
     events.Finish: Engine.on_finish,
     events.AddRule: Engine.on_add_rule,
 }
-"""What to do with an event, by its type."""
+"""Type of an event → its handler."""
 
 DUE: dict[Kind, Any] = {
     Kind.RIPEN: Engine.on_ripen,
@@ -328,7 +328,7 @@ DUE: dict[Kind, Any] = {
     Kind.TIMEOUT: Engine.on_timeout,
     Kind.WATCH: Engine.on_watch,
 }
-"""What to do with a deadline that is due, by its kind."""
+"""Kind of a deadline → its handler."""
 
 
 def _unknown(what: str, name: str, names: Iterable[str]) -> str:
