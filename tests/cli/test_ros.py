@@ -54,14 +54,20 @@ def bus() -> Iterator[str]:
     thread.join()
 
 
+@pytest.fixture(autouse=True)
+def one_look(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The bus knows its nodes at once."""
+    monkeypatch.setattr("ravestate.cli.ros.LOOKS", 1)
+    monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 1)
+
+
 def ros(bus: str, *arguments: str) -> int:
     return main(["ros", *arguments, "--set", "ros2.backend=bus", "--set", f"ros2.bus={bus}"])
 
 
 def test_check_says_what_is_bound_and_how_to_mend_it(
-    bus: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    bus: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 1)
     (tmp_path / "agent.py").write_text(AGENT)
     assert ros(bus, "check", str(tmp_path / "agent.py")) == 1
     assert capsys.readouterr().out.splitlines() == [

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 LONG = 64
 """The number of items of a list above which `echo` leaves out the rest."""
+LOOKS = 8
+"""The number of looks for a topic, because nodes of ROS 2 find each other one by one."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -155,7 +157,7 @@ def _finds(graph: dict[str, Any], topic: str) -> bool:
 async def _look_again(node: Node, topic: str) -> dict[str, Any]:
     """Return the graph once it has the topic, or after two seconds: nodes of ROS 2 find each other one by one."""
     graph: dict[str, Any] = {}
-    for _ in range(8):
+    for _ in range(LOOKS):
         graph = await node.graph()
         if _finds(graph, topic):
             break

@@ -68,8 +68,7 @@ def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
 
     async def main() -> None:
         seen: list[dict[str, Any]] = []
-        async with asyncio.timeout(2 * PATIENCE):
-            node = ros1_network.node()
+        async with ros1_network.lent() as node:
             robot = StandIn(roboyio.load_robot("roboy"), node, quickly)
             robot.watch(seen.append)
             settings = {**ros1_network.settings, "roboyio": {"link": "ros1"}}
@@ -81,16 +80,14 @@ def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
                 context.emit(emotion.surprised)
                 await until(lambda: any(looks["face"] == "surprised" for looks in seen))
             await robot.close()
-            await node.close()
 
-    asyncio.run(main())
+    ros1_network.run(main)
 
 
 def test_turtlebot_on_real_ros_2(ros2_network: Network) -> None:
     async def main() -> None:
         seen: list[dict[str, Any]] = []
-        async with asyncio.timeout(2 * PATIENCE):
-            node = ros2_network.node()
+        async with ros2_network.lent() as node:
             robot = StandIn(roboyio.load_robot("turtlebot"), node, quickly)
             robot.watch(seen.append)
             settings = {**ros2_network.settings, "roboyio": {"link": "ros2", "robot": "turtlebot"}}
@@ -100,9 +97,8 @@ def test_turtlebot_on_real_ros_2(ros2_network: Network) -> None:
                 )
                 await until(lambda: any(looks["yaw"] > 0.2 for looks in seen))
             await robot.close()
-            await node.close()
 
-    asyncio.run(main())
+    ros2_network.run(main)
 
 
 def test_gaze_in_virtual_time() -> None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import atexit
 import contextlib
+import functools
 import os
 import signal
 import socket
 import subprocess
 import sys
 import threading
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 from ravestate.modules import ros1, ros2
 from ravestate.modules.platform.ros.definitions import Definitions
@@ -29,6 +31,17 @@ OWN = HERE / "definitions"
 """A folder with a message package that is installed nowhere."""
 
 
+T = TypeVar("T")
+
+
+@functools.cache
+def the_loop() -> asyncio.Runner:
+    """Return the loop of all shared nodes."""
+    runner = asyncio.Runner()
+    atexit.register(runner.close)
+    return runner
+
+
 def free_port() -> int:
     with socket.socket() as sock:
         sock.bind(("127.0.0.1", 0))
@@ -36,7 +49,10 @@ def free_port() -> int:
 
 
 class Network:
-    """A network with one other node. Its processes are stopped by their numbers."""
+    """A network with one other node. Its processes are stopped by their numbers.
+
+    Its nodes live on one loop, so that tests share a node instead of starting a bridge each.
+    """
 
     version: int
     module: ModuleType
@@ -44,6 +60,16 @@ class Network:
 
     def __init__(self) -> None:
         self.peer: subprocess.Popen[str] | None = None
+        self._nodes: dict[str, Node] = {}
+
+    def run(self, main: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """Run a test on the loop of the nodes."""
+
+        async def in_time() -> T:
+            async with asyncio.timeout(PATIENCE):
+                return await main()
+
+        return the_loop().run(in_time())
 
     def start_peer(self) -> None:
         raise NotImplementedError
@@ -66,11 +92,26 @@ class Network:
         settings = self.module.Settings(**self.settings[f"ros{self.version}"], definitions=(OWN,), **options)
         return self.module.make_node(settings)
 
+    @contextlib.asynccontextmanager
+    async def lent(self, **options: Any) -> AsyncIterator[Node]:
+        """Lend the node that all tests share. The channels that a test opens are closed after it."""
+        key = repr(options)
+        if key not in self._nodes:
+            self._nodes[key] = self.node(**options)
+        node = self._nodes[key]
+        try:
+            yield node
+        finally:
+            for channel in list(node.channels.values()):
+                channel.close()
+
     def stop_peer(self) -> None:
         end(self.peer)
         self.peer = None
 
     def stop(self) -> None:
+        for node in self._nodes.values():
+            the_loop().run(node.close())
         self.stop_peer()
 
 
@@ -97,7 +138,7 @@ class Ros1(Network):
         for _ in range(200):
             with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0):
                 return
-            threading.Event().wait(0.05)
+            threading.Event().wait(0.02)
         raise AssertionError("rosmaster did not start: is `make ros` done?")
 
     def start_peer(self) -> None:
@@ -162,7 +203,7 @@ async def pause(seconds: float) -> None:
     await Clock(asyncio.get_running_loop()).sleep(seconds)
 
 
-async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.05) -> None:
+async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
     """Wait until something outside is reached; repeat an action meanwhile, because discovery takes its time."""
     async with asyncio.timeout(PATIENCE):
         while not reached():

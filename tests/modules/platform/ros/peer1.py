@@ -76,8 +76,8 @@ def main():
     rospy.Service("/silent", SETBOOL, lambda request: threading.Event().wait())
 
     def burst(message):
-        count, rate = map(int, message.data.split())
-        for n in range(count):
+        first, count, rate = map(int, message.data.split())
+        for n in range(first, first + count):
             numbers.publish(n)
             if rate:
                 pause(1 / rate)

@@ -8,6 +8,7 @@ from rclpy.action import ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.task import Future
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float32, Int32, String
 from std_srvs.srv import SetBool
@@ -34,8 +35,8 @@ def main():
     cancelled = node.create_publisher(String, "/cancelled", latched)
 
     def burst(message):
-        count, rate = map(int, message.data.split())
-        for n in range(count):
+        first, count, rate = map(int, message.data.split())
+        for n in range(first, first + count):
             numbers.publish(Int32(data=n))
             if rate:
                 pause(1 / rate)
@@ -50,8 +51,8 @@ def main():
         response.success, response.message = request.data, "on" if request.data else "off"
         return response
 
-    def silent(request, response):
-        threading.Event().wait()
+    async def silent(request, response):
+        await Future()  # for ever, and without a thread
         return response
 
     def count(goal):

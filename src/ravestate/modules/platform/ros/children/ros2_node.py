@@ -199,8 +199,15 @@ class Ros2Node:
     def unbind(self, channel):
         """Remove what `bind` has made."""
         thing = self._channels.pop(channel, None)
-        if thing is not None:
+        kind = self._bindings.pop(channel, {}).get("kind")
+        if thing is None:
+            return
+        if kind == "action":
             thing.destroy()
+        else:  # the node forgets it first: the executor fails for ever on a destroyed one
+            forget = {"subscriber": "subscription", "server": "service"}.get(kind, kind)
+            getattr(self._node, f"destroy_{forget}")(thing)
+        self._executor.wake()
 
     def ask(self):
         """Return the topics, services and actions of the network, without those of this node."""
