@@ -129,7 +129,7 @@ class _Hearing:
             inquiry = self.inquiry()
             if self.talk.words and asks_to_repeat(seen):
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
-            if inquiry and (not inquiry.facts[0].topic or inquiry.facts[0].topic in (EVERYTHING, *self.known)):
+            if inquiry and self.is_known(inquiry.facts[0].topic):
                 return inquiry
             if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
                 return Meaning("asked_told", free=tuple(found))
@@ -165,6 +165,13 @@ class _Hearing:
         if (relative := self.reader.without_name()) and not self.known.get(relative):
             return Meaning("mentioned", topic=relative)
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
+
+    def is_known(self, topic: str) -> bool:
+        """Return whether a question about a topic can be answered from the facts, if only by the nearest fact."""
+        if topic in ("", EVERYTHING, *self.known):
+            return True
+        near = {*TOPICS[topic].besides, *(["origin"] if topic == "home" else [])}
+        return any(self.known.get(one) for one in near)
 
     def of_speakers(self) -> bool:
         """Return whether the utterance is about the user and the agent, not about others."""

@@ -35,21 +35,22 @@ class Bank:
 
     def __init__(self, rows: Sequence[tuple[str, str]]) -> None:
         """Take rows of a file: its name with the line's number, and the line."""
-        self._moments: list[Moment] = []
+        self.moments: list[Moment] = []
+        """The entries. The name of each is its place: file and line."""
         examples: list[str] = []
         self._of: list[int] = []
         for place, row in rows:
             moment = _moment(place, row)
             examples += moment.examples
-            self._of += [len(self._moments)] * len(moment.examples)
-            self._moments.append(moment)
+            self._of += [len(self.moments)] * len(moment.examples)
+            self.moments.append(moment)
         self.index = Nearest(examples)
 
     def similar(self, sentences: Sequence[str], most: int = 8) -> list[Found]:
         """Return the entries that resemble one of the sentences, the most similar first, each once."""
         found: dict[str, Found] = {}
         for near in self.index.nearest(sentences, most):
-            moment = self._moments[self._of[near.place]]
+            moment = self.moments[self._of[near.place]]
             found.setdefault(moment.name, Found(near.score, moment, near.text))
         return list(found.values())
 
@@ -70,5 +71,7 @@ def _moment(place: str, row: str) -> Moment:
     if len(columns) != 3 or columns[0] not in (*TONES, "-"):
         raise DeclarationError(f"{place}: a line needs a tone ({', '.join(TONES)} or -), utterances and replies: {row!r}")
     tone, said, replies = columns
+    if not all(text.strip() for text in (*said.split("|"), *replies.split("|"))):
+        raise DeclarationError(f"{place}: an utterance or a reply is empty: {row!r}")
     lines = tuple(Line(text.strip(), roles_in(text)) for text in replies.split("|"))
     return Moment(place, {"say": lines}, "" if tone == "-" else tone, examples=tuple(map(str.strip, said.split("|"))))

@@ -43,6 +43,8 @@ FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
 """Short sentences resemble many others. The maximum number of words in one, and the confidences that it needs."""
 PLAINLY = 12
 """The maximum number of words in a statement about one thing."""
+BRIEFLY = 5
+"""The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
@@ -161,7 +163,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
         "sure": score >= SURE,
-        "alike": similarity >= ALIKE,
+        "alike": similarity >= (EXACT if score >= EXACT or (feeling and roles.being and size <= BRIEFLY) else ALIKE),
         "similar": similarity >= SIMILAR,
         "others": others,
         "asserting": verb and others,
