@@ -30,7 +30,7 @@ _shared = {
     "suppress_health_check": [HealthCheck.too_slow],
 }
 settings.register_profile("dev", max_examples=100, **_shared)
-settings.register_profile("ci", max_examples=200, derandomize=True, database=None, **_shared)
+settings.register_profile("ci", max_examples=100, derandomize=True, database=None, **_shared)
 settings.register_profile("fuzz", max_examples=5_000, **_shared)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if "CI" in os.environ else "dev"))
 
