@@ -189,7 +189,7 @@ $(DONE)/robot: $(DONE)/demo pyproject.toml
 	@touch $@
 
 $(DONE)/ros1: $(DONE)/python
-	@tools/debian 'ROS 1' python3-rospy ros-core
+	@tools/debian 'ROS 1' python3-rospy ros-core python3-actionlib
 	@touch $@
 
 $(DONE)/sentences: $(DONE)/build

@@ -188,6 +188,8 @@ def stream(version: int, settings: dict[str, Any], count: int) -> dict[str, floa
     async def main() -> dict[str, float]:
         async with rs.Context(module, settings={ros.module.name: settings}) as context:
             made = await _made(context, ros)
+            await _both(context, ros)
+            rest = len(context.snapshot()["groups"])
             first: dict[str, int] = {}
             begin, used = time.monotonic(), 0.0
             stalled = 0
@@ -206,7 +208,7 @@ def stream(version: int, settings: dict[str, Any], count: int) -> dict[str, floa
             return {
                 "lost": count - len(got) + sum(one >= other for one, other in zip(got, got[1:], strict=False)),
                 "old": sum(old) + (newest[-1:] != [count - 1]),
-                "waiting": len(context.snapshot()["groups"]) if "groups" in context.snapshot() else 0,
+                "waiting": len(context.snapshot()["groups"]) - rest,
                 "work": work,
                 **{part: max(0, grown[part] - first.get(part, 0)) for part in grown},
             }

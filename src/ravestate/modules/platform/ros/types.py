@@ -260,6 +260,7 @@ def _spelt(what: Any) -> str:
 def _base_store(version: int) -> Any:
     try:
         typesys = importlib.import_module("rosbags.typesys")
+        importlib.import_module("numpy")  # else the first message waits for it
     except ImportError as error:
         raise PlatformError(f"ros{version} needs {error.name}: pip install 'ravestate[ros]'") from error
     return typesys.get_typestore(typesys.Stores.ROS1_NOETIC if version == 1 else typesys.Stores.ROS2_KILTED)
