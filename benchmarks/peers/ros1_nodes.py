@@ -1,5 +1,6 @@
 """Bare nodes of ROS 1 (rospy): an echo, the floor that talks with it, and a source of numbers and images."""
 
+import itertools
 import struct
 import threading
 import time
@@ -55,7 +56,7 @@ def talk(count: int) -> list[Seconds]:
     assert done.wait(120)
     back.unregister()
     chat.unregister()
-    return [after - before for before, after in zip(times, times[1:])]
+    return [after - before for before, after in itertools.pairwise(times)]
 
 
 def numbers(count: int, rate: float) -> None:
@@ -68,7 +69,7 @@ def images(count: int, rate: float) -> None:
     size = 3 * WIDTH * HEIGHT
     head = struct.pack("<IIII", 0, 0, 0, 0) + struct.pack("<III", HEIGHT, WIDTH, 4) + b"rgb8\0"
     image = Image(head + struct.pack("<II", 3 * WIDTH, size) + bytes(size))
-    _pace(rospy.Publisher("/images", Image, queue_size=5), count, rate, lambda number: image)
+    _pace(rospy.Publisher("/images", Image, queue_size=100), count, rate, lambda number: image)
 
 
 def _pace(publisher, count, rate, make):

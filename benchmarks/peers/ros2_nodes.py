@@ -1,5 +1,6 @@
 """Bare nodes of ROS 2 (rclpy): an echo, the floor that talks with it, and a source of numbers and images."""
 
+import itertools
 import threading
 import time
 
@@ -54,7 +55,7 @@ def talk(count: int) -> list[Seconds]:
     assert done.wait(120)
     node.destroy_subscription(back)
     node.destroy_publisher(chat)
-    return [after - before for before, after in zip(times, times[1:])]
+    return [after - before for before, after in itertools.pairwise(times)]
 
 
 def numbers(count: int, rate: float) -> None:
@@ -65,7 +66,7 @@ def numbers(count: int, rate: float) -> None:
 def images(count: int, rate: float) -> None:
     """Publish images on /images from now on."""
     image = Image(height=HEIGHT, width=WIDTH, encoding="rgb8", step=3 * WIDTH, data=bytes(3 * WIDTH * HEIGHT))
-    _pace(node.create_publisher(Image, "/images", QoSProfile(depth=5)), count, rate, lambda number: image)
+    _pace(node.create_publisher(Image, "/images", QoSProfile(depth=100)), count, rate, lambda number: image)
 
 
 def _pace(publisher, count, rate, make):

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import asyncio
 import dataclasses
+import itertools
 import os
 import socket
 import statistics
@@ -147,22 +148,24 @@ def talk(version: int, settings: dict[str, Any], count: int) -> list[float]:
     back = ros.subscriber(module, "back", topic="/back", type="std_msgs/String", keep="all")
     chat = ros.publisher(module, "chat", topic="/chat", type="std_msgs/String")
     times: list[float] = []
+    done = asyncio.Event()
 
     @module.rule(when=back.changed, writes=chat, detached=True)
     async def again(ctx: rs.RuleContext) -> None:
         times.append(time.perf_counter())
         if len(times) <= count:
             ctx[chat] = {"data": "text"}
+        else:
+            done.set()
 
     async def main() -> None:
         async with rs.Context(module, settings={ros.module.name: settings}) as context, asyncio.timeout(120):
             await _both(context, ros, "/chat", "/back")
             context.put(chat, {"data": "text"})
-            while len(times) <= count:
-                await asyncio.sleep(0.1)
+            await done.wait()
 
     asyncio.run(main())
-    return [after - before for before, after in zip(times, times[1:], strict=False)]
+    return [after - before for before, after in itertools.pairwise(times)]
 
 
 def stream(version: int, settings: dict[str, Any], count: int) -> dict[str, float]:
@@ -206,7 +209,7 @@ def stream(version: int, settings: dict[str, Any], count: int) -> dict[str, floa
             grown = {"agent": _memory(os.getpid()) - _held(got), "bridge": _memory(made.pid)}
             await asyncio.sleep(0.5)
             return {
-                "lost": count - len(got) + sum(one >= other for one, other in zip(got, got[1:], strict=False)),
+                "lost": count - len(got) + sum(one >= other for one, other in itertools.pairwise(got)),
                 "old": sum(old) + (newest[-1:] != [count - 1]),
                 "waiting": len(context.snapshot()["groups"]) - rest,
                 "work": work,
@@ -247,8 +250,7 @@ def look(version: int, settings: dict[str, Any], count: int) -> dict[str, float]
 async def _made(context: rs.Context, ros: Any) -> Any:
     """Return the agent's node, once its bridge works."""
     async with asyncio.timeout(WAIT):
-        while (made := context.read(ros.node)) is None:
-            await asyncio.sleep(0.05)
+        made = context.read(ros.node) or await context.next(ros.node.changed)
         await made.ready.wait()
     return made
 
