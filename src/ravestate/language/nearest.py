@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from .encoder import Encoder
 from .matcher import shared_encoder
 from .normal import plain
-from .shape import likeness, shape
+from .shape import likeness, opens_question, shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,7 +74,8 @@ class _Learnt:
 
         self._encoder = encoder
         self._meanings = encoder.encode_lasting(examples)
-        self._shapes = np.array([shape(text) for text in examples], dtype=np.int8)
+        self._shapes = np.array([shape(text) for text in examples], dtype=np.int8).reshape(-1, 4)
+        self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
 
     def nearest(self, texts: dict[str, str], most: int) -> list[Near]:
         """Return the nearest examples of plain texts, each with its sentence as it was written."""
@@ -84,8 +85,8 @@ class _Learnt:
         shapes = np.array([shape(text) for text in plains], dtype=np.int8)
         scores: NDArray[Any] = self._encoder.encode(plains) @ self._meanings.T
         scores *= 1 + SHAPE * (likeness(shapes, self._shapes) - 1)
-        asks = np.array([texts[text].rstrip().endswith("?") for text in plains]) | (shapes[:, 3] > 0)
-        scores *= 1 - ASKING * (asks[:, None] != (self._shapes[:, 3] > 0)[None, :])
+        asks = np.array([texts[text].rstrip().endswith("?") or opens_question(text) for text in plains])
+        scores *= 1 - ASKING * (asks[:, None] != self._asks[None, :])
         found: list[Near] = []
         for text, row in zip(plains, scores, strict=True):
             order = np.argsort(-row, kind="stable")[:most]

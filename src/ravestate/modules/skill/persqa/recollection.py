@@ -29,7 +29,9 @@ _ADVICE = re.compile(
 )
 """Questions for advice, a favour or an opinion, not for memories."""
 
-_SAID = re.compile(r"\b(?:did|was) (?:i|we) (?:just |already |been )?(?:say|said|tell|telling|told|mention)", re.IGNORECASE)
+_SAID = re.compile(
+    r"\b(?:did|was) (?:i|we) (?:just |already |been )?(?:say|said|tell|telling|told|mention)", re.IGNORECASE
+)
 
 
 def asks_to_repeat(seen: nlp.Analysis) -> bool:

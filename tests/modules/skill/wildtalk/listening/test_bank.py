@@ -53,7 +53,7 @@ def test_until_the_model_is_loaded_only_equal_words_are_found() -> None:
 
 @pytest.mark.parametrize("row", ["happy\ta\tb", "-\tonly two columns", "-\ta\t"])
 def test_a_broken_row_is_refused_with_its_place(row: str) -> None:
-    with pytest.raises(DeclarationError, match="own.tsv:7"):
+    with pytest.raises(DeclarationError, match=r"own\.tsv:7"):
         Bank([("own.tsv:7", row)])
 
 

@@ -69,7 +69,9 @@ def read_bank() -> Bank:
 def _moment(place: str, row: str) -> Moment:
     columns = row.split("\t")
     if len(columns) != 3 or columns[0] not in (*TONES, "-"):
-        raise DeclarationError(f"{place}: a line needs a tone ({', '.join(TONES)} or -), utterances and replies: {row!r}")
+        raise DeclarationError(
+            f"{place}: a line needs a tone ({', '.join(TONES)} or -), utterances and replies: {row!r}"
+        )
     tone, said, replies = columns
     if not all(text.strip() for text in (*said.split("|"), *replies.split("|"))):
         raise DeclarationError(f"{place}: an utterance or a reply is empty: {row!r}")
