@@ -51,6 +51,7 @@ class Consent:
         for group in groups:
             refusal.interests[group] = None
         horizon: Horizon | None = None
+        soon: list[tuple[Clause, list[Activation], Group]] = []  # the rivals that are ahead from this moment on
         eliminated = False
         for group in groups:
             if group.taken and _note_taken(refusal, group, clause.rule):
@@ -69,6 +70,12 @@ class Consent:
                     horizon = horizon or self._horizon(activation, without)
                     if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                         eliminated = True
+                elif rival.rule.cooldown and standing.overtakes(rival, clause):
+                    soon.append((rival, members, group))
+        for rival, members, group in soon if refusal.names else ():
+            horizon = horizon or self._horizon(activation, without)
+            if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
+                eliminated = True
         if eliminated and refusal.names:
             return self.ask(activation, without)  # rivals judged before may have hung on the eliminated one
         if horizon is not None:
