@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import itertools
 import json
 import logging
 import sqlite3
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nio import (  # pyright: ignore[reportMissingTypeStubs]
@@ -24,7 +23,7 @@ from nio import (  # pyright: ignore[reportMissingTypeStubs]
 )
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.chats import Incoming, Person, Room, back_off
+from ravestate.modules.platform.chats import Attempts, Incoming, Person, Room
 
 from .carrier import GONE, LOST, MatrixCarrier
 from .events import incoming
@@ -61,7 +60,7 @@ async def run(agent: Agent, settings: Settings) -> None:
 
 async def _log_in(client: AsyncClient, settings: Settings) -> None:
     """Log in; wait until the server answers."""
-    attempt = 0
+    attempts = Attempts(log, f"{settings.homeserver} does not answer")
     while True:
         try:
             if settings.token:
@@ -82,20 +81,14 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
                     f"RAVESTATE_MATRIXIO_PASSWORD, or RAVESTATE_MATRIXIO_TOKEN ({answer.message})"
                 )
             why = answer.message
-        if attempt in (0, 5):
-            log.warning("%s does not answer (%s); trying again", settings.homeserver, why)
-        await asyncio.sleep(back_off(attempt))
-        attempt += 1
+        await attempts.fail(why)
 
 
 class Inlet:
     """Takes events from the server, and gives them to a room of chats."""
 
     def __init__(self, client: AsyncClient, room: Room, settings: Settings) -> None:
-        self._client = client
-        self._room = room
-        self._settings = settings
-        self._warned: set[str] = set()
+        self._client, self._room, self._settings = client, room, settings
         self._joining: dict[str, asyncio.Task[None]] = {}
 
     async def run(self) -> None:
@@ -109,7 +102,7 @@ class Inlet:
                 task.cancel()
 
     async def _sync(self) -> None:
-        attempt, first = 0, True
+        attempts, first = Attempts(log, "no events"), True
         while True:
             try:
                 since = self._room.store.noted("since")
@@ -119,16 +112,15 @@ class Inlet:
                     )
                 if isinstance(answer, SyncResponse):
                     await self._take(answer, since)
-                    attempt, first = 0, False
+                    attempts.succeed()
+                    first = False
                     continue
                 why: object = answer
                 if answer.status_code in REFUSED:
                     raise PlatformError("matrixio: the server has ended the login: start again, or renew the token")
             except (*LOST, sqlite3.Error) as error:
                 why = repr(error)
-            log.log(logging.WARNING if attempt == 3 else logging.INFO, "no events: %s", why)
-            await asyncio.sleep(back_off(attempt))
-            attempt += 1
+            await attempts.fail(why)
 
     async def _take(self, answer: SyncResponse, since: str | None) -> None:
         """Take the events of an answer, and note the position after them in the same transaction."""
@@ -172,28 +164,14 @@ class Inlet:
         me = self._client.user_id
         return isinstance(event, RoomMemberEvent) and event.state_key == me and event.membership == "invite"
 
-    def _read(self, room: MatrixRoom, events: Iterable[Event]) -> list[Incoming]:
+    def _read(self, room: MatrixRoom, events: Sequence[Event]) -> list[Incoming]:
         """Return the messages in a room's events; those before the agent's invitation do not count."""
         me = self._client.user_id
         names = {room.user_name(me) or "", *self._room.called}
-        messages: list[Incoming] = []
-        for event in events:
-            if self._is_invitation(event):
-                messages.clear()
-            if isinstance(event, MegolmEvent):
-                self._warn(room.room_id, "is encrypted: its messages cannot be read")
-            try:
-                message = incoming(event, room, me, names)
-            except Exception:  # anybody may send an event of any shape
-                log.exception("an event cannot be read, and is left out")
-                continue
-            if message is None:
-                continue
-            if self._settings.allows(event.sender, room.room_id):
-                messages.append(message)
-            else:
-                self._warn(event.sender, "is not in matrixio.allow, and gets no answer")
-        return messages
+        invited = max((at for at, event in enumerate(events) if self._is_invitation(event)), default=0)
+        if any(isinstance(event, MegolmEvent) for event in events[invited:]):
+            self._room.warn(room.room_id, "is encrypted: its messages cannot be read")
+        return self._room.read(events[invited:], lambda event: incoming(event, room, me, names))
 
     def _invite(self, room: str, state: Iterable[Any]) -> None:
         me = self._client.user_id
@@ -201,7 +179,7 @@ class Inlet:
         if self._settings.allows(room, *hosts):
             self._accept(room)
         else:
-            self._warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
+            self._room.warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
         """Join a room in a task. The server reports an invitation once, so it is kept until the agent has joined."""
@@ -210,9 +188,9 @@ class Inlet:
             self._joining[room] = asyncio.create_task(self._join(room))
 
     async def _join(self, room: str) -> None:
-        refusals = 0
-        for attempt in itertools.count():
-            answer: Any
+        refusals, attempts = 0, Attempts(log, f"room {room} is not joined yet")
+        answer: Any
+        while True:
             try:
                 answer = await self._client.join(room)
                 if not isinstance(answer, ErrorResponse):
@@ -223,12 +201,6 @@ class Inlet:
                     break
             except LOST as error:
                 answer = repr(error)
-            log.log(logging.WARNING if attempt == 3 else logging.INFO, "room %s is not joined yet: %s", room, answer)
-            await asyncio.sleep(back_off(attempt))
+            await attempts.fail(answer)
         del self._joining[room]
         await self._room.persist(lambda: self._room.store.note("invited", json.dumps(list(self._joining))))
-
-    def _warn(self, concerned: str, what: str) -> None:
-        if concerned not in self._warned:
-            self._warned.add(concerned)
-            log.warning("%s %s", concerned, what)

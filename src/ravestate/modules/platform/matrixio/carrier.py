@@ -12,7 +12,6 @@ import aiohttp
 from nio import AsyncClient, ErrorResponse  # pyright: ignore[reportMissingTypeStubs]
 
 from ravestate.modules.platform.chats import DeliveryError, Outgoing, is_emoji
-from ravestate.modules.platform.chats.voice import spoken
 
 GONE = ("M_FORBIDDEN", "M_NOT_FOUND")
 FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
@@ -60,8 +59,8 @@ class MatrixCarrier:
         if message.kind == "picture":
             url = await self._upload(message.data, "image/jpeg" if message.data.startswith(JPEG) else "image/png")
             content = {"msgtype": "m.image", "body": text or "picture", "url": url}
-        elif message.kind == "voice" and (note := await spoken(text)) is not None:
-            url = await self._upload(note, "audio/ogg")
+        elif message.kind == "voice":
+            url = await self._upload(message.data, "audio/ogg")
             content = {"msgtype": "m.audio", "body": text, "url": url, "org.matrix.msc3245.voice": {}}
         if to:
             content["m.relates_to"] = {"m.in_reply_to": {"event_id": to}}
