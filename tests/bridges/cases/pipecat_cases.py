@@ -201,6 +201,7 @@ async def converse(
     )
     pair = LLMContextAggregatorPair(context, user_params=LLMUserAggregatorParams(user_turn_strategies=strategies))
     rest = [*turns[1:], [EndWorkerFrame()]]
+    processor = RavestateProcessor(agent)
 
     class Turns(BaseObserver):
         async def on_process_frame(self, data: FrameProcessed) -> None:
@@ -212,8 +213,8 @@ async def converse(
                 await send(pair.user(), rest[0].pop(0))  # the user begins to speak
 
         async def on_push_frame(self, data: FramePushed) -> None:
-            over = data.source is pair.assistant() and isinstance(data.frame, LLMContextAssistantTurnFrame)
-            if over and data.direction is FrameDirection.UPSTREAM:  # the processor hears of the agent's turn first
+            over = data.source is processor and isinstance(data.frame, LLMContextAssistantTurnFrame)
+            if over and data.direction is FrameDirection.UPSTREAM:  # the processor has heard of the agent's turn
                 for frame in rest.pop(0):
                     await send(pair.user(), frame)
 
@@ -224,7 +225,7 @@ async def converse(
                 await send(pair.user(), rest[0].pop(0))
 
     interrupting = asyncio.create_task(interrupt())
-    pipeline = Pipeline([pair.user(), RavestateProcessor(agent), *voice, pair.assistant()])
+    pipeline = Pipeline([pair.user(), processor, *voice, pair.assistant()])
     await run_pipeline(pipeline, frames_to_send=turns[0], send_end_frame=False, observers=[Turns()])
     interrupting.cancel()
     return [(str(message["role"]), str(message["content"])) for message in context.get_messages()]
@@ -261,7 +262,9 @@ async def test_the_agent_knows_what_was_heard_of_an_interrupted_utterance() -> N
 async def test_a_voice_speaks_the_answers() -> None:
     loudspeaker = Loudspeaker()
     talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
-    assert loudspeaker.played == "One.Two.Three.You heard One. Two. Three."
+    assert (
+        loudspeaker.played == "One.Two.Three.You heard One.Two.Three."
+    )  # a voice gets each sentence without spaces around it
     assert talk[1] == ("assistant", "One. Two. Three.")
 
 
@@ -269,6 +272,7 @@ async def test_an_interruption_stops_the_voice_and_the_agent_knows_what_was_hear
     loudspeaker = Loudspeaker()
     loudspeaker.most = len("One.Tw")
     talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
+    print("TALK", talk, repr(loudspeaker.played))
     assert loudspeaker.played == "One.TwYou heard One."
     assert talk[1:] == [("assistant", "One."), ("user", "what did I hear?"), ("assistant", "You heard One.")]
 

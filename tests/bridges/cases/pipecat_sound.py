@@ -45,7 +45,7 @@ class Loudspeaker(BaseOutputTransport):
         await self.set_transport_ready(frame)
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
-        if isinstance(frame, InterruptionFrame):
+        if isinstance(frame, InterruptionFrame) and self.stopped.is_set():
             self.most = 10**6
         await super().process_frame(frame, direction)
 

@@ -21,8 +21,10 @@ from nio import (  # pyright: ignore[reportMissingTypeStubs]
     RoomMemberEvent,
     SyncResponse,
 )
+from nio.crypto import ENCRYPTION_ENABLED  # pyright: ignore[reportMissingTypeStubs]
 
 from ravestate.errors import PlatformError
+from ravestate.folders import user_folder
 from ravestate.modules.platform.chats import Attempts, Incoming, Person, Room
 
 from .carrier import GONE, LOST, MatrixCarrier
@@ -47,7 +49,7 @@ log = logging.getLogger("ravestate.matrixio")
 async def run(agent: Agent, settings: Settings) -> None:
     """Serve the account's rooms until cancelled."""
     config = AsyncClientConfig(max_limit_exceeded=0, max_timeouts=0, request_timeout=ANSWER)
-    client = AsyncClient(settings.homeserver.rstrip("/"), settings.user, device_id=DEVICE, config=config)
+    client = AsyncClient(settings.homeserver.rstrip("/"), settings.user, DEVICE, _key_folder(settings), config)
     try:
         await _log_in(client, settings)
         async with Room(agent, "matrixio", MatrixCarrier(client), client.user_id) as room:
@@ -56,6 +58,15 @@ async def run(agent: Agent, settings: Settings) -> None:
             await Inlet(client, room, settings).run()
     finally:
         await client.close()
+
+
+def _key_folder(settings: Settings) -> str:
+    """Return the folder for the keys of encrypted rooms; an empty text without the extra ``matrix-encrypted``."""
+    if not ENCRYPTION_ENABLED:
+        return ""
+    folder = (settings.path.parent if settings.path else user_folder("data") / "chats") / "matrix-keys"
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return str(folder)
 
 
 async def _log_in(client: AsyncClient, settings: Settings) -> None:
@@ -73,7 +84,8 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
             why: object = type(error).__name__
         else:
             if not isinstance(answer, ErrorResponse):
-                client.user_id = answer.user_id
+                if settings.token:
+                    client.restore_login(answer.user_id, answer.device_id or DEVICE, client.access_token)
                 return
             if answer.status_code in REFUSED:
                 raise PlatformError(
@@ -105,6 +117,7 @@ class Inlet:
         attempts, first = Attempts(log, "no events"), True
         while True:
             try:
+                await self._exchange_keys()
                 since = self._room.store.noted("since")
                 async with asyncio.timeout(POLL / 1000 + ANSWER):  # nio itself waits for ever for the first answer
                     answer: Any = await self._client.sync(
@@ -121,6 +134,19 @@ class Inlet:
             except (*LOST, sqlite3.Error) as error:
                 why = repr(error)
             await attempts.fail(why)
+
+    async def _exchange_keys(self) -> None:
+        """Send and get the keys that encrypted rooms need."""
+        client: Any = self._client
+        if client.olm is None:
+            return
+        await client.send_to_device_messages()
+        if client.should_upload_keys:
+            await client.keys_upload()
+        if client.should_query_keys:
+            await client.keys_query()
+        if client.should_claim_keys:
+            await client.keys_claim(client.get_users_for_key_claiming())
 
     async def _take(self, answer: SyncResponse, since: str | None) -> None:
         """Take the events of an answer, and note the position after them in the same transaction."""
@@ -170,7 +196,10 @@ class Inlet:
         names = {room.user_name(me) or "", *self._room.called}
         invited = max((at for at, event in enumerate(events) if self._is_invitation(event)), default=0)
         if any(isinstance(event, MegolmEvent) for event in events[invited:]):
-            self._room.warn(room.room_id, "is encrypted: its messages cannot be read")
+            why = "the agent has no key for some of its messages"
+            if self._client.olm is None:
+                why = "its messages cannot be read without pip install 'ravestate[matrix-encrypted]'"
+            self._room.warn(room.room_id, f"is encrypted: {why}")
         return self._room.read(events[invited:], lambda event: incoming(event, room, me, names))
 
     def _invite(self, room: str, state: Iterable[Any]) -> None:

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable
 from typing import Any
 
-from nio import Event, MatrixRoom, ReactionEvent, RoomMessage, RoomMessageAudio, RoomMessageImage  # pyright: ignore[reportMissingTypeStubs]
+from nio import (  # pyright: ignore[reportMissingTypeStubs]
+    Event,
+    MatrixRoom,
+    ReactionEvent,
+    RoomEncryptedAudio,
+    RoomEncryptedImage,
+    RoomEncryptedMedia,
+    RoomMessage,
+    RoomMessageAudio,
+    RoomMessageImage,
+)
 
 from ravestate.modules.platform.chats import Incoming, Person, addressed
 from ravestate.modules.platform.chats.addressing import mentions
@@ -51,14 +62,20 @@ def incoming(event: Event, room: MatrixRoom, me: str, names: Iterable[str]) -> I
     command, text = found
     if kind == "edit":
         return _made(event, room, id, "edit", person, text, group=group) if content.get("msgtype") in SPOKEN else None
-    if isinstance(event, RoomMessageImage):
+    if isinstance(event, (RoomMessageImage, RoomEncryptedImage)):
         caption = text if content.get("filename", body) != body else ""
-        return _made(event, room, id, "picture", person, caption, event.url, group)
-    if isinstance(event, RoomMessageAudio):
-        return _made(event, room, id, "voice", person, "", event.url, group)
+        return _made(event, room, id, "picture", person, caption, _file(event), group)
+    if isinstance(event, (RoomMessageAudio, RoomEncryptedAudio)):
+        return _made(event, room, id, "voice", person, "", _file(event), group)
     if content.get("msgtype") not in SPOKEN or not text.strip():
         return None
     return _made(event, room, id, "command" if command else "text", person, command or text, group=group)
+
+
+def _file(event: Any) -> str:
+    """Return the address of a file, or the JSON that describes an encrypted one, for the carrier."""
+    secret = isinstance(event, RoomEncryptedMedia)
+    return json.dumps(event.source["content"]["file"]) if secret else str(event.url)
 
 
 def _made(
