@@ -272,7 +272,6 @@ async def test_an_interruption_stops_the_voice_and_the_agent_knows_what_was_hear
     loudspeaker = Loudspeaker()
     loudspeaker.most = len("One.Tw")
     talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
-    print("TALK", talk, repr(loudspeaker.played))
     assert loudspeaker.played == "One.TwYou heard One."
     assert talk[1:] == [("assistant", "One."), ("user", "what did I hear?"), ("assistant", "You heard One.")]
 

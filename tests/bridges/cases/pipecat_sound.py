@@ -37,6 +37,7 @@ class Loudspeaker(BaseOutputTransport):
         self.most = 10**6
         self.stopped = asyncio.Event()
         """Set once it has played `most` characters."""
+        self._interrupted = asyncio.Event()
         self.played = ""
         """The characters that the user has heard."""
 
@@ -47,6 +48,7 @@ class Loudspeaker(BaseOutputTransport):
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
         if isinstance(frame, InterruptionFrame) and self.stopped.is_set():
             self.most = 10**6
+            self._interrupted.set()
         await super().process_frame(frame, direction)
 
     async def write_audio_frame(self, frame: OutputAudioRawFrame) -> bool:
@@ -54,5 +56,5 @@ class Loudspeaker(BaseOutputTransport):
         self.played += "".join(map(chr, filter(None, sound[SAMPLES - 1 :: SAMPLES])))
         if len(self.played) >= self.most:
             self.stopped.set()
-            await asyncio.Event().wait()  # the interruption cancels it
+            await self._interrupted.wait()
         return True
