@@ -107,7 +107,8 @@ class DeviceLine:
             with contextlib.suppress(PlatformError):
                 await asyncio.to_thread(restart)
                 self._open(again=True)
-                log.warning("the sound devices are open again")
+                whole = len(self._streams) == len([name for name in self._names if name])
+                log.warning("the %s is back" if whole else "the %s is still away: the agent goes on without it", what)
                 return
             self.stop()
             await asyncio.sleep(AGAIN)

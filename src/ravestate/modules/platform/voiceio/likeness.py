@@ -47,10 +47,10 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
 
 
 def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) -> float:
-    """Return the share of the loudspeaker's power that the microphone hears, whoever else speaks.
+    """Return the share of the loudspeaker's power that the microphone hears, also while somebody speaks.
 
-    It is the power that follows from the loudspeaker's sound in each band (Welch's coherence). Of another voice, a share
-    of one by the number of windows counts as well: with 14 windows, 11 dB less than its power.
+    The share is the power that follows from the loudspeaker's sound in each band (Welch's coherence). Another voice adds
+    its power divided by the number of windows. With 14 windows, it counts 11 dB less.
 
     Args:
         near, far: As for `likeness`.
@@ -62,6 +62,6 @@ def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) ->
     return float((both / power).sum() / power.sum())
 
 
-def _spectra(sound: NDArray[np.float32]) -> NDArray[np.complex64]:
+def _spectra(sound: NDArray[np.float32]) -> NDArray[np.complex128]:
     starts = range(0, len(sound) - WINDOW + 1, WINDOW // 2)
     return np.fft.rfft(np.stack([sound[at : at + WINDOW] for at in starts]) * _WINDOW)
