@@ -193,6 +193,37 @@ class Consent:
                 return need if self.state.standing.refuses(need.clause, clause) else None
         return None
 
+    def is_contested(self, best: Activation) -> bool:
+        """Return whether a rival may come between the best of a conflict set and one of its alternatives.
+
+        Such a rival waits for the best, but the alternative waits for the rival, and puts it under pressure.
+        """
+        state = self.state
+        clauses = state.alternatives[best][0]
+        first, last = best.clause, clauses[-1]
+        slots = first.rule.slotset
+        limit = (-last.base, last.index)
+        for group in best.firm_groups():
+            for half, _ in self._rival_halves(first, group) if group.entries else ():
+                if bisect_left(half.ranks, (-first.base, first.index)) < bisect_left(half.ranks, limit):
+                    return True
+            rivals: dict[Clause, None] = {}
+            for member in group.members:
+                rivals[member.clause] = None
+                for theirs in state.policy.causes.downstream(member.clause.rule):
+                    if theirs.base < last.base:
+                        break  # the best clauses come first
+                    rivals[theirs] = None
+            for theirs in rivals:
+                if (
+                    theirs is not first
+                    and (-theirs.base, theirs.index) < limit
+                    and not theirs.rule.slotset.isdisjoint(slots)
+                    and not state.standing.refuses(theirs, first)
+                ):
+                    return True
+        return False
+
     def press(
         self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True
     ) -> float:
