@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 
 from ravestate.engine.activation import Activation
 from ravestate.engine.consent import Consent
+from ravestate.engine.idle import Idle
 
 
-def stalemate(consent: Consent, refused: Iterable[Activation], known: Collection[Activation] = ()) -> set[Activation]:
+def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | None = None) -> set[Activation]:
     """Return activations that wait for nothing but each other.
 
     Two ready rules may each wait for a rival whose missing signal the other rule may cause. Both would wait for ever.
@@ -40,8 +41,9 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Collection
             freed = {one for one in stuck if any([stuck.isdisjoint(roots) for roots in _firm(one)])}
             stuck -= freed
         while stuck:
-            without = stuck.union(known)
-            answers = [(one, consent.ask(one, without, commit=False)) for one in stuck]
+            new = Idle(one for one in sorted(stuck, key=_age) if known is None or one not in known)
+            idle = (new,) if known is None else (new, known)
+            answers = [(one, consent.ask(one, idle, commit=False)) for one in sorted(stuck, key=_age)]
             moved = [(one, refusal) for one, refusal in answers if refusal]
             if not moved:
                 break
@@ -64,3 +66,7 @@ def _hangs(activation: Activation) -> bool:
     """
     refusal = activation.refusal
     return refusal is not None and bool(refusal.firm) and not refusal.bounded
+
+
+def _age(activation: Activation) -> int:
+    return activation.id
