@@ -99,7 +99,9 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
     }  # fmt: skip
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 1)  # the patrol waits for nodes that are not there
+    monkeypatch.setattr(
+        "ravestate.modules.platform.ros.checking.LOOKS", 1
+    )  # the patrol waits for nodes that are not there
     made = Reader(tmp_path, capsys, network.start_master)
     yield made
     made.kill()
