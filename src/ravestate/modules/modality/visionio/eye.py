@@ -17,7 +17,10 @@ from .frames import Frame
 from .places import MEND, eyes_python
 
 WORKER = Backend(
-    Path(__file__).with_name("worker"), "visionio", "the vision worker", lambda reason: f". {MEND}" if "module" in reason else ""
+    Path(__file__).with_name("worker"),
+    "visionio",
+    "the vision worker",
+    lambda reason: f". {MEND}" if "module" in reason else "",
 )
 PATIENCE = 30.0
 """The longest time (seconds) that a look may take."""
@@ -95,7 +98,11 @@ class Eye:
         self.waited = answer.get("waited", 0.0)
         if "fault" in answer:
             raise PlatformError(f"visionio: {answer['fault']}")
-        return answer if "size" in answer else None
+        return answer if "picture" in answer else None
+
+    def reopen(self) -> None:
+        """Open the camera anew at the next look."""
+        self._pid = None
 
     def close(self) -> None:
         """Close the camera. The worker ends with its last user."""

@@ -72,6 +72,6 @@ class Look:
 
     time: float
     size: tuple[int, int]
-    tracks: tuple[int, ...]
     dark: bool = False
     dropped: int = 0
+    tracks: tuple[int, ...] = ()

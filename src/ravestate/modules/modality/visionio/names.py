@@ -11,6 +11,7 @@ import ravestate as rs
 from ravestate.modules import idle, interloc, ontology, rawio, verbaliser
 
 from .face import FaceVec, Look, Pose
+from .tracks import Sighting
 from .visitors import Visitor
 
 if TYPE_CHECKING:
@@ -51,12 +52,13 @@ class Settings(rs.Settings):
     """Whether the agent asks people who tell their names if it may remember their faces. Without a yes it keeps none."""
 
 
-module = rs.Module(
-    "visionio", requires=[rawio, interloc, ontology, verbaliser, idle], settings=Settings
-)
+module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle], settings=Settings)
 
 facevec: rs.Signal[FaceVec] = module.signal("facevec", payload=FaceVec, input=True, limit=1000)
 """A face in a picture, with its vector. The signal is raised for each face in each picture."""
+
+sighted: rs.Signal[Sighting] = module.signal("sighted", payload=Sighting, limit=100)
+"""There is a new picture. The faces in it do not have their people yet."""
 
 looked: rs.Signal[Look] = module.signal("looked", payload=Look, input=True, keep="latest")
 """The agent has looked at a picture, with or without faces."""
@@ -72,6 +74,9 @@ history: rs.Slot[tuple[FaceVec, ...]] = module.slot("history", ())
 
 visitors: rs.Collection[Visitor] = module.collection("visitors")
 """The people whom the agent sees: a key of `interloc.users` → the person's node, tracks and vectors."""
+
+left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
+"""A person has left. The payload is the visitor, as the agent saw them last."""
 
 named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
 """A person whom the agent sees has told their name. The payload is their node, which memory keeps from now on."""

@@ -51,7 +51,9 @@ def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest 
 
 def stored(graph: Graph) -> list[tuple[Node, Vector]]:
     """Return all faces in memory with their vectors, oldest first. Damaged ones are left out."""
-    return [(node, vector) for node in graph.find("Face", {}) if (vector := unpacked(node.get("vector", ""))) is not None]
+    return [
+        (node, vector) for node in graph.find("Face", {}) if (vector := unpacked(node.get("vector", ""))) is not None
+    ]
 
 
 def owner(graph: Graph, face: Node) -> Node | None:

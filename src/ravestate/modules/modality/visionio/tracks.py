@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from ravestate.modules.meta.ontology import Node
 
-from .face import Box, Vector
+from .face import Box, Look, Vector
 
 LOST = 1.5
 """The seconds after which a face that is not found again gets a new track."""
@@ -65,6 +65,19 @@ class Track:
         self.person, self.distance = person, distance
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sighting:
+    """The faces in a picture.
+
+    Attributes:
+        look: The picture's time and size.
+        faces: The tracks of the faces, each with whether its vector is of this picture.
+    """
+
+    look: Look
+    faces: tuple[tuple[Track, bool], ...]
+
+
 @dataclass(slots=True)
 class Tracks:
     """The faces that are followed.
@@ -105,13 +118,3 @@ class Tracks:
         for one in [one for one in self._tracks.values() if now - one.seen > LOST]:
             del self._tracks[one.number]
         return found
-
-    def forget(self, people: Sequence[str] = ()) -> None:
-        """Ask anew whose faces these are: memory has changed.
-
-        Args:
-            people: The ids of the people whom this concerns; all if there are none.
-        """
-        for one in self._tracks.values():
-            if not people or (one.person is not None and one.person.id in people):
-                one.person, one.distance, one.agreed, one.encoded = None, None, 0, float("-inf")

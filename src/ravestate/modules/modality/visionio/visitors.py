@@ -123,6 +123,14 @@ def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
     return next((one for one in visitors.values() if track in one.tracks), None)
 
 
+def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
+    """Return the visitor to whom the agent talks: the one with the largest face lately; None if it sees nobody."""
+    sizes = {face.track: face.box[2] * face.box[3] for face in history}
+    return max(
+        visitors.values(), key=lambda one: max((sizes.get(track, 0) for track in one.tracks), default=0), default=None
+    )
+
+
 def gone(visitors: Mapping[str, Visitor], now: float, after: float) -> list[Visitor]:
     """Return the visitors whose faces have not been seen for `after` seconds."""
     return [one for one in visitors.values() if now - one.seen > after]

@@ -6,7 +6,7 @@ It runs in an environment of its own, and imports nothing from Ravestate. A requ
     {"do": "look", "stream": "a", "want": ["faces", "pose"], "at": 1.5, "known": [{"track": 3, "box": [x, y, w, h], "fresh": true}]}
     {"do": "close", "stream": "a"}
 
-An answer has ``fault`` if a camera or a picture fails; then nothing was seen. Without a new picture it has no ``size``.
+An answer has ``fault`` if a camera or a picture fails; then nothing was seen. Without a new picture it has no ``picture``.
 A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``. With bytes, it
 looks at them: an encoded picture (JPEG, PNG), or raw pixels if the record has ``"shape": [height, width]`` (RGB).
 """
@@ -73,7 +73,7 @@ class Worker:
             seen, answer = stream.picture(header["at"])
             if seen is None:
                 return answer
-        answer |= {"size": [seen.width, seen.height], "dark": seen.dark}
+        answer |= {"picture": [seen.width, seen.height], "dark": seen.dark}
         for what in header["want"]:
             self.load(what)
             answer[what] = (self._faces.find if what == "faces" else stream.pose())(seen, header)
