@@ -49,6 +49,11 @@ def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest 
     return Nearest(person, distance) if person is not None else None
 
 
+def least(graph: Graph, vector: Sequence[float]) -> float | None:
+    """Return the distance to the nearest face in memory; None if memory has no faces."""
+    return min((dist(vector, known) for _, known in stored(graph)), default=None)
+
+
 def stored(graph: Graph) -> list[tuple[Node, Vector]]:
     """Return all faces in memory with their vectors, oldest first. Damaged ones are left out."""
     return [

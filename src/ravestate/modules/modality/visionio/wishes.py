@@ -9,7 +9,7 @@ from typing import Literal
 
 from ravestate.language.acts import heard
 from ravestate.language.examples import read_examples
-from ravestate.language.matcher import Matcher
+from ravestate.language.matcher import Matcher, bundled_matcher
 
 _ABOUT = re.compile(r"\b(?:faces?|looks?)\b", re.IGNORECASE)
 
@@ -26,11 +26,10 @@ def wish_of(text: str) -> Literal["forget", "remember", ""]:
     if not _ABOUT.search(text):
         return ""
     said = heard(text)
-    found = _wishes().match_all(said)
-    for wish in ("forget", "remember"):
-        if wish in found:
-            return wish
-    return ""
+    if bundled_matcher("acts").loaded:  # else, only words that equal an example are recognised
+        _wishes().load()
+    found = {match.name for match in _wishes().match_all(said) if match is not None}
+    return "forget" if "forget" in found else "remember" if "remember" in found else ""
 
 
 @cache
