@@ -45,7 +45,7 @@ def eye() -> Eye:
 
 def look(data: bytes, **request: Any) -> dict[str, Any]:
     """Look at a picture."""
-    seen = eye().look_now(["faces"], {"thorough": True, "most": 100, **request}, frame=Frame(data))
+    seen = eye().look_now(["faces"], {"thorough": 2, "most": 100, **request}, frame=Frame(data))
     assert seen is not None
     return seen
 
