@@ -24,7 +24,6 @@ class Recognised(str):
         return self
 
 
-
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
