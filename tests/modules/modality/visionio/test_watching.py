@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+import ravestate as rs
 from modules.modality.visionio.photographs import make, photo
 from ravestate.errors import PlatformError
 from ravestate.modules import visionio
@@ -135,6 +136,29 @@ def test_a_platforms_pictures(tmp_path: Path) -> None:
         frames.close()
         sim.advance(10)
         assert not sim.read(visionio.visitors) and sim.failures == []
+
+
+def test_a_rule_that_listens_to_poses_gets_them(tmp_path: Path) -> None:
+    heard: list[visionio.Pose] = []
+    dancer = rs.Module("dancer", requires=[visionio])
+
+    @dancer.rule(when=visionio.pose.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        heard.append(ctx.payload(visionio.pose))
+
+    pictures = tmp_path / "pictures"
+    pictures.mkdir()
+    (pictures / "0.jpg").write_bytes(photo("obama3").read_bytes())
+    make("cv2.imwrite(a[0], np.full((480, 640, 3), 128, np.uint8))", pictures / "1.png")
+    settings = {"visionio": {"source": str(pictures), "fps": 1}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    with simulate(dancer, settings=settings) as sim:
+        sim.advance(3.5)
+        assert sim.failures == []
+    body, nobody = heard[0].landmarks, heard[-1].landmarks
+    assert body is not None and len(body) == 33 and all(len(point) == 4 for point in body)
+    nose, hip = body[0], body[24]
+    assert nose[1] < hip[1] and nose[3] > 0.9  # upright, and in sight
+    assert nobody is None
 
 
 def test_black_frames_of_a_video(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
