@@ -1,4 +1,4 @@
-"""Watching a camera: what is told when it fails, and how often the agent looks."""
+"""Watching a camera: the log of its failures, and the rate of looks."""
 
 import logging
 from pathlib import Path
