@@ -14,7 +14,7 @@ from ravestate.errors import nearest
 
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
-    from ravestate.modules.modality import emotion, interloc, rawio
+    from ravestate.modules.modality import emotion, interloc, rawio, visionio
     from ravestate.modules.platform import conio, matrixio, roboyio, ros1, ros2, telegramio, voiceio, webio
     from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
 
@@ -39,6 +39,7 @@ __all__ = [
     "ros2",
     "telegramio",
     "verbaliser",
+    "visionio",
     "voiceio",
     "webio",
     "wildtalk",
@@ -56,6 +57,7 @@ BUILT_IN = {
     "rawio": "modality",
     "interloc": "modality",
     "emotion": "modality",
+    "visionio": "modality",
     "idle": "meta",
     "nlp": "meta",
     "ontology": "meta",
