@@ -1,0 +1,27 @@
+"""Charades: the user acts something out, and the agent guesses; then the agent sets a riddle of its own."""
+
+from __future__ import annotations
+
+from . import rules as rules
+from .game import Game
+from .names import Settings, begun, declined, game, gestures, module, moved, perform, prompted, sightings, watched
+from .rules import offer, wanted
+from .understanding import Move
+
+__all__ = [
+    "Game",
+    "Move",
+    "Settings",
+    "begun",
+    "declined",
+    "game",
+    "gestures",
+    "module",
+    "moved",
+    "offer",
+    "perform",
+    "prompted",
+    "sightings",
+    "wanted",
+    "watched",
+]
