@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from . import rules as rules
 from .game import Game
-from .names import Settings, begun, declined, game, gestures, module, moved, perform, prompted, sightings, watched
-from .rules import offer, wanted
+from .names import Settings, abandoned, begun, declined, game, gestures, module, moved, perform, prompted, sightings, watched
+from .rules import offer
 from .understanding import Move
 
 __all__ = [
     "Game",
     "Move",
     "Settings",
+    "abandoned",
     "begun",
     "declined",
     "game",
@@ -22,6 +23,5 @@ __all__ = [
     "perform",
     "prompted",
     "sightings",
-    "wanted",
     "watched",
 ]

@@ -152,6 +152,10 @@ def _over(game: Game, say: str, feeling: Feeling | None = None) -> Outcome:
     return Outcome(Game(turn=game.turn), say, game.words, feeling)
 
 
+def _offer(game: Game, move: Move, world: World) -> Outcome:
+    return _said(Game("offered", turn=game.turn), "offer")
+
+
 def _begin(game: Game, move: Move, world: World) -> Outcome:
     return _said(Game("choosing", turn=game.turn), "begin", "happy")
 
@@ -268,6 +272,7 @@ Transition = Callable[[Game, Move, World], Outcome]
 
 MOVES: Mapping[tuple[Step, str], Transition] = {
     ("off", "wanted"): _begin,
+    ("off", "play"): _offer,
     ("offered", "yes"): _begin,
     ("offered", "ready"): _begin,
     ("offered", "wanted"): _begin,
@@ -318,7 +323,6 @@ ANYWHERE: Mapping[str, Transition] = {
     "score": _tell_score,
     "stop": _stop,
     "farewell": _leave,
-    "gone": _leave,
     "silence": _lapse,
     "repeat": _repeat,
 }
@@ -327,4 +331,5 @@ ANYWHERE: Mapping[str, Transition] = {
 
 def moves_of(step: Step) -> frozenset[str]:
     """Return the moves of a step."""
-    return frozenset(kind for of, kind in MOVES if of == step) | ANYWHERE.keys()
+    own = frozenset(kind for of, kind in MOVES if of == step)
+    return own if step == "off" else own | ANYWHERE.keys()

@@ -61,6 +61,9 @@ counted: rs.Signal[None] = module.signal("counted")
 watched: rs.Signal[None] = module.signal("watched")
 """The agent has watched, and may guess."""
 
+abandoned: rs.Signal[None] = module.signal("abandoned")
+"""The user says goodbye, or ignores the offer. The game ends without a word."""
+
 begun: rs.Signal[None] = module.signal("begun")
 """A game begins."""
 

@@ -18,6 +18,7 @@ from ravestate.modules.modality.emotion.feeling import Feeling
 from .game import Game, Outcome, World, guessed, moves_of, play
 from .names import (
     Settings,
+    abandoned,
     begun,
     counted,
     declined,
@@ -44,23 +45,9 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
 PRIORITY = 2.0
 """The weight of the rules that continue a game: above all other answers, such as persqa's."""
 
-wanted = nlp.intent(module, "wanted", examples=Path(str(files(__package__ or ""))) / "wishes.yaml")
-"""The user wants the agent to guess what they do."""
-
-
-def asks_for_charades(seen: nlp.Analysis | None) -> bool:
-    """Return whether the user wants to play this very game."""
-    return seen is not None and "play" in seen.acts and TOPIC in map(str.lower, (word.text for word in seen.tree.words))
-
-
 def is_on(now: Game) -> bool:
     """Return whether a game is on, or offered."""
     return now.is_on
-
-
-def is_off(now: Game) -> bool:
-    """Return whether no game is on."""
-    return not now.is_on
 
 
 def is_waiting(now: Game) -> bool:
@@ -99,28 +86,6 @@ offer = agenda.goal(
 )
 async def note_offer(ctx: rs.RuleContext) -> None:
     """Wait for the answer to an offer that was made out of boredom."""
-    make_offer(ctx)
-
-
-def is_bored(seen: nlp.Analysis | None) -> bool:
-    """Return whether the user says that they are bored."""
-    return seen is not None and "bored" in seen.acts
-
-
-@module.rule(
-    when=(nlp.intent_play & game.holds(is_off)) | (nlp.analysis.changed.where(is_bored) & game.holds(is_off)),
-    writes=(game, verbaliser.intent, rawio.output, agenda.topics),
-    emits=prompted,
-    detached=True,
-)
-async def propose(ctx: rs.RuleContext) -> None:
-    """Offer the game to a user who wants to play, or is bored."""
-    make_offer(ctx)
-    ctx[verbaliser.intent] = Intent("offer", package=__package__)
-
-
-def make_offer(ctx: rs.RuleContext) -> None:
-    """Begin to wait for the answer to an offer."""
     turn = ctx[game].turn + 1
     ctx[game] = Game("offered", turn=turn)
     ctx[agenda.topics].add(TOPIC, "a game of charades")
@@ -130,7 +95,7 @@ def make_offer(ctx: rs.RuleContext) -> None:
 # ------------------------------------------------------------------------------- the user's moves
 
 
-@module.rule(when=nlp.analysis.changed & game.holds(is_on), reads=(game, activity.known), writes=strayed, emits=moved)
+@module.rule(when=nlp.analysis.changed, reads=(game, activity.known), writes=strayed, emits=(moved, abandoned))
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     """Emit the move that the user's words make. Words on something else are left to the other skills."""
     seen = ctx.payload(nlp.analysis.changed)
@@ -138,10 +103,14 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     if seen is None:
         return rs.Resign("nothing was analysed")
     move = await asyncio.to_thread(understand, seen, moves_of(now.step), ctx[activity.known])
-    if move is None:
-        ctx[strayed] = ctx.now
-    else:
+    if move is not None and move.kind != "farewell":
         ctx.emit(moved, move)
+    elif not now.is_on:
+        return rs.Resign("no game is on")
+    elif move is not None or now.step == "offered":
+        ctx.emit(abandoned)
+    else:
+        ctx[strayed] = ctx.now
     return None
 
 
@@ -154,19 +123,6 @@ SURROUNDINGS = (gestures, activity.in_view)
 async def answer(ctx: rs.RuleContext) -> None:
     """Answer the user's move."""
     carry_out(ctx, play(ctx[game], ctx.payload(moved), world_of(ctx)))
-
-
-@module.rule(
-    when=(wanted & game.holds(is_off)) | (nlp.analysis.changed.where(asks_for_charades) & game.holds(is_off)),
-    reads=SURROUNDINGS,
-    writes=EFFECTS,
-    emits=EMITTED,
-    detached=True,
-    weight=PRIORITY,
-)
-async def start(ctx: rs.RuleContext) -> None:
-    """Begin a game that the user asks for."""
-    carry_out(ctx, play(ctx[game], Move("wanted"), world_of(ctx)))
 
 
 def carry_out(ctx: rs.RuleContext, out: Outcome) -> None:
@@ -183,7 +139,7 @@ def carry_out(ctx: rs.RuleContext, out: Outcome) -> None:
         ctx.emit(perform, out.performs)
     if after.is_on:
         ctx[agenda.topics].add(TOPIC, "a game of charades")
-        if before.step in ("off", "offered"):
+        if before.step in ("off", "offered") and after.step != "offered":
             ctx.emit(begun)
     elif TOPIC in ctx[agenda.topics]:
         ctx[agenda.topics].remove(TOPIC)
@@ -330,16 +286,19 @@ async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=interloc.users.removed.max_age(None).detached() & game.holds(is_on),
-    reads=(interloc.users, *SURROUNDINGS),
-    writes=EFFECTS,
-    emits=EMITTED,
+    when=abandoned.max_age(None).detached() | interloc.users.removed.max_age(None).detached(),
+    reads=interloc.users,
+    writes=(game, agenda.topics),
     detached=True,
     background=True,
 )
-async def part(ctx: rs.RuleContext) -> rs.Resign | None:
-    """End the game when the last user leaves."""
-    if ctx[interloc.users]:
-        return rs.Resign("somebody is still there")
-    carry_out(ctx, play(ctx[game], Move("gone"), world_of(ctx)))
+async def end(ctx: rs.RuleContext) -> rs.Resign | None:
+    """End the game without a word: the user has said goodbye or left, or ignores the offer."""
+    now = ctx[game]
+    left = ctx.payload(interloc.users.removed) is not None
+    if not now.is_on or (left and ctx[interloc.users]):
+        return rs.Resign("no game is on, or somebody is still there")
+    ctx[game] = Game(turn=now.turn + 1)
+    ctx[agenda.topics].remove(TOPIC)
+    ctx.wipe(prompted)
     return None

@@ -19,6 +19,8 @@ WORDS = 5
 """The maximum number of words in the name of an activity."""
 SHORT = 3
 """Up to this number of words, an utterance that is no question is an unclear answer, and no remark on something else."""
+OF_ACT = (("repeat", "repeat"), ("play", "play"), ("play", "wanted"), ("bored", "play"))
+"""Act in ``acts.yaml`` → the move, where the step has this move."""
 SURE = 2
 """The strength of a yes or no that is more than *I think so*."""
 FRAMES = ("{}", "it was {}", "I was {}", "is it {}", "are you {}", "you are {}", "no it was {}")
@@ -78,14 +80,15 @@ def _act(seen: Analysis, moves: Set[str]) -> Move | None:
     """Return the move that the examples of this game or the acts of `nlp` show."""
     matches = [match for match in examples().match_all(seen.sentences) if match is not None and match.name in moves]
     best = max(matches, key=lambda match: match.score, default=None)
-    if "farewell" in seen.acts and (best is None or best.name == "stop"):
+    ends = "stop" in moves
+    if ends and "farewell" in seen.acts and (best is None or best.name == "stop"):
         return Move("farewell")
     if best is not None:
         return Move(best.name)
-    if "quiet" in seen.acts or ("stop" in seen.acts and "secret" not in moves):  # "I'd rather not say" is a stop of `nlp`
+    if ends and ("quiet" in seen.acts or ("stop" in seen.acts and "secret" not in moves)):  # "I'd rather not say" is a stop of `nlp`
         return Move("stop")
-    others = {"repeat": "repeat", "play": "wanted"}
-    return next((Move(kind) for act, kind in others.items() if act in seen.acts and kind in moves), None)
+    found = (move for act, move in OF_ACT if act in seen.acts and move in moves)
+    return next(map(Move, found), None)
 
 
 def name_of(seen: Analysis, known: Iterable[str] = ()) -> str:
