@@ -1,0 +1,1 @@
+"""What the agent sees: faces, and the people to whom they belong."""

@@ -1,0 +1,61 @@
+"""A picture in the worker: pixels of a size that is quick to search, and the size that it had."""
+
+# pyright: basic
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(1 << 27))  # a small file may unpack to gigabytes
+
+import cv2
+import numpy as np
+
+cv2.setNumThreads(1)
+
+LARGEST = 1280
+"""The longer side (pixels) above which a picture is scaled down. Faces of 40 pixels in it can be recognised."""
+DARK = 6.0
+"""The mean brightness (0 to 255) below which a picture counts as black."""
+
+
+class Picture:
+    """A picture.
+
+    Attributes:
+        pixels: RGB, (height, width, 3), uint8, scaled down.
+        scale: The factor from these pixels to those of the original.
+        width, height: The size of the original (pixels).
+        dark: Whether it is black.
+        time: The time at which it was taken (seconds), which never goes back for one camera.
+    """
+
+    def __init__(self, pixels: np.ndarray, time: float = 0.0) -> None:
+        """Scale the pixels (RGB) down where they are too many."""
+        self.height, self.width = pixels.shape[:2]
+        self.scale = max(1.0, max(self.width, self.height) / LARGEST)
+        if self.scale > 1.0:
+            size = max(1, round(self.width / self.scale)), max(1, round(self.height / self.scale))
+            pixels = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA)
+        self.pixels = np.ascontiguousarray(pixels)
+        self.dark = bool(self.pixels[::4, ::4].mean() < DARK)
+        self.time = time
+
+
+def from_bytes(data: bytes, shape: list[int] | None = None) -> Picture:
+    """Return the picture in an encoded file, or in raw RGB pixels of this shape (height, width).
+
+    Raises:
+        ValueError: The bytes are no picture.
+    """
+    if shape is not None:
+        height, width = shape
+        if len(data) != height * width * 3:
+            raise ValueError(f"{len(data)} bytes are no RGB picture of {width} x {height} pixels")
+        return Picture(np.frombuffer(data, np.uint8).reshape(height, width, 3))
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    except cv2.error as error:
+        raise ValueError(f"the picture cannot be read: {error.err}") from None
+    if pixels is None:
+        raise ValueError("the bytes are no picture that can be read (JPEG, PNG, WebP, BMP or TIFF)")
+    return Picture(cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB))
