@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from .names import Activity, Lesson, Settings, in_view, known, label, module, posed, poses, recognised, taught
-from .pose import Pose
+from .film import Film
+from .names import Activity, Lesson, Settings, film, in_view, known, label, module, posed, recogniser, recognised, taught
+from .pose import Pose, pose_of
+from .recogniser import Recogniser, Recognition
 
 __all__ = [
     "Activity",
+    "Film",
     "Lesson",
     "Pose",
+    "Recogniser",
+    "Recognition",
     "Settings",
+    "film",
     "in_view",
     "known",
     "label",
     "module",
     "posed",
-    "poses",
+    "pose_of",
+    "recogniser",
     "recognised",
     "taught",
 ]

@@ -11,7 +11,9 @@ from pydantic import Field
 
 import ravestate as rs
 
+from .film import Film
 from .pose import Pose
+from .recogniser import Recogniser
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,5 +73,14 @@ in_view: rs.Slot[bool] = module.flag("in_view", input=True)
 known: rs.Slot[tuple[str, ...]] = module.slot("known", ())
 """The names of all activities that the recogniser knows, in alphabetical order."""
 
-poses: rs.Slot[tuple[Pose, ...]] = module.slot("poses", (), always=True)
-"""The poses of the last thirty seconds, oldest first."""
+film: rs.Slot[Film] = module.slot("film", Film(), always=True)
+"""The poses of the last thirty seconds."""
+
+recogniser: rs.Slot[Recogniser | None] = module.slot("recogniser", None, type=Recogniser, input=True)
+"""The recogniser; None until it is loaded."""
+
+due: rs.Signal[float] = module.signal("due", payload=float, keep="latest")
+"""It is time for a recognition. The payload is the time of the newest pose."""
+
+looked: rs.Signal[None] = module.signal("looked", keep="latest")
+"""A pose has come."""

@@ -26,6 +26,22 @@ class Pose:
     same unit, for example the height of the picture."""
 
 
+def pose_of(points: object, at: float, width: float, height: float) -> Pose:
+    """Return a pose from MediaPipe's landmarks, which are shares of the picture's size.
+
+    Args:
+        points: 33 landmarks, each x, y, z and visibility.
+        at: The time of the frame, in seconds.
+        width, height: The size of the picture, in pixels.
+
+    Raises:
+        PlatformError: These are not such landmarks.
+    """
+    import numpy as np
+
+    return Pose(at, checked(points) * np.array([width / height, 1.0, width / height, 1.0], dtype=np.float32))
+
+
 def checked(points: object) -> NDArray[np.float32]:
     """Return landmarks as an array of shape (33, 4).
 
