@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from camera import HELD_OUT, TAUGHT, Conditions, perform
-from movements import KNOWN, OTHERS, STRANGE, Movement
+from movements import KNOWN, OTHERS, STRANGE, UNTOUCHED, Movement
 from ravestate.modules.modality.activity.features import features_of
 from ravestate.modules.modality.activity.pose import Pose
 from ravestate.modules.modality.activity.recogniser import Recogniser, Starter
@@ -99,6 +99,8 @@ class Score:
     """The share that is taken for another activity; the rest is rejected."""
     rejected: float
     """The share of performances of unknown movements that are rejected."""
+    untouched: float
+    """The same share, for movements that were written after the recogniser was finished."""
     table: dict[str, dict[str, int]]
     """Performed → recognised (empty: nothing) → number."""
 
@@ -107,16 +109,16 @@ def score(count: int = 40, *, seed: int = 100, recogniser: Recogniser | None = N
     """Recognise performances of held-out performers."""
     recogniser = recogniser or Recogniser()
     table: dict[str, dict[str, int]] = {}
-    totals = np.zeros(3)
-    for number, movements in enumerate((KNOWN, STRANGE)):
+    totals = np.zeros(4)
+    for number, movements in enumerate((KNOWN, STRANGE, UNTOUCHED)):
         for name, pairs in performances(movements, count, HELD_OUT, seed + number).items():
             row = table.setdefault(name, {})
             for pair in pairs:
                 got = recogniser.recognise_features(pair).name
                 row[got] = row.get(got, 0) + 1
-                totals += (name == got, bool(got) and name in KNOWN and name != got, not got and name in STRANGE)
-    known, strange = (sum(sum(table[name].values()) for name in group) for group in (KNOWN, STRANGE))
-    return Score(totals[0] / known, totals[1] / known, totals[2] / strange, table)
+                totals += (name == got, bool(got) and name in KNOWN and name != got, not got and name in STRANGE, not got and name in UNTOUCHED)
+    known, strange, fresh = (sum(sum(table[name].values()) for name in group) for group in (KNOWN, STRANGE, UNTOUCHED))
+    return Score(*(totals / (known, known, strange, fresh)).tolist(), table)
 
 
 def show(result: Score) -> str:
@@ -126,7 +128,10 @@ def show(result: Score) -> str:
     lines = [" " * 22 + " ".join(f"{one:>4}" for one in short)]
     for name, row in result.table.items():
         lines.append(f"{name:22}" + " ".join(f"{row.get(one, 0) or '·':>4}" for one in columns))
-    lines.append(f"right {result.right:.1%}, taken for another {result.wrong:.1%}, unknown rejected {result.rejected:.1%}")
+    lines.append(
+        f"right {result.right:.1%}, taken for another {result.wrong:.1%}, "
+        f"unknown rejected {result.rejected:.1%}, of movements written later {result.untouched:.1%}"
+    )
     return "\n".join(lines)
 
 
