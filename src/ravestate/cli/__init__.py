@@ -29,6 +29,7 @@ COMMANDS = {
     "model": "list, fetch and remove language models for small talk",
     "genqa": "read documents, and answer questions from them",
     "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
+    "vision": "say whose faces are in pictures, learn a face, check the camera",
     "new": "write a small project to start from",
 }
 

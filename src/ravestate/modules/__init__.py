@@ -14,7 +14,7 @@ from ravestate.errors import nearest
 
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
-    from ravestate.modules.modality import activity, emotion, interloc, rawio
+    from ravestate.modules.modality import activity, emotion, interloc, rawio, visionio
     from ravestate.modules.platform import conio, matrixio, telegramio, voiceio, webio
     from ravestate.modules.skill import agenda, agentqa, charades, fillers, genqa, hibye, persqa, wildtalk
 
@@ -38,6 +38,7 @@ __all__ = [
     "rawio",
     "telegramio",
     "verbaliser",
+    "visionio",
     "voiceio",
     "webio",
     "wildtalk",
@@ -53,6 +54,7 @@ BUILT_IN = {
     "interloc": "modality",
     "emotion": "modality",
     "activity": "modality",
+    "visionio": "modality",
     "idle": "meta",
     "nlp": "meta",
     "ontology": "meta",

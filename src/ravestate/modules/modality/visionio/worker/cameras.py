@@ -13,6 +13,8 @@ from .picture import Picture
 EACH = 1.0
 """The seconds for which a folder's pictures are shown."""
 SUFFIXES = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".tif", ".tiff"}
+WHOLE = 0.9
+"""The share of a video's pictures below which it counts as damaged."""
 SILENT = 5.0
 """The seconds without a picture after which a device counts as lost."""
 
@@ -109,6 +111,7 @@ class Video:
         self._begun = 0.0  # the time at which this round began
         self._waiting: tuple[float, object] | None = None
         self._last = 0.0
+        self._fault = ""
         self._open()
 
     def picture(self, at: float) -> Picture | None:
@@ -123,6 +126,9 @@ class Video:
             newest = self._waiting
             self._forward()
         if newest is None:
+            if self._fault:
+                fault, self._fault = self._fault, ""
+                raise ValueError(fault)
             return None
         time_of, pixels = newest
         return Picture(pixels[:, :, ::-1], time_of)
@@ -155,6 +161,9 @@ class Video:
             self._count += 1
             return
         self._waiting = None
+        expected = self._capture.get(cv2.CAP_PROP_FRAME_COUNT)
+        if self._count and self._count < WHOLE * expected:
+            self._fault = f"the video {self._path} is damaged: {self._count} of {expected:.0f} pictures could be read"
         if self._loop and self._count:
             self._capture.release()
             self._begun = self._last + 1 / self._rate

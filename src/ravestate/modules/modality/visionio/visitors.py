@@ -1,0 +1,136 @@
+"""Whom the agent sees: from a history of faces to people who come, are recognised, and leave. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import dist
+
+from ravestate.modules.meta.ontology import Node
+
+from .face import FaceVec, Vector
+
+WAIT = 2.5
+"""The seconds after which a face that is badly seen counts as a stranger's."""
+KEPT = 8
+"""The number of vectors that are kept of a visit."""
+ALIKE = 0.15
+"""The distance below which a second vector tells nothing new."""
+
+
+@dataclass(frozen=True, slots=True)
+class Visitor:
+    """A person whom the agent sees.
+
+    Attributes:
+        key: Their key in ``interloc.users``.
+        node: Their node: that of a known person, or a transient one, which memory does not have.
+        known: Whether memory has the node.
+        since, seen: The times at which they came, and were seen last (seconds on the context's clock).
+        tracks: The numbers of their tracks.
+        vectors: Their best vectors of this visit, each with its quality, best first.
+        linked: Whether they are a user whom a platform has added.
+        faces: Whether memory has their face, or the user has been asked. Else the agent may ask.
+        mistaken: The ids of people who they are not, although their faces are alike.
+    """
+
+    key: str
+    node: Node
+    known: bool = False
+    since: float = 0.0
+    seen: float = 0.0
+    tracks: frozenset[int] = frozenset()
+    vectors: tuple[tuple[float, Vector], ...] = ()
+    linked: bool = False
+    faces: bool = False
+    mistaken: frozenset[str] = frozenset()
+
+    @property
+    def name(self) -> str | None:
+        """Their name, if it is known."""
+        return self.node.get("name")
+
+    def met(self, face: FaceVec, least: float) -> Visitor:
+        """Return the visitor, seen once more.
+
+        Args:
+            face: Their face.
+            least: The quality from which on a vector is kept.
+        """
+        vectors = self.vectors
+        if face.fresh and face.quality >= least:
+            vectors = best([*vectors, (face.quality, face.vector)], KEPT)
+        return replace(self, seen=face.time, tracks=self.tracks | {face.track}, vectors=vectors)
+
+    def resembles(self, vector: Vector, threshold: float) -> bool:
+        """Return whether a vector is as close to those of this visit as one person's are."""
+        return any(dist(vector, one) <= threshold for _, one in self.vectors)
+
+    def __repr__(self) -> str:
+        return f"Visitor({self.key!r}, {self.name!r}, known={self.known}, tracks={sorted(self.tracks)})"
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """Whose face a track is: a person in memory, or a stranger (None)."""
+
+    person: Node | None
+
+
+def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
+    """Return the vectors of the best quality. Of two that are nearly equal, the better one stays."""
+    kept: list[tuple[float, Vector]] = []
+    for quality, vector in sorted(vectors, key=lambda one: -one[0]):
+        if all(dist(vector, other) > ALIKE for _, other in kept):
+            kept.append((quality, vector))
+    return tuple(kept[:most])
+
+
+def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: float) -> Decision | None:
+    """Return whose face a track is, once the last `sure` vectors of good quality agree; until then None.
+
+    Args:
+        history: The last faces, oldest first, with `face` at the end.
+        face: The newest face of the track.
+        sure: The number of vectors that must agree.
+        quality: The quality from which on a vector counts.
+    """
+    track = [one for one in history if one.track == face.track]
+    good = [one for one in track if one.fresh and one.quality >= quality][-sure:]
+    people = {one.person.id if one.person else None for one in good}
+    if len(good) == sure and len(people) == 1:
+        return Decision(good[-1].person)
+    if not good and track and face.time - track[0].time >= WAIT:
+        return Decision(None)
+    return None
+
+
+def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
+    """Return the visitor to whom a new track belongs; None if somebody new has come.
+
+    A person whose face was lost for a moment gets a new track. They are the same visitor if memory or the vectors say so.
+    """
+    for one in visitors.values():
+        if decision.person is not None and one.node.id == decision.person.id:
+            return one
+    near = [one for one in visitors.values() if one.resembles(face.vector, threshold)]
+    near = [one for one in near if decision.person is None or not one.known]
+    return min(near, key=lambda one: min(dist(face.vector, v) for _, v in one.vectors), default=None)
+
+
+def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
+    """Return the visitor who has a track."""
+    return next((one for one in visitors.values() if track in one.tracks), None)
+
+
+def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
+    """Return the visitor to whom the agent talks: the one with the largest face lately; None if it sees nobody."""
+    sizes = {face.track: face.box[2] * face.box[3] for face in history}
+    return max(
+        visitors.values(), key=lambda one: max((sizes.get(track, 0) for track in one.tracks), default=0), default=None
+    )
+
+
+def gone(visitors: Mapping[str, Visitor], now: float, after: float) -> list[Visitor]:
+    """Return the visitors whose faces have not been seen for `after` seconds."""
+    return [one for one in visitors.values() if now - one.seen > after]
