@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from . import rules as rules
 from .film import Film
-from .names import Activity, Lesson, Settings, film, in_view, known, label, module, posed, recogniser, recognised, taught
+from .names import Activity, Lesson, Settings, in_view, known, label, model, module, movement, posed, recognised, taught
 from .pose import Pose, pose_of
 from .recogniser import Recogniser, Recognition
 
@@ -15,14 +16,14 @@ __all__ = [
     "Recogniser",
     "Recognition",
     "Settings",
-    "film",
     "in_view",
     "known",
     "label",
+    "model",
     "module",
+    "movement",
     "posed",
     "pose_of",
-    "recogniser",
     "recognised",
     "taught",
 ]

@@ -73,10 +73,10 @@ in_view: rs.Slot[bool] = module.flag("in_view", input=True)
 known: rs.Slot[tuple[str, ...]] = module.slot("known", ())
 """The names of all activities that the recogniser knows, in alphabetical order."""
 
-film: rs.Slot[Film] = module.slot("film", Film(), always=True)
+movement: rs.Slot[Film] = module.slot("movement", Film(), always=True)
 """The poses of the last thirty seconds."""
 
-recogniser: rs.Slot[Recogniser | None] = module.slot("recogniser", None, type=Recogniser, input=True)
+model: rs.Slot[Recogniser | None] = module.slot("model", None, type=Recogniser, input=True)
 """The recogniser; None until it is loaded."""
 
 due: rs.Signal[float] = module.signal("due", payload=float, keep="latest")

@@ -29,6 +29,12 @@ OWN = 0.9
 """The share of an activity's own variance in its deviations; the rest is that of an average activity."""
 RIDGE = 0.05
 """A variance that every feature has in addition, and the share of the correlations that is given up."""
+SPREAD = 0.8
+"""The deviations of a taught activity, relative to those of an average activity."""
+FAVOUR = 0.5
+"""How much more probable a taught activity is beforehand: twice the log likelihood, per feature."""
+LIMIT = 4.0
+"""The greatest distance from a taught activity, in the same unit."""
 REMEMBERED = 64
 """The number of inverse matrices that are kept: one for each set of visible features."""
 LEAST = 0.05
@@ -150,10 +156,22 @@ class Recogniser:
         skeleton = skeleton_of(poses)
         if skeleton is None:
             return False
-        features = (features_of(skeleton) - self.starter.centre) / self.starter.size
-        self._taught.setdefault(name, []).append(features)
-        self._arrange()
+        self.teach_features(name, (features_of(skeleton), features_of(skeleton.mirrored())))
         return True
+
+    def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
+        """Learn an activity from the features of a demonstration, and those of its mirror image.
+
+        Demonstrations with the left and with the right hand count as one: the side that is nearer to the others is taken.
+        """
+        np, group = self._np, self._taught.setdefault(name, [])
+        both = [(side - self.starter.centre) / self.starter.size for side in sides]
+        if group:
+            mean = _mean(np.array(group))
+            away = [np.nanmean(((side - mean) / self.starter.usual) ** 2) for side in both]
+            both = [both[int(np.argmin(away))]]
+        group.append(both[0])
+        self._arrange()
 
     def recognise(self, poses: Sequence[Pose]) -> Recognition:
         """Return the activity that a movement shows.
@@ -202,10 +220,11 @@ class Recogniser:
         self._names = (*starter.names, *taught)
         means = [_mean(group) for group in taught.values()]
         # The mean of a few demonstrations is uncertain, so a movement may be further away from it.
-        wider = [starter.usual * np.sqrt(1 + 1 / len(group)) for group in taught.values()]
+        wider = [SPREAD * starter.usual * np.sqrt(1 + 1 / len(group)) for group in taught.values()]
         self._means = np.stack([*starter.means, *means])
         self._deviations = np.stack([*starter.deviations, *wider])
-        self._limits = np.full(len(self._names), starter.limit)
+        self._favour = np.array([0.0] * len(starter.names) + [FAVOUR] * len(taught))
+        self._limits = np.array([starter.limit] * len(starter.names) + [LIMIT] * len(taught))
 
     def _compared(self, features: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], int]:
         """Return the distance from each activity, twice the negative log likelihood per feature, and the features' number."""
@@ -220,7 +239,7 @@ class Recogniser:
         away = np.nan_to_num((features[there] - self._means[:, there]) / deviations)
         count = int(there.sum())
         distance = np.einsum("ci,ij,cj->c", away, self._inverses[key], away) / count
-        return distance, distance + 2 * np.log(deviations).sum(axis=1) / count, count
+        return distance, distance + 2 * np.log(deviations).sum(axis=1) / count - self._favour, count
 
 
 def _mean(group: NDArray[Any]) -> NDArray[Any]:
