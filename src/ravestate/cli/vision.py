@@ -196,7 +196,7 @@ def _faces(eye: Eye, file: Path) -> list[dict[str, Any]]:
         data = file.read_bytes()
     except OSError as error:
         raise PlatformError(f"visionio: it cannot be read: {error.strerror}") from None
-    seen = eye.look_now(["faces"], {"thorough": True, "most": 1000}, frame=Frame(data))
+    seen = eye.look_now(["faces"], {"thorough": 2, "most": 1000}, frame=Frame(data))
     return [] if seen is None else seen["faces"]
 
 

@@ -70,7 +70,7 @@ camera: rs.Slot[Frames | None] = module.slot("camera", None, type=cast("type[Fra
 """The camera of a platform, such as a web page or a robot, which puts pictures in; None without one."""
 
 history: rs.Slot[tuple[FaceVec, ...]] = module.slot("history", ())
-"""A ring buffer of the last faces, oldest first."""
+"""A ring buffer of the last faces with new vectors, oldest first."""
 
 visitors: rs.Collection[Visitor] = module.collection("visitors")
 """The people whom the agent sees: a key of `interloc.users` → the person's node, tracks and vectors."""

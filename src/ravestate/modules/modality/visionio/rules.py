@@ -103,7 +103,13 @@ def _is_heard(ctx: rs.RuleContext, signal: rs.Signal[Any]) -> bool:
     return any(need.signal.name == signal.name for plan in plans for clause in plan.clauses for need in clause.needs)
 
 
-@module.rule(when=sighted.max_age(None), reads=ontology.memory, emits=(facevec, looked), background=True)
+@module.rule(
+    when=sighted.max_age(None),
+    reads=ontology.memory,
+    emits=(facevec, looked),
+    detached=True,  # each face is a cause of its own, else `track` would take only one face of a picture
+    background=True,
+)
 async def feed(ctx: rs.RuleContext) -> None:
     """Raise `facevec` for each face in a picture, with the person in memory to whom it belongs."""
     settings: Settings = ctx.settings
@@ -141,12 +147,14 @@ async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None
     background=True,
 )
 async def track(ctx: rs.RuleContext) -> None:
-    """Keep a history of faces, and note who has come once enough of them agree."""
+    """Keep a history of faces with new vectors, and note who has come once enough of them agree."""
     settings: Settings = ctx.settings
     face = ctx.payload(facevec)
-    seen = (*ctx[history], face)[-settings.history :]
-    ctx[history] = seen
-    decision = decide(seen, face, sure=settings.sure, quality=settings.quality)
+    decision = None
+    if face.fresh:
+        seen = (*ctx[history], face)[-settings.history :]
+        ctx[history] = seen
+        decision = decide(seen, face, sure=settings.sure, quality=settings.quality)
     here = dict(ctx[visitors])
     one = of_track(here, face.track)
     if one is not None and decision is not None:
@@ -156,7 +164,7 @@ async def track(ctx: rs.RuleContext) -> None:
         if decision.person is not None and not one.known:
             one = _recognised(ctx, one, decision.person)
     if one is not None:
-        ctx[visitors].add(one.key, one.met(face, settings.quality))
+        ctx[visitors].add(one.key, one.met(face, least=settings.quality, threshold=settings.threshold))
 
 
 def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
@@ -164,20 +172,16 @@ def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: De
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == one.node.id or person.id in one.mistaken:
-        if one.vectors and face.fresh and face.quality >= settings.quality:
-            same = person is not None or one.resembles(face.vector, settings.threshold)
-            return one if same else _without(ctx, one, face.track)
-        return one
-    if not one.known:
+        alike = person is not None or not one.vectors or not decision.vectors
+    elif not one.known:
         return _recognised(ctx, one, person)
-    if one.resembles(face.vector, settings.threshold):
-        return one  # they have told another name than memory has for this face
-    return _without(ctx, one, face.track)
-
-
-def _without(ctx: rs.RuleContext, one: Visitor, number: int) -> None:
-    """Take a track from a visitor."""
-    ctx[visitors].add(one.key, replace(one, tracks=one.tracks - {number}))
+    else:
+        alike = False
+    # Memory may know this face under another name than the one that the visitor has told.
+    if alike or any(one.resembles(vector, settings.threshold) for vector in decision.vectors):
+        return one
+    ctx[visitors].add(one.key, replace(one, tracks=one.tracks - {face.track}))
+    return None
 
 
 def _arrival(ctx: rs.RuleContext, decision: Decision, now: float) -> Visitor:
@@ -192,26 +196,45 @@ def _arrival(ctx: rs.RuleContext, decision: Decision, now: float) -> Visitor:
         before = item.node.id if isinstance(item, interloc.Recognised) else None
         if before is not None and (person is None or person.id != before):  # another person sits down
             users.remove(key)
-            users.add(key, None)
-        elif person is not None and before is None and item not in (None, name):
+            node = person or ontology.Node("Person")
+            known = person is not None
+            return Visitor(key, node, known, since=now, seen=now, linked=True, faces=known, moving=True)
+        if person is not None and before is None and item not in (None, name):
             key = None  # the platform says that its user is somebody else
     node = person or ontology.Node("Person")
     if key is None:
         key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *here) if k.startswith(KEY)), default=0)}"
-        known = interloc.Recognised(node["name"], node) if node.get("name") else None
-        users.add(key, known)
-        return Visitor(key, node, known=person is not None, since=now, seen=now, faces=person is not None)
+        one = Visitor(key, node, person is not None, since=now, seen=now, faces=person is not None)
+        users.add(key, one.item)
+        return one
     one = Visitor(key, ontology.Node("Person"), since=now, seen=now, linked=True)
     return one if person is None else _recognised(ctx, one, person)
 
 
 def _recognised(ctx: rs.RuleContext, one: Visitor, person: ontology.Node) -> Visitor:
     """Return a visitor as a person in memory, and tell the other modules."""
-    if person.get("name"):
-        item = interloc.Recognised(person["name"], person)
-        ctx[interloc.users].add(one.key, item)
-        ctx.emit(interloc.recognised, rs.Entry(one.key, item))
-    return replace(one, node=person, known=True, faces=True)
+    one = replace(one, node=person, known=True, faces=True)
+    if one.item is not None and not one.moving:
+        ctx[interloc.users].add(one.key, one.item)
+        ctx.emit(interloc.recognised, rs.Entry(one.key, one.item))
+    return one
+
+
+@module.rule(
+    when=interloc.users.removed.min_age(0.5).max_age(None).detached(),
+    writes=(visitors, interloc.users),
+    detached=True,
+    background=True,
+)
+async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Give a platform's user back, who is another person now. Until then, the other modules end with the person before."""
+    key = ctx.payload(interloc.users.removed).key
+    one = ctx[visitors].get(key)
+    if one is None or not one.moving:
+        return rs.Resign("nobody takes the place of this user")
+    ctx[visitors].add(key, replace(one, moving=False))
+    ctx[interloc.users].add(key, one.item)
+    return None
 
 
 @module.rule(when=looked.max_age(None), writes=(visitors, interloc.users), emits=left, background=True)
@@ -283,7 +306,7 @@ async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("visionio.ask is off")
     memory = ctx[ontology.memory]
     one = next(
-        (one for one in ctx[visitors].values() if one.known and not one.faces and one.name and one.vectors), None
+        (one for one in ctx[visitors].values() if one.item and not one.faces and one.good(ctx.settings.quality)), None
     )
     if one is None or memory is None:
         return rs.Resign("there is nobody to ask, or no memory")
@@ -333,13 +356,14 @@ async def store(ctx: rs.RuleContext) -> None:
     settings: Settings = ctx.settings
     one, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
     meant, name = "no_memory", one.name if one else None
-    if one is None or not one.vectors:
+    vectors = one.good(settings.quality) if one else ()
+    if one is None or not vectors:
         meant = "not_seen"
     elif name is None:
         meant = "no_name"
     elif memory is not None:
         try:
-            node, _ = await memory.together(lambda graph: people.keep(graph, one.node, one.vectors, settings.most))
+            node, _ = await memory.together(lambda graph: people.keep(graph, one.node, vectors, settings.most))
         except RavestateError as error:
             ctx.log.error("%s", error)
         else:
@@ -391,7 +415,7 @@ async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
     """After a visit, file a vector of a person who has agreed before, because people change."""
     settings: Settings = ctx.settings
     one, memory = ctx.payload(left), ctx[ontology.memory]
-    vectors = [(quality, vector) for quality, vector in one.vectors if quality >= max(0.7, settings.quality)][:1]
+    vectors = one.good(max(0.7, settings.quality))[:1]
     if memory is None or not one.known or one.mistaken or not vectors:
         return rs.Resign("there is nothing to file")
 

@@ -17,7 +17,7 @@ REFRESH = 3.0
 TRIES = 10
 """The number of vectors after which a face that is badly seen gets only one each second."""
 THOROUGH = 1.0
-"""The seconds between two thorough searches of the picture, which find small and turned faces."""
+"""The seconds between two thorough searches of the picture, which find small faces."""
 
 
 @dataclass(slots=True)
@@ -97,7 +97,7 @@ class Tracks:
             {"track": one.number, "box": list(one.box), "fresh": one.fresh(now, self.sure)}
             for one in self._tracks.values()
         ]
-        return {"known": known, "thorough": now - self._thorough >= THOROUGH}
+        return {"known": known, "thorough": int(now - self._thorough >= THOROUGH)}
 
     def update(self, faces: Iterable[Mapping[str, Any]], now: float) -> list[tuple[Track, bool]]:
         """Take the faces of a picture; return their tracks, each with whether it has a new vector."""

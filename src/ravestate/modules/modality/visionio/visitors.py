@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import dist
 
 from ravestate.modules.meta.ontology import Node
+from ravestate.modules.modality.interloc import Recognised
 
 from .face import FaceVec, Vector
 
@@ -32,6 +33,7 @@ class Visitor:
         linked: Whether they are a user whom a platform has added.
         faces: Whether memory has their face, or the user has been asked. Else the agent may ask.
         mistaken: The ids of people who they are not, although their faces are alike.
+        moving: Whether they take the place of the user whom a platform has added, who has been removed for a moment.
     """
 
     key: str
@@ -44,21 +46,32 @@ class Visitor:
     linked: bool = False
     faces: bool = False
     mistaken: frozenset[str] = frozenset()
+    moving: bool = False
 
     @property
     def name(self) -> str | None:
         """Their name, if it is known."""
         return self.node.get("name")
 
-    def met(self, face: FaceVec, least: float) -> Visitor:
+    def good(self, least: float) -> tuple[tuple[float, Vector], ...]:
+        """Return the vectors of at least this quality, each with its quality."""
+        return tuple(one for one in self.vectors if one[0] >= least)
+
+    @property
+    def item(self) -> Recognised | None:
+        """Their item in ``interloc.users``."""
+        return Recognised(self.node["name"], self.node) if self.known and self.name else None
+
+    def met(self, face: FaceVec, *, least: float, threshold: float) -> Visitor:
         """Return the visitor, seen once more.
 
         Args:
             face: Their face.
-            least: The quality from which on a vector is kept.
+            least: The quality from which on a second vector is kept.
+            threshold: The distance up to which two vectors are the same person's.
         """
         vectors = self.vectors
-        if face.fresh and face.quality >= least:
+        if face.fresh and (not vectors or (face.quality >= least and self.resembles(face.vector, threshold))):
             vectors = best([*vectors, (face.quality, face.vector)], KEPT)
         return replace(self, seen=face.time, tracks=self.tracks | {face.track}, vectors=vectors)
 
@@ -72,9 +85,10 @@ class Visitor:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """Whose face a track is: a person in memory, or a stranger (None)."""
+    """Whose face a track is: a person in memory, or a stranger (None); and the vectors that say so."""
 
     person: Node | None
+    vectors: tuple[Vector, ...] = ()
 
 
 def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
@@ -99,7 +113,7 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
     good = [one for one in track if one.fresh and one.quality >= quality][-sure:]
     people = {one.person.id if one.person else None for one in good}
     if len(good) == sure and len(people) == 1:
-        return Decision(good[-1].person)
+        return Decision(good[-1].person, tuple(one.vector for one in good))
     if not good and track and face.time - track[0].time >= WAIT:
         return Decision(None)
     return None

@@ -20,8 +20,12 @@ SAME = 0.3
 """The overlap (intersection over union) above which two boxes are the same face."""
 MOST = 3
 """The greatest number of vectors that a look computes, unless the request says otherwise."""
+WITHIN = 0.6
+"""The share of a box that lies in another box above which it is a part of the same face."""
+LAP = 0.2
+"""The share of a tile that it has in common with the next one."""
 HOG = 960
-"""The longer side (pixels) of the picture that the thorough search sees; it finds faces of 80 pixels."""
+"""The longer side (pixels) of the picture for dlib's detector, which finds faces of 80 pixels; twice that if it is thorough."""
 FACE = 110
 """The width (pixels) to which a face is scaled when its box is refined."""
 
@@ -56,9 +60,9 @@ class Faces:
         Args:
             picture: The picture.
             header: The request. ``known``: the tracks with their last boxes; a track that is ``fresh`` needs no vector.
-                ``thorough``: whether to search small and turned faces as well. ``most``: the greatest number of vectors.
+                ``thorough``: 1 or 2 to look for small faces as well. ``most``: the greatest number of vectors.
         """
-        boxes = self._boxes(picture, thorough=header.get("thorough", False))
+        boxes = self._boxes(picture, thorough=int(header.get("thorough", 0)))
         boxes.sort(key=lambda box: -box[2] * box[3])
         known = header.get("known", ())
         tracks = assign([[side * picture.scale for side in box] for box in boxes], [one["box"] for one in known])
@@ -78,21 +82,27 @@ class Faces:
             found.append(face)
         return found
 
-    def _boxes(self, picture: Picture, *, thorough: bool) -> list[list[float]]:
+    def _boxes(self, picture: Picture, *, thorough: int) -> list[list[float]]:
         pixels = picture.pixels
         height, width = pixels.shape[:2]
         boxes: list[list[float]] = []
-        if self._fast is not None:
-            for one in self._fast.process(pixels).detections or ():
-                box = one.location_data.relative_bounding_box
-                boxes.append([box.xmin * width, box.ymin * height, box.width * width, box.height * height])
-        if thorough or self._fast is None:
-            scale = max(width, height) / HOG
-            small = cv2.resize(pixels, (round(width / scale), round(height / scale)), interpolation=cv2.INTER_AREA)
-            for one in self._hog(small, 0):
-                box = [side * scale for side in (one.left(), one.top(), one.width(), one.height())]
-                if all(overlap(box, other) < SAME for other in boxes):
-                    boxes.append(box)
+        if self._fast is None:
+            scale = max(width, height) / (HOG * (1 + bool(thorough)))
+            found = self._hog(cv2.resize(pixels, (round(width / scale), round(height / scale))), 0)
+            return [[side * scale for side in (one.left(), one.top(), one.width(), one.height())] for one in found]
+        for count in range(1, 2 + thorough):  # MediaPipe sees small faces in tiles of the picture
+            across, down = (round(side / (count * (1 - LAP) + LAP)) for side in (width, height))
+            for place in range(count * count):
+                left = place % count * (width - across) // max(1, count - 1)
+                top = place // count * (height - down) // max(1, count - 1)
+                tile = np.ascontiguousarray(pixels[top : top + down, left : left + across])
+                for one in self._fast.process(tile).detections or ():
+                    part = one.location_data.relative_bounding_box
+                    box = [left + part.xmin * across, top + part.ymin * down, part.width * across, part.height * down]
+                    if any(is_part(box, other) for other in boxes):
+                        continue
+                    if count == 1 or self._refined(pixels, box)[0]:  # in tiles, MediaPipe takes other things for faces
+                        boxes.append(box)
         return boxes
 
     def _encode(self, pixels: np.ndarray, box: list[float]) -> tuple[float, list[float]]:
@@ -159,14 +169,22 @@ def assign(boxes: list[list[float]], known: list[list[float]]) -> list[int | Non
     return [taken.get(i) for i in range(len(boxes))]
 
 
+def is_part(one: list[float], other: list[float]) -> bool:
+    """Return whether two boxes are of one face, of which one box may have only a part."""
+    shared = _shared(one, other)
+    return overlap(one, other) >= SAME or shared >= WITHIN * min(one[2] * one[3], other[2] * other[3])
+
+
 def overlap(one: list[float], other: list[float]) -> float:
     """Return the intersection over union of two boxes (x, y, width, height)."""
+    shared = _shared(one, other)
+    return shared / (one[2] * one[3] + other[2] * other[3] - shared) if shared else 0.0
+
+
+def _shared(one: list[float], other: list[float]) -> float:
     width = min(one[0] + one[2], other[0] + other[2]) - max(one[0], other[0])
     height = min(one[1] + one[3], other[1] + other[3]) - max(one[1], other[1])
-    if width <= 0 or height <= 0:
-        return 0.0
-    shared = width * height
-    return shared / (one[2] * one[3] + other[2] * other[3] - shared)
+    return width * height if width > 0 and height > 0 else 0.0
 
 
 def _rectangle(box: list[float]) -> dlib.rectangle:
