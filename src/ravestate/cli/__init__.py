@@ -30,6 +30,7 @@ COMMANDS = {
     "genqa": "read documents, and answer questions from them",
     "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
     "vision": "say whose faces are in pictures, learn a face, check the camera",
+    "activity": "say what somebody plays in a video, teach an activity",
     "new": "write a small project to start from",
 }
 

@@ -15,7 +15,7 @@ from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
 
 from .pose import Pose, checked
-from .recogniser import numpy
+from .recogniser import Recogniser, numpy
 
 SUFFIX = ".npz"
 LONGEST = 100
@@ -69,9 +69,16 @@ def write(file: Path, poses: Sequence[Pose], name: str = "") -> None:
         raise PlatformError(f"activity: {file} cannot be written: {error.strerror or error}") from None
 
 
-def demonstrations(folder: Path) -> Iterator[Path]:
-    """Yield the files of taught activities, in the order of their names."""
-    yield from sorted(folder.glob(f"*{SUFFIX}"))
+def taught_in(folder: Path, known: Recogniser) -> Iterator[tuple[Path, str]]:
+    """Teach a recogniser all demonstrations in a folder. Yield each file that is left out, with the reason."""
+    for file in sorted(folder.glob(f"*{SUFFIX}")):
+        try:
+            name, poses = read(file)
+        except PlatformError as error:
+            yield file, str(error)
+            continue
+        if not known.teach(name or file.stem, poses):
+            yield file, "it shows too little of a body"
 
 
 def keep(folder: Path, name: str, poses: Sequence[Pose]) -> Path:

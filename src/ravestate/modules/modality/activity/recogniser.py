@@ -146,6 +146,11 @@ class Recogniser:
         """The names of all activities, in alphabetical order."""
         return tuple(sorted({name for name in self._names if name}))
 
+    @property
+    def taught(self) -> frozenset[str]:
+        """The names of the activities that users have taught."""
+        return frozenset(self._taught)
+
     def teach(self, name: str, poses: Sequence[Pose]) -> bool:
         """Learn an activity from a demonstration; return False if too little of the body is visible in it.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ravestate as rs
 from ravestate.errors import PlatformError
 
-from .files import clean, demonstrations, folder_of, keep, read
+from .files import clean, folder_of, keep, taught_in
 from .names import (
     Activity,
     Settings,
@@ -37,22 +37,11 @@ def load(ctx: rs.RuleContext) -> rs.Resign | None:
     except PlatformError as error:
         ctx.log.warning("%s", error)  # labels of an external recogniser work without numpy
         return rs.Resign(str(error))
-    teach_from(found, ctx)
+    for file, fault in taught_in(folder_of(ctx.settings.folder), found):
+        ctx.log.warning("%s is left out: %s", file, fault)
     ctx[model] = found
     ctx[known] = found.names
     return None
-
-
-def teach_from(found: Recogniser, ctx: rs.RuleContext) -> None:
-    """Teach a recogniser all that is in the folder. A broken file is reported and left out."""
-    for file in demonstrations(folder_of(ctx.settings.folder)):
-        try:
-            name, poses = read(file)
-        except PlatformError as error:
-            ctx.log.warning("%s", error)
-            continue
-        if not found.teach(name or file.stem, poses):
-            ctx.log.warning("activity: %s shows too little of a body, and is left out", file)
 
 
 @module.rule(
