@@ -85,7 +85,7 @@ def pose(body: Body, motion: Motion) -> Array:
     height = legs * 0.985 - motion.drop * (legs / 1.64) + motion.leap
     hip = np.stack([np.zeros(frames), height, -0.35 * motion.drop], axis=1)
     turn = _rotation(motion.lean, motion.twist, motion.sway)
-    hips = [hip + [side * body.hips, 0, 0] for side in (1, -1)]
+    hips = [hip + np.array([side * body.hips, 0, 0]) for side in (1, -1)]
     neck = hip + _turned(turn, np.tile([0.0, 1.0, 0.0], (frames, 1)))
     shoulders = [neck + _turned(turn, np.tile([side * body.shoulders, 0.0, 0.0], (frames, 1))) for side in (1, -1)]
     reach = (body.upper_arm + body.forearm) / 1.08
@@ -94,18 +94,24 @@ def pose(body: Body, motion: Motion) -> Array:
         # Paths are for an average body: they keep their place relative to the shoulder, and scale with the arm.
         own = (path - [side * 0.36, 0, 0]) * reach + [side * body.shoulders, 0, 0]
         bend = np.array([side * (0.25 + motion.elbows), -1.0 + 0.6 * motion.elbows, -0.35])
-        wrist, elbow = _joint(shoulder, neck + _turned(turn, own), body.upper_arm, body.forearm, _turned(turn, np.tile(bend, (frames, 1))))
+        wrist, elbow = _joint(
+            shoulder, neck + _turned(turn, own), body.upper_arm, body.forearm, _turned(turn, np.tile(bend, (frames, 1)))
+        )
         wrists.append(wrist)
         elbows.append(elbow)
     knees = []
     for index, joint in enumerate(hips):
-        ankles[:, index], knee = _joint(joint, ankles[:, index], body.thigh, body.shank, np.tile([0.15 * (1 - 2 * index), 0.0, 1.0], (frames, 1)))
+        ankles[:, index], knee = _joint(
+            joint, ankles[:, index], body.thigh, body.shank, np.tile([0.15 * (1 - 2 * index), 0.0, 1.0], (frames, 1))
+        )
         knees.append(knee)
     tilt = _rotation(motion.lean * 0.5 + motion.nod, motion.twist, motion.sway)
 
     def on_head(x: float, y: float, z: float) -> Array:
-        return neck + _turned(turn, np.tile([0, body.neck * 0.5, 0], (frames, 1))) + _turned(
-            tilt, np.tile([x, y + body.neck * 0.5, z], (frames, 1))
+        return (
+            neck
+            + _turned(turn, np.tile([0, body.neck * 0.5, 0], (frames, 1)))
+            + _turned(tilt, np.tile([x, y + body.neck * 0.5, z], (frames, 1)))
         )
 
     size = body.head / 0.22

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-
 from body import Array, Body, pose
 from movements import Movement
 
@@ -39,7 +38,13 @@ HELD_OUT = Conditions(bodies=0.11, tempo=1.9, yaw=50, near=3.0, far=12, noise=0.
 
 
 def perform(
-    movement: Movement, rate: float, conditions: Conditions, rng: np.random.Generator, seconds: float = 3.0, *, left: float = 0.5
+    movement: Movement,
+    rate: float,
+    conditions: Conditions,
+    rng: np.random.Generator,
+    seconds: float = 3.0,
+    *,
+    left: float = 0.5,
 ) -> tuple[Array, Array]:
     """Return the times (T,) and the landmarks (T, 33, 4) of one performance, as MediaPipe would give them.
 

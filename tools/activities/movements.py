@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-
 from body import Array, Motion
 
 Movement = Callable[[Array, np.random.Generator], Motion]
@@ -45,7 +44,9 @@ def _idle(p: Array, rng: np.random.Generator) -> Motion:
 def waving(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     size = _much(rng, 0.24)
-    m.right = _path(_about(rng, -0.55, 0.5, 0.25, spread=0.1), (np.sin(p), (size, 0, 0)), (np.cos(2 * p), (0, -0.15 * size, 0)))
+    m.right = _path(
+        _about(rng, -0.55, 0.5, 0.25, spread=0.1), (np.sin(p), (size, 0, 0)), (np.cos(2 * p), (0, -0.15 * size, 0))
+    )
     return m
 
 
@@ -76,7 +77,10 @@ def squatting(p: Array, rng: np.random.Generator) -> Motion:
     m.lean = _much(rng, 0.45) * down
     out = rng.uniform(0, 1)
     for side, name in ((1, "left"), (-1, "right")):
-        ahead = _about(rng, side * 0.25, -0.25, 0.85) * down[:, None] + _about(rng, side * 0.35, -0.9, 0.2) * (1 - down)[:, None]
+        ahead = (
+            _about(rng, side * 0.25, -0.25, 0.85) * down[:, None]
+            + _about(rng, side * 0.35, -0.9, 0.2) * (1 - down)[:, None]
+        )
         still = _about(rng, side * 0.25, -0.2, 0.85)
         setattr(m, name, ahead if out < 0.6 else np.tile(still, (len(p), 1)))
     return m
@@ -98,7 +102,11 @@ def swimming(p: Array, rng: np.random.Generator) -> Motion:
     size = _much(rng, 0.7, 0.12)
     for side, name, at in ((1, "left", 0), (-1, "right", np.pi)):
         q = p + at
-        setattr(m, name, _path(_about(rng, side * 0.45, 0.0, 0.1), (np.cos(q), (0, size, 0)), (np.sin(q), (0.1 * side, 0, size))))
+        setattr(
+            m,
+            name,
+            _path(_about(rng, side * 0.45, 0.0, 0.1), (np.cos(q), (0, size, 0)), (np.sin(q), (0.1 * side, 0, size))),
+        )
     m.lean = np.full(len(p), rng.uniform(0.1, 0.7))
     m.twist = _much(rng, 0.3) * np.sin(p)
     m.elbows = 0.5
@@ -151,7 +159,15 @@ def rowing(p: Array, rng: np.random.Generator) -> Motion:
     pull = np.sin(p)
     size = _much(rng, 0.33, 0.12)
     for side, name in ((1, "left"), (-1, "right")):
-        setattr(m, name, _path(_about(rng, side * 0.22, -0.45, 0.55, spread=0.05), (pull, (0.05 * side, 0.04, size)), (np.cos(p), (0, 0.08, 0))))
+        setattr(
+            m,
+            name,
+            _path(
+                _about(rng, side * 0.22, -0.45, 0.55, spread=0.05),
+                (pull, (0.05 * side, 0.04, size)),
+                (np.cos(p), (0, 0.08, 0)),
+            ),
+        )
     m.lean = 0.1 + _much(rng, 0.3) * pull
     m.drop += rng.choice([0.0, 0.5, 0.7])
     return m
@@ -175,7 +191,11 @@ def conducting(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     size = _much(rng, 0.22)
     for side, name in ((1, "left"), (-1, "right")):
-        setattr(m, name, _path(_about(rng, side * 0.42, 0.1, 0.5), (np.cos(2 * p), (0, size, 0)), (np.sin(p), (side * size, 0, 0))))
+        setattr(
+            m,
+            name,
+            _path(_about(rng, side * 0.42, 0.1, 0.5), (np.cos(2 * p), (0, size, 0)), (np.sin(p), (side * size, 0, 0))),
+        )
     return m
 
 
@@ -191,7 +211,13 @@ def flying(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     size = _much(rng, 0.4)
     for side, name in ((1, "left"), (-1, "right")):
-        setattr(m, name, _path(_about(rng, side * 1.25, -0.05, 0.05), (np.sin(p), (0, size, 0)), (np.cos(2 * p), (0.1 * side, 0, 0))))
+        setattr(
+            m,
+            name,
+            _path(
+                _about(rng, side * 1.25, -0.05, 0.05), (np.sin(p), (0, size, 0)), (np.cos(2 * p), (0.1 * side, 0, 0))
+            ),
+        )
     m.elbows = 0.3
     return m
 
@@ -204,7 +230,13 @@ def juggling(p: Array, rng: np.random.Generator) -> Motion:
     size = _much(rng, 0.16)
     for side, name, at in ((1, "left", 0), (-1, "right", np.pi)):
         q = p + at
-        setattr(m, name, _path(_about(rng, side * 0.3, -0.5, 0.45), (np.cos(q), (side * 0.6 * size, 0, 0)), (np.sin(q), (0, size, 0))))
+        setattr(
+            m,
+            name,
+            _path(
+                _about(rng, side * 0.3, -0.5, 0.45), (np.cos(q), (side * 0.6 * size, 0, 0)), (np.sin(q), (0, size, 0))
+            ),
+        )
     return m
 
 
@@ -244,7 +276,15 @@ def stirring(p: Array, rng: np.random.Generator) -> Motion:
 def typing(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     for side, name, at in ((1, "left", 0), (-1, "right", np.pi)):
-        setattr(m, name, _path(_about(rng, side * 0.16, -0.6, 0.5), (np.sin(p + at), (0, 0.04, 0)), (np.sin(p * 0.3 + at), (0.06, 0, 0))))
+        setattr(
+            m,
+            name,
+            _path(
+                _about(rng, side * 0.16, -0.6, 0.5),
+                (np.sin(p + at), (0, 0.04, 0)),
+                (np.sin(p * 0.3 + at), (0.06, 0, 0)),
+            ),
+        )
     m.nod = m.nod + 0.2
     return m
 
@@ -261,7 +301,11 @@ def twisting(p: Array, rng: np.random.Generator) -> Motion:
 def kicking(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     up = np.maximum(np.sin(p), 0)
-    m.steps[:, 1] = up[:, None] * [0, _much(rng, 0.5), _much(rng, 0.8)] - np.maximum(-np.sin(p), 0)[:, None] * [0, -0.2, 0.4]
+    m.steps[:, 1] = up[:, None] * [0, _much(rng, 0.5), _much(rng, 0.8)] - np.maximum(-np.sin(p), 0)[:, None] * [
+        0,
+        -0.2,
+        0.4,
+    ]
     m.lean = -0.15 * up
     for side, name in ((1, "left"), (-1, "right")):
         setattr(m, name, _path(_about(rng, side * 0.55, -0.8, 0.1), (np.sin(p), (0, 0.1, side * 0.2))))
@@ -334,7 +378,15 @@ def fidgeting(p: Array, rng: np.random.Generator) -> Motion:
 def playing_the_piano(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     for side, name, at in ((1, "left", rng.uniform(0, 6)), (-1, "right", 0.0)):
-        setattr(m, name, _path(_about(rng, side * 0.3, -0.5, 0.6), (np.sin(p + at), (0, 0.06, 0)), (np.sin(p * 0.35 + at), (0.25, 0, 0))))
+        setattr(
+            m,
+            name,
+            _path(
+                _about(rng, side * 0.3, -0.5, 0.6),
+                (np.sin(p + at), (0, 0.06, 0)),
+                (np.sin(p * 0.35 + at), (0.25, 0, 0)),
+            ),
+        )
     return m
 
 
@@ -342,7 +394,9 @@ def golf(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     angle = _much(rng, 1.6, 0.1) * np.sin(p)
     for side, name in ((1, "left"), (-1, "right")):
-        setattr(m, name, np.stack([0.85 * np.sin(angle), -0.85 * np.cos(angle) + 0.1, 0 * p + 0.35 + side * 0.03], axis=1))
+        setattr(
+            m, name, np.stack([0.85 * np.sin(angle), -0.85 * np.cos(angle) + 0.1, 0 * p + 0.35 + side * 0.03], axis=1)
+        )
     m.lean, m.twist = m.lean + 0.4, 0.5 * np.sin(p)
     return m
 
@@ -441,7 +495,9 @@ def curling(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     for side, name, at in ((1, "left", 0), (-1, "right", np.pi * rng.integers(2))):
         angle = -0.4 + 1.2 * np.sin(p + at)
-        setattr(m, name, np.stack([0 * p + side * 0.4, -0.56 + 0.48 * np.sin(angle), 0.1 + 0.48 * np.cos(angle)], axis=1))
+        setattr(
+            m, name, np.stack([0 * p + side * 0.4, -0.56 + 0.48 * np.sin(angle), 0.1 + 0.48 * np.cos(angle)], axis=1)
+        )
     return m
 
 
@@ -481,7 +537,11 @@ def praying(p: Array, rng: np.random.Generator) -> Motion:
 def pulling_a_rope(p: Array, rng: np.random.Generator) -> Motion:
     m = _idle(p, rng)
     for side, name, at in ((1, "left", 0), (-1, "right", np.pi)):
-        setattr(m, name, _path(_about(rng, side * 0.05, 0.1, 0.4), (np.sin(p + at), (0, 0.5, 0)), (np.cos(p + at), (0, 0, 0.1))))
+        setattr(
+            m,
+            name,
+            _path(_about(rng, side * 0.05, 0.1, 0.4), (np.sin(p + at), (0, 0.5, 0)), (np.cos(p + at), (0, 0, 0.1))),
+        )
     return m
 
 

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
 from camera import HELD_OUT, TAUGHT, Conditions, perform
 from movements import KNOWN, OTHERS, STRANGE, UNTOUCHED, Movement
+
 from ravestate.modules.modality.activity.features import features_of
 from ravestate.modules.modality.activity.pose import Pose
 from ravestate.modules.modality.activity.recogniser import Recogniser, Starter
@@ -74,7 +74,9 @@ def _heat(starter: Starter, trials: dict[str, Any]) -> float:
     for heat in (4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0):
         recogniser = Recogniser(dataclasses.replace(starter, heat=heat, limit=np.inf))
         results = [(name, recogniser.recognise_features(pair)) for name, pairs in trials.items() for pair in pairs]
-        loss = -np.mean([np.log(max(one.confidence if one.name == name else 1 - one.confidence, 1e-3)) for name, one in results])
+        loss = -np.mean(
+            [np.log(max(one.confidence if one.name == name else 1 - one.confidence, 1e-3)) for name, one in results]
+        )
         if loss < least:
             best, least = heat, loss
     return best
@@ -83,7 +85,10 @@ def _heat(starter: Starter, trials: dict[str, Any]) -> float:
 def write(starter: Starter, file: Path = FILE) -> None:
     """Write a starter set."""
     data = {field.name: getattr(starter, field.name) for field in dataclasses.fields(starter)}
-    arrays = {key: value.astype(np.float16) if isinstance(value, np.ndarray) else np.array(value) for key, value in data.items()}
+    arrays = {
+        key: value.astype(np.float16) if isinstance(value, np.ndarray) else np.array(value)
+        for key, value in data.items()
+    }
     for key in ("centre", "size"):
         arrays[key] = data[key].astype(np.float32)
     np.savez_compressed(file, **arrays)
@@ -116,7 +121,12 @@ def score(count: int = 40, *, seed: int = 100, recogniser: Recogniser | None = N
             for pair in pairs:
                 got = recogniser.recognise_features(pair).name
                 row[got] = row.get(got, 0) + 1
-                totals += (name == got, bool(got) and name in KNOWN and name != got, not got and name in STRANGE, not got and name in UNTOUCHED)
+                totals += (
+                    name == got,
+                    bool(got) and name in KNOWN and name != got,
+                    not got and name in STRANGE,
+                    not got and name in UNTOUCHED,
+                )
     known, strange, fresh = (sum(sum(table[name].values()) for name in group) for group in (KNOWN, STRANGE, UNTOUCHED))
     return Score(*(totals / (known, known, strange, fresh)).tolist(), table)
 

@@ -98,7 +98,11 @@ def _teach(options: argparse.Namespace, folder: Path, settings: Any) -> int:
     known = Recogniser()
     parts: list[Sequence[Pose]] = []
     for file in options.files:
-        found = [one for one in windows(_poses(file, options.python), settings.window, settings.window) if known.teach(name, one)]
+        found = [
+            one
+            for one in windows(_poses(file, options.python), settings.window, settings.window)
+            if known.teach(name, one)
+        ]
         if not found:
             raise PlatformError(f"activity: {file} shows too little of a body: nothing was learnt")
         parts += found

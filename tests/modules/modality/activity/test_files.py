@@ -26,7 +26,10 @@ def test_poses_come_back_from_a_file(tmp_path: Path) -> None:
 
 def test_demonstrations_get_names_of_their_own(tmp_path: Path) -> None:
     poses = performance("waving")
-    assert [keep(tmp_path, "Über/../Fliegen", poses).name for _ in range(2)] == ["über-fliegen-1.npz", "über-fliegen-2.npz"]
+    assert [keep(tmp_path, "Über/../Fliegen", poses).name for _ in range(2)] == [
+        "über-fliegen-1.npz",
+        "über-fliegen-2.npz",
+    ]
     assert keep(tmp_path, "!?", poses).name == "activity-1.npz"
 
 

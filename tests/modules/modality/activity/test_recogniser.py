@@ -88,7 +88,9 @@ def test_what_shows_no_body_is_no_activity(recogniser: Recogniser, spoil: str) -
 
 def test_a_few_broken_poses_do_no_harm(recogniser: Recogniser) -> None:
     poses = performance("boxing", 8)
-    broken = [Pose(pose.at, pose.points * np.nan if number % 7 == 3 else pose.points) for number, pose in enumerate(poses)]
+    broken = [
+        Pose(pose.at, pose.points * np.nan if number % 7 == 3 else pose.points) for number, pose in enumerate(poses)
+    ]
     assert recogniser.recognise(broken).name == "boxing"
 
 

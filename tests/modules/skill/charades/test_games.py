@@ -387,7 +387,9 @@ def test_waiting_calls_the_countdown_off_and_typing_holds_the_reminder_back() ->
         )
 
 
-@pytest.mark.parametrize("step", ["offered", "choosing", "counting", "watching", "guessed", "asked", "between", "riddle"])
+@pytest.mark.parametrize(
+    "step", ["offered", "choosing", "counting", "watching", "guessed", "asked", "between", "riddle"]
+)
 @pytest.mark.parametrize("word", ["stop", "stop the game please", "I don't want to play any more"])
 def test_stop_ends_the_game_at_every_step(step: str, word: str) -> None:
     way = {
@@ -417,7 +419,9 @@ def test_stop_ends_the_game_at_every_step(step: str, word: str) -> None:
         assert [phrase(text) for text in sim.said[before:]] == ["declined" if step == "offered" else "thanks_anyway"]
         sim.advance(60.0)
         assert not sim.read(charades.game).is_on
-        assert len(sim.said) == before + 1 or not any(phrase(text).startswith("back") for text in sim.said[before + 1 :])
+        assert len(sim.said) == before + 1 or not any(
+            phrase(text).startswith("back") for text in sim.said[before + 1 :]
+        )
 
 
 def test_goodbye_ends_the_game_and_another_module_answers() -> None:

@@ -43,7 +43,7 @@ def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
         axis=1,
     )
     gone = np.repeat([missing[LEFT_WRIST], missing[RIGHT_WRIST]], 3).tolist()
-    gone += np.repeat(missing[5:7], 2).tolist() + [not skeleton.has_hips, False]
+    gone += [*np.repeat(missing[5:7], 2).tolist(), not skeleton.has_hips, False]
     tracks[:, gone] = np.nan
     centred = tracks - tracks.mean(axis=0)
     deviation = centred.std(axis=0) + 0.02

@@ -22,7 +22,6 @@ from .pose import Pose
 from .skeleton import skeleton_of
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 OWN = 0.9
@@ -206,9 +205,8 @@ class Recogniser:
             probability[name] = probability.get(name, 0.0) + float(one)
         best = int(np.argmin(cost))
         name, away = self._names[best], float(distance[best] / self._limits[best])
-        nearest = {"nearest": name, "distance": away}
         if not name or away > 1.0:
-            return Recognition(**nearest)
+            return Recognition(nearest=name, distance=away)
         reachable = {
             other for other, far, limit in zip(self._names, distance, self._limits, strict=True) if far <= 2 * limit
         }
@@ -216,7 +214,7 @@ class Recogniser:
             ((other, p) for other, p in probability.items() if other in reachable - {name, ""} and p >= LEAST),
             key=lambda pair: -pair[1],
         )
-        return Recognition(name, probability[name], tuple(others), **nearest)
+        return Recognition(name, probability[name], tuple(others), name, away)
 
     def _arrange(self) -> None:
         """Put the taught activities beside those of the starter set."""

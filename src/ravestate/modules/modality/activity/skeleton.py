@@ -119,7 +119,5 @@ def _resampled(
         here = seen[:, index] if seen[:, index].sum() >= 2 else np.ones(len(times), dtype=bool)
         for axis in range(3):
             marks[:, index, axis] = np.interp(frames, times[here], points[here, index, axis])
-    kernel = np.array([0.25, 0.5, 0.25])
     padded = np.concatenate([marks[:1], marks, marks[-1:]])
-    smooth = sum(weight * padded[shift : shift + len(marks)] for shift, weight in enumerate(kernel))
-    return smooth, seen.mean(axis=0)
+    return (padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4, seen.mean(axis=0)

@@ -28,14 +28,14 @@ def poses_in(file: Path, python: Path | None = None, progress: Callable[[float],
     """
     if file.suffix.lower() == SUFFIX:
         return list(read(file)[1])
+    if not file.is_file():
+        raise PlatformError(f"activity: there is no file {file}")
     return asyncio.run(_watched(file, python, progress))
 
 
 async def _watched(file: Path, python: Path | None, progress: Callable[[float], None]) -> list[Pose]:
     from ravestate.modules.modality.visionio.eye import Eye
 
-    if not file.is_file():
-        raise PlatformError(f"activity: there is no file {file}")
     poses: list[Pose] = []
     eye = Eye(python)
     try:

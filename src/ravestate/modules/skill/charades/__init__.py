@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from . import rules as rules
 from .game import Game
-from .names import Settings, abandoned, begun, declined, game, gestures, module, moved, perform, prompted, sightings, watched
+from .names import (
+    Settings,
+    abandoned,
+    begun,
+    declined,
+    game,
+    gestures,
+    module,
+    moved,
+    perform,
+    prompted,
+    sightings,
+    watched,
+)
 from .rules import offer
 from .understanding import Move
 

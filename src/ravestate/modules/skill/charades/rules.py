@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from importlib.resources import files
-from pathlib import Path
 
 import ravestate as rs
 from ravestate.language.bundled import ModelMissing, warn_once
@@ -45,9 +43,15 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
 PRIORITY = 2.0
 """The weight of the rules that continue a game: above all other answers, such as persqa's."""
 
+
 def is_on(now: Game) -> bool:
     """Return whether a game is on, or offered."""
     return now.is_on
+
+
+def is_empty(users: Mapping[str, object]) -> bool:
+    """Return whether no user is left."""
+    return not users
 
 
 def is_waiting(now: Game) -> bool:
@@ -211,7 +215,9 @@ async def guess(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("the game has been stopped")
     seen = ctx[sightings]
     while_watching = [one for at_work, one in seen if at_work]
-    out = guessed(ctx[game], ranked(while_watching or [one for _, one in seen]), World(ctx.random, in_view=ctx[activity.in_view]))
+    out = guessed(
+        ctx[game], ranked(while_watching or [one for _, one in seen]), World(ctx.random, in_view=ctx[activity.in_view])
+    )
     ctx[game] = out.game
     ctx[verbaliser.intent] = Intent(out.say, out.words, __package__)
     if out.feeling is not None:
@@ -286,8 +292,8 @@ async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=abandoned.max_age(None).detached() | interloc.users.removed.max_age(None).detached(),
-    reads=interloc.users,
+    when=abandoned.max_age(None).detached()
+    | (interloc.users.removed.max_age(None).detached() & interloc.users.holds(is_empty)),
     writes=(game, agenda.topics),
     detached=True,
     background=True,
@@ -295,9 +301,8 @@ async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
 async def end(ctx: rs.RuleContext) -> rs.Resign | None:
     """End the game without a word: the user has said goodbye or left, or ignores the offer."""
     now = ctx[game]
-    left = ctx.payload(interloc.users.removed) is not None
-    if not now.is_on or (left and ctx[interloc.users]):
-        return rs.Resign("no game is on, or somebody is still there")
+    if not now.is_on:
+        return rs.Resign("no game is on")
     ctx[game] = Game(turn=now.turn + 1)
     ctx[agenda.topics].remove(TOPIC)
     ctx.wipe(prompted)
