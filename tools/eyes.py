@@ -7,6 +7,7 @@ It does not fetch a file that is there.
 
 from __future__ import annotations
 
+import io
 import shutil
 import subprocess
 import sys
@@ -70,10 +71,11 @@ def opened(archive: Path, inside: str) -> IO[bytes]:
     """Open a file of a wheel or of a source archive."""
     if archive.suffix == ".whl":
         return zipfile.ZipFile(archive).open(inside)
-    found = tarfile.open(archive).extractfile(f"{archive.name.removesuffix('.tar.gz')}/{inside}")
-    if found is None:
-        raise SystemExit(f"{archive.name} has no {inside}")
-    return found
+    with tarfile.open(archive) as files:
+        found = files.extractfile(f"{archive.name.removesuffix('.tar.gz')}/{inside}")
+        if found is None:
+            raise SystemExit(f"{archive.name} has no {inside}")
+        return io.BytesIO(found.read())
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -201,7 +201,7 @@ def _faces(eye: Eye, file: Path) -> list[dict[str, Any]]:
 
 
 @contextmanager
-def _eye(settings: Any) -> Iterator[Eye]:
+def _eye(settings: Any) -> Generator[Eye]:
     from ravestate.modules.modality.visionio.eye import Eye
 
     eye = Eye(settings.python)
@@ -212,7 +212,7 @@ def _eye(settings: Any) -> Iterator[Eye]:
 
 
 @contextmanager
-def _memory(settings: Any, *, make: bool) -> Iterator[Memory | None]:
+def _memory(settings: Any, *, make: bool) -> Generator[Memory | None]:
     """Open memory; give None if there is none and none is to be made."""
     from ravestate.modules.meta.ontology.opening import open_memory, path_of
 

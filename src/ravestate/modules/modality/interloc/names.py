@@ -24,7 +24,6 @@ class Recognised(str):
         return self
 
 
-
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
@@ -32,7 +31,7 @@ users: rs.Collection[Any] = module.collection("users", input=True)
 """The present users: a key that the platform chooses for the user → the user's name, or None while it is unknown. A
 `Recognised` is the name of a user whom a platform has recognised."""
 
-recognised: rs.Signal[rs.Entry[Any]] = module.signal("recognised", payload=rs.Entry, input=True)
+recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
 """A platform has found out who a user is who was present before. The payload is their entry in `users`."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)

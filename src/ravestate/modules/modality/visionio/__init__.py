@@ -1,4 +1,4 @@
-"""What the agent sees: faces, whose they are, and people who come and go."""
+"""The agent's eyes: faces, the people to whom they belong, and people who come and go."""
 
 from __future__ import annotations
 

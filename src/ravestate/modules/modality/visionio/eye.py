@@ -71,7 +71,7 @@ class Eye:
 
         Args:
             want: ``faces``, ``pose`` or both.
-            request: What the worker must know: see its docstring.
+            request: The known tracks, for the worker: see its docstring.
             at: The time for a video or a folder (seconds since the beginning).
             frame: The picture; None to look at the open camera.
 

@@ -59,7 +59,7 @@ class Frames:
             self._wake()
 
     def close(self) -> None:
-        """Note that no more pictures come: whoever is seen leaves. Thread-safe."""
+        """Note that no more pictures come, so that the people leave whom the agent sees. Thread-safe."""
         with self._lock:
             self.closed = True
             self._wake()

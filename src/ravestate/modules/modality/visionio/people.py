@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import binascii
 import struct
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -133,5 +132,5 @@ def unpacked(text: str) -> Vector | None:
     """Return the vector in a text; None if the text is damaged."""
     try:
         return struct.unpack(f"<{NUMBERS}f", base64.b64decode(text, validate=True))
-    except (binascii.Error, struct.error):
+    except (ValueError, struct.error):
         return None

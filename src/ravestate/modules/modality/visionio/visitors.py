@@ -1,4 +1,4 @@
-"""Whom the agent sees: from a history of faces to people who come, are recognised, and leave. Pure."""
+"""The people before the camera: from a history of faces to people who come, are recognised, and leave. Pure."""
 
 from __future__ import annotations
 
@@ -85,14 +85,14 @@ class Visitor:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """Whose face a track is: a person in memory, or a stranger (None); and the vectors that say so."""
+    """The owner of a track's face: a person in memory, or None for a stranger; and the vectors that say so."""
 
     person: Node | None
     vectors: tuple[Vector, ...] = ()
 
 
 def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
-    """Return the vectors of the best quality. Of two that are nearly equal, the better one stays."""
+    """Return the vectors of the best quality. If two are nearly equal, the better one stays."""
     kept: list[tuple[float, Vector]] = []
     for quality, vector in sorted(vectors, key=lambda one: -one[0]):
         if all(dist(vector, other) > ALIKE for _, other in kept):

@@ -27,7 +27,7 @@ class Watch:
     Args:
         settings: The settings of visionio.
         frames: The platform's camera; None to open the camera of the settings.
-        log: For what goes wrong: each fault once.
+        log: The log of faults; it gets each fault once.
     """
 
     def __init__(self, settings: Settings, frames: Frames | None, log: logging.Logger) -> None:
@@ -48,7 +48,7 @@ class Watch:
         return self._eye.skipped if self._eye is not None else 0
 
     async def begin(self) -> bool:
-        """Start the worker and open the camera; return whether there is one. What is missing is logged."""
+        """Start the worker and open the camera; return whether there is one. The log gets what is missing."""
         settings = self._settings
         source = settings.source
         if self._frames is None and source == "default":

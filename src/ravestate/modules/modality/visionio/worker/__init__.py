@@ -11,7 +11,6 @@ A look without bytes looks at the camera's newest picture, or at a video's pictu
 looks at them: an encoded picture (JPEG, PNG), or raw pixels if the record has ``"shape": [height, width]`` (RGB).
 """
 
-# pyright: basic
 from __future__ import annotations
 
 import contextlib

@@ -1,11 +1,11 @@
 """Cameras: a device, a video file, a folder of pictures. Each gives its newest picture, and skips older ones."""
 
-# pyright: basic
 from __future__ import annotations
 
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 from . import picture
 from .picture import Picture
@@ -109,7 +109,7 @@ class Video:
         self.skipped = 0
         self._path, self._loop = path, loop
         self._begun = 0.0  # the time at which this round began
-        self._waiting: tuple[float, object] | None = None
+        self._waiting: tuple[float, Any] | None = None
         self._last = 0.0
         self._fault = ""
         self._open()

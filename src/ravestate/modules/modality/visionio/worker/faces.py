@@ -1,6 +1,5 @@
 """Faces in a picture: where they are, how well they can be seen, and their vectors."""
 
-# pyright: basic
 from __future__ import annotations
 
 import contextlib

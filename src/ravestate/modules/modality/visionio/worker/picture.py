@@ -1,6 +1,5 @@
 """A picture in the worker: pixels of a size that is quick to search, and the size that it had."""
 
-# pyright: basic
 from __future__ import annotations
 
 import os

@@ -1,6 +1,5 @@
 """The pose of a person in a picture."""
 
-# pyright: basic
 from __future__ import annotations
 
 from typing import Any
