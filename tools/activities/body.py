@@ -40,7 +40,7 @@ class Body:
 
 @dataclass
 class Motion:
-    """What a performer does: paths over T frames, for an average body. Hands are relative to the middle of the shoulders,
+    """The paths of a performer over T frames, for an average body. Hands are relative to the middle of the shoulders,
     in the frame of the torso."""
 
     left: Array

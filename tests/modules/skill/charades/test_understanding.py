@@ -1,4 +1,4 @@
-"""What a user says during the game, as a move. None of these sentences is an example."""
+"""The user's words during the game are the right moves. None of these sentences is an example."""
 
 from __future__ import annotations
 

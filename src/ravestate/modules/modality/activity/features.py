@@ -19,9 +19,9 @@ TRACKS = 12
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
     """Return the features; NaN where the joints that they need are not visible.
 
-    The features are: the mean place of each joint, the size of its movement along each axis, the common movement of pairs
-    of coordinates, the sense of rotation of the wrists, and distances between wrists and face. They are statistics over
-    time, so tempo and phase drop out.
+    The features are the mean place of each joint, the size of its movement, and the common movement of pairs of coordinates.
+    Rotations of the wrists and their distances from the face follow. All are statistics over time, so tempo and phase drop
+    out.
     """
     import numpy as np
 

@@ -1,8 +1,8 @@
 """The recogniser: it compares the features of a movement with those of the activities that it knows.
 
 Each activity is a Gaussian: a mean and a deviation of its own for each feature, and one correlation of features for all.
-A movement belongs to the activity under which it is most probable, if it is not too far from that activity's mean, and if
-no *other* movement of the starter set is more probable. Both sides of the body are tried.
+A movement belongs to the activity under which it is most probable. It is unknown if it is too far from that activity's mean, or
+if one of the starter set's *other* movements is more probable. Both sides of the body are tried.
 
 A new activity needs few demonstrations, because only its mean is new: its deviations are those of an average activity.
 """

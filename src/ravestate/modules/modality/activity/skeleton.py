@@ -61,8 +61,8 @@ class Skeleton:
 def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
     """Return the normalised movement of some poses; None if they are too few, or the shoulders are not visible.
 
-    Distance, side and direction of the camera drop out: the origin moves with the body, the unit is the torso, and the
-    body is turned about the vertical until its shoulders, on average, are parallel to the picture.
+    Distance, side and direction of the camera drop out. The origin moves with the body, and the unit is the torso. The body is
+    turned about the vertical until its shoulders, on average, are parallel to the picture.
 
     Args:
         poses: The poses of one body, in the order of their times.
