@@ -37,6 +37,9 @@ choosing | no, you go first                    | swap
 choosing | please give me a riddle             | swap
 choosing | how many people live in Berlin?     | -
 choosing | please stop the game                | stop
+counting | ready                               | -
+counting | I am ready                          | -
+watching | okay                                | -
 counting | stop!                               | stop
 counting | wait wait                           | wait
 counting | I want to stop playing              | stop

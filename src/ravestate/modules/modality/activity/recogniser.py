@@ -36,8 +36,10 @@ LIMIT = 4.0
 """The greatest distance from a taught activity, in the same unit."""
 REMEMBERED = 64
 """The number of inverse matrices that are kept: one for each set of visible features."""
-LEAST = 0.05
-"""The least probability of a next best name."""
+SECOND = 3
+"""The maximum number of next best names."""
+FAR = 3.0
+"""The greatest distance of a next best activity, in limits: it may be improbable, but the movement resembles it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,12 +210,12 @@ class Recogniser:
         if not name or away > 1.0:
             return Recognition(nearest=name, distance=away)
         reachable = {
-            other for other, far, limit in zip(self._names, distance, self._limits, strict=True) if far <= 2 * limit
+            other for other, far, limit in zip(self._names, distance, self._limits, strict=True) if far <= FAR * limit
         }
         others = sorted(
-            ((other, p) for other, p in probability.items() if other in reachable - {name, ""} and p >= LEAST),
+            ((other, p) for other, p in probability.items() if other in reachable - {name, ""}),
             key=lambda pair: -pair[1],
-        )
+        )[:SECOND]
         return Recognition(name, probability[name], tuple(others), name, away)
 
     def _arrange(self) -> None:

@@ -47,7 +47,8 @@ def understand(seen: Analysis, moves: Set[str], known: Iterable[str] = ()) -> Mo
         moves: The moves that the game knows at this step; see `game.moves_of`.
         known: The names of the activities that the recogniser knows.
     """
-    if (act := _act(seen, moves)) is not None:
+    exactly = "named" in moves and any(map(names().match_exactly, seen.sentences))
+    if not exactly and (act := _act(seen, moves)) is not None:
         return act
     asks = seen.question is not None
     answer = _answer(seen, weak="unclear" in moves)
@@ -80,17 +81,17 @@ def _answer(seen: Analysis, *, weak: bool) -> str:
 
 def _act(seen: Analysis, moves: Set[str]) -> Move | None:
     """Return the move that the examples of this game or the acts of `nlp` show."""
-    matches = [match for match in examples().match_all(seen.sentences) if match is not None and match.name in moves]
-    best = max(matches, key=lambda match: match.score, default=None)
-    ends = "stop" in moves
-    if ends and "farewell" in seen.acts and (best is None or best.name == "stop"):
-        return Move("farewell")
+    matches = [match for match in examples().match_all(seen.sentences) if match is not None]
+    best = max((one for one in matches if one.name in moves), key=lambda match: match.score, default=None)
+    if "stop" in moves and (best is None or best.name == "stop"):
+        # The acts of `nlp` are for any talk: to them, "ready" resembles a farewell, and "I'd rather not say" a stop.
+        other = any(match.name not in moves for match in matches)
+        if "farewell" in seen.acts and not other:
+            return Move("farewell")
+        if best is not None or ((not other and "secret" not in moves and "stop" in seen.acts) or "quiet" in seen.acts):
+            return Move("stop")
     if best is not None:
         return Move(best.name)
-    if ends and (
-        "quiet" in seen.acts or ("stop" in seen.acts and "secret" not in moves)
-    ):  # "I'd rather not say" is a stop of `nlp`
-        return Move("stop")
     found = (move for act, move in OF_ACT if act in seen.acts and move in moves)
     return next(map(Move, found), None)
 
