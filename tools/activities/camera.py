@@ -33,8 +33,8 @@ class Conditions:
     """The share of performances in which a hand or an elbow is lost for a part of the time."""
 
 
-TAUGHT = Conditions(bodies=0.07, tempo=1.6, yaw=40, near=3.5, far=9, noise=0.025, cut=0.3, lost=0.2)
-HELD_OUT = Conditions(bodies=0.11, tempo=1.9, yaw=50, near=3.0, far=12, noise=0.03, cut=0.4, lost=0.3)
+TAUGHT = Conditions(bodies=0.07, tempo=1.6, yaw=50, near=3.5, far=9, noise=0.025, cut=0.3, lost=0.2)
+HELD_OUT = Conditions(bodies=0.11, tempo=1.9, yaw=60, near=3.0, far=12, noise=0.03, cut=0.4, lost=0.3)
 
 
 def perform(

@@ -11,7 +11,7 @@ from ravestate.errors import PlatformError
 from .files import SUFFIX, read
 from .pose import Pose, pose_of
 
-RATE = 15.0
+RATE = 12.0
 """The pictures of a video that are looked at, for each second."""
 
 
