@@ -206,29 +206,26 @@ def test_two_wrong_guesses_and_the_answer_at_once() -> None:
 
 def test_other_questions_are_answered_and_the_game_goes_on() -> None:
     with agent() as sim:
-        run_spoken(sim)
 
+        def said(event: str = "", seconds: float = 0.0) -> list[str]:
+            before = len(sim.said)
+            if event:
+                sim.say(event)
+            sim.advance(seconds)
+            return [phrase(text) for text in sim.said[before:]]
 
-def run_spoken(sim: Simulation) -> None:
-    def said(event: str = "", seconds: float = 0.0) -> list[str]:
-        before = len(sim.said)
-        if event:
-            sim.say(event)
-        sim.advance(seconds)
-        return [phrase(text) for text in sim.said[before:]]
-
-    assert said("let's play charades") == ["begin"]
-    assert said("what is the capital of Peru?") == ["I know it."]
-    assert said(seconds=4.5) == ["back_choosing"]
-    assert said("ready", 3.5) == COUNTDOWN.split()
-    assert said("how tall is the tower?") == ["I know it."]
-    sim.emit(activity.recognised, activity.Activity("driving", 0.7, 0.0, 1.0))
-    assert said(seconds=3) == ["guess"]
-    assert said("my brother arrives in an hour with the train") == ["I see."]
-    assert said(seconds=5) == ["back_guessed"]
-    assert said("who wrote Faust?", 1) == ["I know it."]
-    assert said("and who wrote Hamlet?", 6) == ["I know it.", "back_guessed"]
-    assert said("yes") == ["right"]
+        assert said("let's play charades") == ["begin"]
+        assert said("what is the capital of Peru?") == ["I know it."]
+        assert said(seconds=4.5) == ["back_choosing"]
+        assert said("ready", 3.5) == COUNTDOWN.split()
+        assert said("how tall is the tower?") == ["I know it."]
+        sim.emit(activity.recognised, activity.Activity("driving", 0.7, 0.0, 1.0))
+        assert said(seconds=3) == ["guess"]
+        assert said("my brother arrives in an hour with the train") == ["I see."]
+        assert said(seconds=5) == ["back_guessed"]
+        assert said("who wrote Faust?", 1) == ["I know it."]
+        assert said("and who wrote Hamlet?", 6) == ["I know it.", "back_guessed"]
+        assert said("yes") == ["right"]
 
 
 def test_silence_counts_down_then_asks_again_then_ends_the_game() -> None:
