@@ -2,7 +2,11 @@
 
 import asyncio
 import threading
+from types import SimpleNamespace
 
+import pytest
+
+from ravestate.errors import PlatformError
 from ravestate.modules.modality.visionio.frames import Frame, Frames
 
 
@@ -28,6 +32,18 @@ def test_a_picture_from_another_thread_wakes_the_agent() -> None:
     frame = asyncio.run(watch())
     assert frame is not None and (frame.data, frame.shape) == (b"pixels", (1, 2))
     assert "pixels" not in repr(frame)
+
+
+def test_messages_of_ros() -> None:
+    frames = Frames()
+    frames.put_message(SimpleNamespace(format="jpeg", data=[1, 2]))
+    frame = asyncio.run(frames.next())
+    assert frame is not None and (frame.data, frame.shape) == (b"\1\2", None)
+    frames.put_message(SimpleNamespace(data=bytes(6), height=1, width=2, step=6, encoding="8UC3"))
+    frame = asyncio.run(frames.next())
+    assert frame is not None and (frame.shape, frame.encoding, frame.step) == ((1, 2), "bgr8", 6)
+    with pytest.raises(PlatformError, match="'32FC1': publish one of rgb8, bgr8"):
+        frames.put_message(SimpleNamespace(data=b"", height=1, width=1, step=4, encoding="32FC1"))
 
 
 def test_a_closed_camera_ends_the_watch_and_takes_nothing_more() -> None:

@@ -161,6 +161,16 @@ def test_a_face_that_is_lost_for_a_moment_is_the_same_visitor(memory: Path) -> N
         assert one.tracks == {1, 2}
 
 
+def test_a_face_vector_of_another_module_counts_as_well(memory: Path) -> None:
+    """A robot may bring its own recogniser."""
+    ada = Node("Person", {"name": "Ada"})
+    with agent(memory) as sim:
+        for _ in range(3):
+            sim.emit(visionio.facevec, visionio.FaceVec((0.1,) * 128, (10, 20, 50, 50), 1, ada))
+            sim.advance(0.2)
+        assert present(sim) == ["Ada"] and "Ada" in sim.said[0]
+
+
 def test_a_flash_of_a_face_is_nobody(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()

@@ -52,7 +52,7 @@ async def watched(monkeypatch: pytest.MonkeyPatch, eye: Blind, looks: int) -> li
     assert await watch.begin()
     for _ in range(looks):
         frame = await watch.next()
-        assert frame is not None
+        assert frame is True
         await watch.look(["faces"], {}, 0.0, frame)
         if not await watch.rest(0.02, sleep):
             break
@@ -133,6 +133,12 @@ def test_a_platforms_pictures(tmp_path: Path) -> None:
         frames.put(b"broken")
         sim.advance(0.3)
         assert frames.dropped == 3
+        sim.advance(10)  # the telephone's screen is locked
+        assert not sim.read(visionio.visitors)
+        for _ in range(3):
+            frames.put(data)
+            sim.advance(0.3)
+        assert len(sim.read(visionio.visitors)) == 1
         frames.close()
         sim.advance(10)
         assert not sim.read(visionio.visitors) and sim.failures == []

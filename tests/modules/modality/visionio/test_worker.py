@@ -1,14 +1,16 @@
 """The vision worker on real photos: finds, recognises, and bears any picture."""
 
+import asyncio
 from itertools import combinations
 from math import dist
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from modules.modality.visionio.photographs import OBAMA, OTHERS, eye, faces, look, make, photo
 from ravestate.errors import PlatformError
-from ravestate.modules.modality.visionio.frames import Frame
+from ravestate.modules.modality.visionio.frames import Frame, Frames
 from ravestate.modules.modality.visionio.names import Settings
 from ravestate.modules.modality.visionio.people import MERGE
 
@@ -89,12 +91,36 @@ def test_raw_pixels(tmp_path: Path) -> None:
     assert dist(seen["faces"][0]["vector"], faces()["hanks"].vector) < 0.1
 
 
+@pytest.mark.parametrize("encoding", ["bgr8", "rgba8", "mono8"])
+def test_a_picture_of_ros(tmp_path: Path, encoding: str) -> None:
+    """With rows that are longer than their pixels."""
+    file = tmp_path / "raw"
+    make(
+        """
+kind = {"bgr8": None, "rgba8": cv2.COLOR_BGR2RGBA, "mono8": cv2.COLOR_BGR2GRAY}[a[2]]
+picture = cv2.imread(a[0])
+rows = (picture if kind is None else cv2.cvtColor(picture, kind)).reshape(112, -1)
+open(a[1], "wb").write(np.hstack([rows, np.zeros((112, 5), np.uint8)]).tobytes())
+""",
+        photo("hanks"), file, encoding,
+    )  # fmt: skip
+    frames = Frames()
+    data = file.read_bytes()
+    frames.put_message(
+        SimpleNamespace(data=list(data), height=112, width=112, encoding=encoding, step=len(data) // 112)
+    )
+    frame = asyncio.run(frames.next())
+    seen = eye().look_now(["faces"], {"thorough": 1}, frame=frame)
+    assert seen is not None
+    assert dist(seen["faces"][0]["vector"], faces()["hanks"].vector) < (0.4 if encoding == "mono8" else 0.1)
+
+
 @pytest.mark.parametrize(
     ("data", "shape", "why"),
     [
         (b"not a picture", None, "no picture that can be read"),
         (b"\xff\xd8\xff\xe0" + bytes(100), None, "no picture that can be read"),
-        (bytes(10), (4, 4), "no RGB picture of 4 x 4 pixels"),
+        (bytes(10), (4, 4), "no picture of 4 x 4 pixels in rgb8"),
         (b"", None, "the picture is empty"),
     ],
 )

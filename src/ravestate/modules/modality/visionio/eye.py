@@ -86,7 +86,7 @@ class Eye:
         """Look at a picture as `look` does, and block meanwhile."""
         header: dict[str, Any] = {"do": "look", "stream": self._stream, "want": list(want), "at": at, **request}
         if frame is not None and frame.shape is not None:
-            header["shape"] = list(frame.shape)
+            header |= {"shape": list(frame.shape), "encoding": frame.encoding, "step": frame.step}
         if frame is None and self._pid != self._process.pid:
             self._open()  # the worker has died meanwhile
         data = b"" if frame is None else frame.data

@@ -25,7 +25,7 @@ class FaceVec:
         distance: The Euclidean distance to that person's nearest stored vector; None without a person.
         quality: How well the face could be seen when the vector was computed (0 to 1).
         fresh: Whether the vector was computed from this picture, rather than from an earlier one.
-        time: The time of the picture (seconds on the context's clock).
+        time: The time of the picture (seconds on the context's clock); None for now.
     """
 
     vector: Vector
@@ -35,7 +35,7 @@ class FaceVec:
     distance: float | None = None
     quality: float = 1.0
     fresh: bool = True
-    time: float = 0.0
+    time: float | None = None
 
     def __repr__(self) -> str:
         who = self.person.get("name") if self.person else None

@@ -5,6 +5,12 @@ from __future__ import annotations
 import asyncio
 import threading
 from dataclasses import dataclass
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+ENCODINGS = ("rgb8", "bgr8", "rgba8", "bgra8", "mono8")
+"""The kinds of raw pixels."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -12,12 +18,16 @@ class Frame:
     """A picture in memory. It is never written to a file.
 
     Attributes:
-        data: An encoded picture (JPEG, PNG), or raw pixels: RGB, a byte each, row after row.
+        data: An encoded picture (JPEG, PNG), or raw pixels, row after row.
         shape: The height and the width of raw pixels; None for an encoded picture.
+        encoding: The bytes of a raw pixel, by ROS's names: one of `ENCODINGS`.
+        step: The bytes of a row of raw pixels; 0 if no bytes follow the last pixel of a row.
     """
 
     data: bytes
     shape: tuple[int, int] | None = None
+    encoding: str = "rgb8"
+    step: int = 0
 
     def __repr__(self) -> str:
         return f"Frame({len(self.data)} bytes)"
@@ -51,11 +61,31 @@ class Frames:
             data: An encoded picture (JPEG, PNG), or raw RGB pixels.
             shape: The height and the width (pixels) of raw pixels; None for an encoded picture.
         """
+        self._put(Frame(bytes(data), shape))
+
+    def put_message(self, message: Any) -> None:
+        """Take a picture of ROS: a message with the fields of ``sensor_msgs/Image`` or ``CompressedImage``. Thread-safe.
+
+        Raises:
+            PlatformError: The message has another encoding than `ENCODINGS`.
+        """
+        encoding = getattr(message, "encoding", None)
+        if encoding is None:
+            self._put(Frame(bytes(message.data)))
+            return
+        encoding = {"8UC3": "bgr8", "8UC1": "mono8"}.get(encoding, encoding)
+        if encoding not in ENCODINGS:
+            raise PlatformError(
+                f"visionio: a picture has the encoding {encoding!r}: publish one of {', '.join(ENCODINGS)}, or a compressed picture"
+            )
+        self._put(Frame(bytes(message.data), (message.height, message.width), encoding, message.step))
+
+    def _put(self, frame: Frame) -> None:
         with self._lock:
             if self.closed:
                 return
             self.dropped += self._newest is not None
-            self._newest = Frame(bytes(data), shape)
+            self._newest = frame
             self._wake()
 
     def close(self) -> None:

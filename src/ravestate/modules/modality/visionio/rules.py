@@ -74,7 +74,9 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         while (frame := await view.next()) is not None:
             now = ctx.now
-            seen = await view.look(want, tracks.request(now), now - began, frame)
+            seen = await view.look(want, tracks.request(now), now - began, frame) if frame else None
+            if view.blind:
+                ctx.emit(sighted, Sighting(Look(now, (0, 0), dropped=view.skipped), ()))  # so that people leave
             if seen is not None:
                 look = Look(now, tuple(seen["picture"]), seen["dark"], view.skipped)
                 ctx.emit(sighted, Sighting(look, tuple(tracks.update(seen["faces"], now))))
@@ -150,6 +152,8 @@ async def track(ctx: rs.RuleContext) -> None:
     """Keep a history of faces with new vectors, and note who has come once enough of them agree."""
     settings: Settings = ctx.settings
     face = ctx.payload(facevec)
+    if face.time is None:
+        face = replace(face, time=ctx.now)
     decision = None
     if face.fresh:
         seen = (*ctx[history], face)[-settings.history :]
@@ -160,7 +164,7 @@ async def track(ctx: rs.RuleContext) -> None:
     if one is not None and decision is not None:
         one = _reconsidered(ctx, one, face, decision)
     if one is None and decision is not None:
-        one = whose(here, face, decision, settings.threshold) or _arrival(ctx, decision, face.time)
+        one = whose(here, face, decision, settings.threshold) or _arrival(ctx, decision)
         if decision.person is not None and not one.known:
             one = _recognised(ctx, one, decision.person)
     if one is not None:
@@ -184,9 +188,9 @@ def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: De
     return None
 
 
-def _arrival(ctx: rs.RuleContext, decision: Decision, now: float) -> Visitor:
+def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
     """Return a new visitor, and add them to the present users, unless they are the user whom a platform has added."""
-    users, here = ctx[interloc.users], ctx[visitors]
+    users, here, now = ctx[interloc.users], ctx[visitors], ctx.now
     person = decision.person
     others = [key for key in users if not key.startswith(KEY)]
     key = next((key for key in others if len(others) == 1 and key not in here), None)

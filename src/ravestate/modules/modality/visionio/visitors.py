@@ -73,7 +73,7 @@ class Visitor:
         vectors = self.vectors
         if face.fresh and (not vectors or (face.quality >= least and self.resembles(face.vector, threshold))):
             vectors = best([*vectors, (face.quality, face.vector)], KEPT)
-        return replace(self, seen=face.time, tracks=self.tracks | {face.track}, vectors=vectors)
+        return replace(self, seen=at(face), tracks=self.tracks | {face.track}, vectors=vectors)
 
     def resembles(self, vector: Vector, threshold: float) -> bool:
         """Return whether a vector is as close to those of this visit as one person's are."""
@@ -89,6 +89,11 @@ class Decision:
 
     person: Node | None
     vectors: tuple[Vector, ...] = ()
+
+
+def at(face: FaceVec) -> float:
+    """Return the time of a face (seconds on the context's clock)."""
+    return face.time or 0.0
 
 
 def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
@@ -114,7 +119,7 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
     people = {one.person.id if one.person else None for one in good}
     if len(good) == sure and len(people) == 1:
         return Decision(good[-1].person, tuple(one.vector for one in good))
-    if not good and track and face.time - track[0].time >= WAIT:
+    if not good and track and at(face) - at(track[0]) >= WAIT:
         return Decision(None)
     return None
 

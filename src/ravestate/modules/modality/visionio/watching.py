@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import Any, Literal
@@ -39,6 +40,12 @@ class Watch:
         self._faults = 0
         self._told = ""
         self._dark = 0
+        self._silent = False
+
+    @property
+    def blind(self) -> bool:
+        """Whether the last look saw nothing, because the camera fails or is silent."""
+        return self._silent or self._faults > 0
 
     @property
     def skipped(self) -> int:
@@ -71,10 +78,19 @@ class Watch:
             return False
         return True
 
-    async def next(self) -> Frame | Literal[True] | None:
-        """Wait for a picture of the platform's camera; True for a camera of the worker; None after the last picture."""
+    async def next(self) -> Frame | bool | None:
+        """Wait for a picture of the platform's camera, or return True for a camera of the worker.
+
+        Returns:
+            False if the platform's camera is silent for `gone_after` seconds; None after the last picture.
+        """
         if self._frames is not None:
-            return await self._frames.next()
+            self._silent = False
+            try:
+                return await asyncio.wait_for(self._frames.next(), self._settings.gone_after)
+            except TimeoutError:
+                self._silent = True
+                return False
         return None if self._eye is None or self._eye.ended else True
 
     async def look(

@@ -8,7 +8,8 @@ It runs in an environment of its own, and imports nothing from Ravestate. A requ
 
 An answer has ``fault`` if a camera or a picture fails; then nothing was seen. Without a new picture it has no ``picture``.
 A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``. With bytes, it
-looks at them: an encoded picture (JPEG, PNG), or raw pixels if the record has ``"shape": [height, width]`` (RGB).
+looks at them: an encoded picture (JPEG, PNG), or raw pixels if the record has ``"shape": [height, width]``. It may then have
+``"encoding"`` (``rgb8``) and ``"step"``, the bytes of a row.
 """
 
 from __future__ import annotations
@@ -65,7 +66,9 @@ class Worker:
         answer: dict[str, Any] = {}
         if data:
             try:
-                seen = picture.from_bytes(data, header.get("shape"))
+                seen = picture.from_bytes(
+                    data, header.get("shape"), header.get("encoding", "rgb8"), header.get("step", 0)
+                )
             except ValueError as error:
                 return {"fault": str(error)}
         else:

@@ -40,17 +40,37 @@ class Picture:
         self.time = time
 
 
-def from_bytes(data: bytes, shape: list[int] | None = None) -> Picture:
-    """Return the picture in an encoded file, or in raw RGB pixels of this shape (height, width).
+CHANNELS = {
+    "rgb8": (3, None),
+    "bgr8": (3, cv2.COLOR_BGR2RGB),
+    "rgba8": (4, cv2.COLOR_RGBA2RGB),
+    "bgra8": (4, cv2.COLOR_BGRA2RGB),
+    "mono8": (1, cv2.COLOR_GRAY2RGB),
+}
+"""Encoding of raw pixels → the bytes of a pixel, and OpenCV's conversion to RGB."""
+
+
+def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb8", step: int = 0) -> Picture:
+    """Return the picture in an encoded file, or in raw pixels.
+
+    Args:
+        data: The file or the pixels.
+        shape: The height and the width of raw pixels; None for a file.
+        encoding: A key of `CHANNELS`.
+        step: The bytes of a row of raw pixels; 0 if no bytes follow its last pixel.
 
     Raises:
         ValueError: The bytes are no picture.
     """
     if shape is not None:
         height, width = shape
-        if len(data) != height * width * 3:
-            raise ValueError(f"{len(data)} bytes are no RGB picture of {width} x {height} pixels")
-        return Picture(np.frombuffer(data, np.uint8).reshape(height, width, 3))
+        channels, conversion = CHANNELS[encoding]
+        step = step or width * channels
+        if not 0 < width * channels <= step or len(data) != height * step:
+            raise ValueError(f"{len(data)} bytes are no picture of {width} x {height} pixels in {encoding}")
+        rows = np.frombuffer(data, np.uint8).reshape(height, step)[:, : width * channels]
+        pixels = np.ascontiguousarray(rows.reshape(height, width, channels))
+        return Picture(pixels if conversion is None else cv2.cvtColor(pixels, conversion))
     try:
         pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
     except cv2.error as error:
