@@ -640,3 +640,18 @@ def test_a_burst_for_rules_of_one_slot_is_answered_in_order() -> None:
     play = Play(world, budget=50).play()
     assert runs(play) == ["r0"] * 50
     assert not play.engine.agenda.places
+
+
+def test_an_alternative_that_waits_behind_a_rival_puts_it_under_pressure_from_the_first_moment() -> None:
+    # L15, L16: r0 keeps the best rule r2 waiting, and r1 keeps r3 waiting. The patience of both ends at 1 s. Then r2 runs
+    # and resigns, and r3 may answer at once.
+    rules = (
+        RuleOf(when=on("s0", "s1"), writes=("v0",), weight=10.0),
+        RuleOf(when=on("s0", "s2"), writes=("v0",)),
+        RuleOf(when=on("s0"), writes=("v0",), weight=20.0, acts=(Act(end="resigned"),)),
+        RuleOf(when=on("s0"), writes=("v0",), weight=0.1),
+        RuleOf(when=on("s3")),
+    )
+    play = Play(World((*S3, SignalOf()), V1, rules, ((0.0, ("emit", "s0", 0)),))).play()
+    starts = [line.split(" s <")[0] for line in play.heard if "< Run(" in line]
+    assert (runs(play), starts) == (["r2", "r3"], ["1", "1"])

@@ -154,6 +154,8 @@ class Agenda:
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
+            if activation in self.state.alternatives and not refusal.taken and self.consent.is_contested(activation):
+                self.consent.halves.sets.unfold(activation)
             return False
         return True
 
@@ -180,7 +182,7 @@ class Agenda:
         state.refused.clear()
         for activation in found:
             if activation not in state.stuck:
-                state.stuck[activation] = None
+                state.stuck.add(activation)
                 heapq.heappush(breakers, (state.order(activation), activation))
         while breakers:
             order, best = heapq.heappop(breakers)
@@ -191,7 +193,7 @@ class Agenda:
                 continue
             for group in best.firm_groups():
                 for other in group.interested:  # what these wait for depends on the group, and so on this start
-                    state.stuck.pop(other, None)
+                    state.stuck.discard(other)
                     state.refused[other] = None
             self.runs.start(best)
             break
