@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.modules import activity, agenda, charades, emotion, hibye, interloc, nlp, rawio
+from ravestate.modules import activity, agenda, charades, emotion, hibye, idle, interloc, nlp, rawio
 from ravestate.modules.meta.verbaliser.phrases import PhraseBook
 from ravestate.modules.skill.charades.game import moves_of
 from ravestate.testing import Simulation, simulate
@@ -477,3 +477,20 @@ def test_every_question_can_be_repeated() -> None:
             assert "repeat" in moves_of(step)  # type: ignore[arg-type]
             assert f"back_{step}" in PhraseBook.load([PHRASES]).intents
         assert sim.said == []
+
+
+def test_stop_ends_the_game_beside_modules_that_answer_it_themselves() -> None:
+    """The agent does not only promise to be quiet."""
+    loud = rs.Module("loud", requires=[rawio, idle])
+
+    @loud.rule(when=idle.hushed, writes=rawio.output, weight=20.0)
+    async def keep_quiet(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "I'll be quiet."
+
+    with agent(loud) as sim:
+        sim.say("let's play charades")
+        sim.say("stop")
+        assert phrase(sim.said[-1]) == "thanks_anyway"
+        assert not sim.read(charades.game).is_on
+        sim.say("stop")
+        assert sim.said[-1] == "I'll be quiet."

@@ -15,6 +15,16 @@ FLOOR = 0.95
 """The least share of sentences that must be understood as written here."""
 
 ROWS = """
+off      | let's play charades                 | wanted
+off      | can you guess what I'm doing?       | wanted
+off      | let's play something                | play
+off      | do you want to play a game with me? | play
+off      | let's play a round                  | play
+off      | I'm so bored today                  | play
+off      | let's play word chain               | -
+off      | can we play chess?                  | -
+off      | I am ready                          | -
+off      | yes                                 | -
 offered  | yes please                          | yes
 offered  | sure, why not                       | yes
 offered  | no thanks                           | no

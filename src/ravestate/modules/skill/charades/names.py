@@ -49,6 +49,9 @@ perform: rs.Signal[str] = module.signal("perform", payload=str)
 moved: rs.Signal[Move] = module.signal("moved", payload=Move)
 """The user's words are a move in the game."""
 
+invited: rs.Signal[Move] = module.signal("invited", payload=Move)
+"""The user wants to play something, or is bored."""
+
 strayed: rs.Slot[float] = module.slot("strayed", 0.0, always=True)
 """The time of the user's last words during a game that were no move in it, in seconds since the context began."""
 

@@ -22,6 +22,7 @@ from .names import (
     declined,
     game,
     gestures,
+    invited,
     module,
     moved,
     perform,
@@ -40,8 +41,8 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
     "affectionate": emotion.affectionate,
     "sad": emotion.sad,
 }
-PRIORITY = 2.0
-"""The weight of the rules that continue a game: above all other answers, such as persqa's."""
+PRIORITY = 40.0
+"""The weight of the answers in a game: above all others, such as agentqa's answer to "stop"."""
 
 
 def is_on(now: Game) -> bool:
@@ -99,7 +100,7 @@ async def note_offer(ctx: rs.RuleContext) -> None:
 # ------------------------------------------------------------------------------- the user's moves
 
 
-@module.rule(when=nlp.analysis.changed, reads=(game, activity.known), writes=strayed, emits=(moved, abandoned))
+@module.rule(when=nlp.analysis.changed, reads=(game, activity.known), writes=strayed, emits=(moved, invited, abandoned))
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     """Emit the move that the user's words make. Words on something else are left to the other skills."""
     seen = ctx.payload(nlp.analysis.changed)
@@ -107,7 +108,9 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     if seen is None:
         return rs.Resign("nothing was analysed")
     move = await asyncio.to_thread(understand, seen, moves_of(now.step), ctx[activity.known])
-    if move is not None and move.kind != "farewell":
+    if move is not None and move.kind == "play":
+        ctx.emit(invited, move)
+    elif move is not None and move.kind != "farewell":
         ctx.emit(moved, move)
     elif not now.is_on:
         return rs.Resign("no game is on")
@@ -127,6 +130,12 @@ SURROUNDINGS = (gestures, activity.in_view)
 async def answer(ctx: rs.RuleContext) -> None:
     """Answer the user's move."""
     carry_out(ctx, play(ctx[game], ctx.payload(moved), world_of(ctx)))
+
+
+@module.rule(when=invited, reads=SURROUNDINGS, writes=EFFECTS, emits=EMITTED, detached=True)
+async def propose(ctx: rs.RuleContext) -> None:
+    """Offer the game to a user who wants to play, or is bored. A skill that knows the game they name goes first."""
+    carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
 
 
 def carry_out(ctx: rs.RuleContext, out: Outcome) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+from ravestate.language.contractions import word_set
 from ravestate.language.examples import read_examples
 from ravestate.language.matcher import Matcher
 from ravestate.language.normal import plain
@@ -21,6 +22,8 @@ SHORT = 3
 """Up to this number of words, an utterance that is no question is an unclear answer, and no remark on something else."""
 OF_ACT = (("repeat", "repeat"), ("play", "play"), ("play", "wanted"), ("bored", "play"))
 """Act in ``acts.yaml`` → the move, where the step has this move."""
+ANY_GAME = word_set("game round")
+"""Nouns after *play* that name no game."""
 SURE = 2
 """The strength of a yes or no that is more than *I think so*."""
 SURE_NAME = 0.65
@@ -93,7 +96,15 @@ def _act(seen: Analysis, moves: Set[str]) -> Move | None:
     if best is not None:
         return Move(best.name)
     found = (move for act, move in OF_ACT if act in seen.acts and move in moves)
-    return next(map(Move, found), None)
+    kind = next(found, None)
+    return None if kind is None or (kind == "play" and _names_a_game(seen)) else Move(kind)
+
+
+def _names_a_game(seen: Analysis) -> bool:
+    """Return whether the user wants to play another game, such as chess. Charades itself is the move ``wanted``."""
+    verbs = [word for word in seen.tree.words if word.lemma == "play" and word.pos == "VERB"]
+    objects = [word for verb in verbs for word in seen.tree.children(verb, "dobj")]
+    return any(word.pos in ("NOUN", "PROPN") and word.lemma not in ANY_GAME for word in objects)
 
 
 def name_of(seen: Analysis, known: Iterable[str] = ()) -> str:
