@@ -51,8 +51,8 @@ voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by micr
 	@$(BIN)/ravestate chat voiceio $(ARGS)
 
 .PHONY: eyes
-eyes: $(DONE)/chat $(DONE)/sentences $(DONE)/apart-eyes ## set up and talk with an agent that sees you and knows your face
-	@$(BIN)/ravestate chat visionio $(ARGS)
+eyes: $(DONE)/chat $(DONE)/sentences $(DONE)/apart-eyes ## set up and talk with an agent that sees you, knows your face and plays charades
+	@$(BIN)/ravestate chat visionio charades $(ARGS)
 
 .PHONY: robot
 robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page with a robot's face, and the agent behind it

@@ -30,6 +30,7 @@ PHOTOS: Mapping[str, Mapping[str, str]] = {
         "insightface/data/images/t1.jpg": "photos/six.jpg",
         "insightface/data/images/Tom_Hanks_54745.png": "photos/hanks.png",
     },
+    "sports2d==0.8.34": {"Sports2D/Demo/demo.mp4": "videos/walk.mp4"},  # BSD; people who walk
 }
 """Package → its file → the name in the folder."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 from pydantic import Field
 
 import ravestate as rs
-from ravestate.modules import idle, interloc, ontology, rawio, verbaliser
+from ravestate.modules import activity, idle, interloc, ontology, rawio, verbaliser
 
 from .face import FaceVec, Look, Pose
 from .tracks import Sighting
@@ -52,7 +52,7 @@ class Settings(rs.Settings):
     """Whether the agent asks people who tell their names if it may remember their faces. Without a yes it keeps none."""
 
 
-module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle], settings=Settings)
+module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle, activity], settings=Settings)
 
 facevec: rs.Signal[FaceVec] = module.signal("facevec", payload=FaceVec, input=True, limit=1000)
 """A face in a picture, with its vector. The signal is raised for each face in each picture."""

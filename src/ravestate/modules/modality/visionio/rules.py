@@ -8,7 +8,7 @@ from typing import Any
 
 import ravestate as rs
 from ravestate.errors import RavestateError
-from ravestate.modules import idle, interloc, ontology, rawio, verbaliser
+from ravestate.modules import activity, idle, interloc, ontology, rawio, verbaliser
 from ravestate.modules.meta.nlp.answer import yesno_of
 from ravestate.modules.meta.verbaliser.intents import Intent
 
@@ -50,7 +50,7 @@ ANSWERED = 60.0
 @module.rule(
     when=rs.startup.detached() | camera.changed.max_age(None).detached(),
     reads=camera,
-    emits=(sighted, pose),
+    emits=(sighted, pose, activity.posed),
     until=camera.changed,
     detached=True,  # each picture is a cause of its own
     background=True,
@@ -69,7 +69,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     if not await view.begin():
         return None
     tracks = Tracks(settings.sure)
-    want = ["faces", "pose"] if _is_heard(ctx, pose) else ["faces"]
+    want = ["faces", "pose"] if _is_heard(ctx, pose) or _is_heard(ctx, activity.recognised) else ["faces"]
     began = ctx.now
     try:
         while (frame := await view.next()) is not None:
@@ -83,6 +83,8 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
                 if "pose" in seen:
                     body = seen["pose"]
                     ctx.emit(pose, Pose(None if body is None else tuple(tuple(point) for point in body), now))
+                    if body is not None:
+                        ctx.emit(activity.posed, activity.pose_of(body, now, *seen["picture"]))
             if not await view.rest(ctx.now - now, ctx.sleep):
                 break
     finally:
