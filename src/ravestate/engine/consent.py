@@ -115,7 +115,9 @@ class Consent:
                 _note_firm(refusal, roots)
                 if member is not None:
                     sure.append(member)
-            elif self.press(rival, member, group, activation, commit=commit) > self.state.now:
+            elif (until := self.press(rival, member, group, activation, commit=commit)) > self.state.now:
+                if member is None:
+                    refusal.recheck = min(refusal.recheck, until)
                 refusal.pressed = True
             else:
                 if commit and member is not None:
@@ -173,15 +175,15 @@ class Consent:
         if commit and (not pressed or pressed[-1][0] < ahead):
             until = state.now + (state.patience if half.patience is None else half.patience)
             state.pressed.setdefault(spike, {}).setdefault(half, pressed).append((ahead, until))
-            if until > state.now:
-                state.deadlines.add(until, PATIENCE, (spike.group.root(), half.best[0].clause.index))
         begin, eliminated = 0, False
         for count, until in list(pressed):
             end = min(count, ahead)
             if until > state.now:
                 kept = [n.clause.rule.name for n in half.best[begin:end] if state.keeps(n, spike)]
-                refusal.names.update(dict.fromkeys(kept))
-                refusal.pressed = refusal.pressed or bool(kept)
+                if kept:
+                    refusal.names.update(dict.fromkeys(kept))
+                    refusal.pressed = True
+                    refusal.recheck = min(refusal.recheck, until)
             elif commit and begin < end and self.holdings.entries.refuse_best(spike, half, begin, end):
                 eliminated = True
             begin = count
@@ -248,8 +250,8 @@ class Consent:
             return table.get(key, -NEVER)
         patience = rival.rule.patience
         until = table[key] = state.now + (state.patience if patience is None else patience)
-        if until > state.now:
-            state.deadlines.add(until, PATIENCE, (group, rival.index if member is None else member))
+        if until > state.now and member is not None:  # a refusal keeps the time for a stand-by
+            state.deadlines.add(until, PATIENCE, (group, member))
         if state.tracer is not None:
             missing = rival.all_bits if member is None else member.missing
             lacks = tuple([n.signal.name for n in rival.needs if n.bit & missing])
