@@ -301,6 +301,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
     reads=(visitors, ontology.memory, asking),
     writes=(verbaliser.intent, rawio.output, visitors, asking, asked_at),
     weight=1.3,  # outranks the other questions out of boredom
+    cooldown=20.0,
     detached=True,
     background=True,
 )

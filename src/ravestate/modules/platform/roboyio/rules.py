@@ -201,7 +201,7 @@ async def look_around(ctx: rs.RuleContext) -> None:
         ctx[gaze] = Pose()
 
 
-@module.rule(when=interloc.users.added.max_age(1.0).detached(), writes=gesture, cooldown=20.0, background=True)
+@module.rule(when=interloc.users.added.max_age(1.0).detached(), writes=gesture, background=True)
 async def greet_with_hand(ctx: rs.RuleContext) -> None:
     """Wave at a person who comes."""
     ctx[gesture] = "wave"
