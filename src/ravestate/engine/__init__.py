@@ -4,3 +4,7 @@ The path of an event: ``engine.py`` receives it; ``slots.py`` changes values; ``
 ``halves.py`` keeps first spikes; ``holdings.py`` makes activations ready; ``agenda.py`` starts them, with consent
 (``consent.py``, ``horizon.py``).
 """
+
+from ravestate.compiled import prefer
+
+prefer(__path__)

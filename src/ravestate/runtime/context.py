@@ -16,7 +16,7 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.declare.wording import spelt
 from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
-from ravestate.engine.events import Emit, Event, Start, Stop, Wipe, Write
+from ravestate.engine.events import Event, Start, Stop, Wipe
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
@@ -206,7 +206,7 @@ class Context:
         """
         self._known(slot, self.policy.slots, "slot")
         slot.check(value, "context.put")
-        self._running().receive(Write(slot.name, value))
+        self._running().write(slot.name, value, None)
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
         """Raise a signal from outside. Any thread may call this. After the context's end it does nothing.
@@ -215,7 +215,7 @@ class Context:
             UndeclaredError: The policy does not have the signal.
         """
         self._known(signal, self.policy.signals, "signal")
-        self._running().receive(Emit(signal.name, payload))
+        self._running().emit(signal.name, payload, None)
 
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal, and all that they have caused (L20). Any thread may call this."""
