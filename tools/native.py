@@ -23,12 +23,13 @@ SOURCE = ROOT / "src" / "ravestate"
 
 MODULES = (
     *(f"engine/{name}.py" for name in (
-        "activation", "agenda", "conflict_sets", "consent", "deadlines", "effects", "engine", "entries", "events", "free",
-        "group", "halves", "holdings", "horizon", "loops", "matching", "slots", "spike", "standing", "state", "watch",
+        "activation", "agenda", "conflict_sets", "consent", "deadlines", "effects", "engine", "entries", "free", "group",
+        "halves", "holdings", "horizon", "loops", "matching", "outcomes", "refusal", "runs", "slots", "spike", "stalemate",
+        "standing", "state", "waits", "watch",
     )),
-    "policy/model.py",
+    *(f"policy/{name}.py" for name in ("causes", "components", "model")),
     *(f"runtime/{name}.py" for name in (
-        "async_rules", "clock", "listeners", "rule_context", "runner", "waits",
+        "async_rules", "blocking", "clock", "eager_task", "listeners", "rule_context", "runner", "spares", "waits",
     )),
 )  # fmt: skip
 """The modules that are compiled, all together: a compiled module reaches into the objects of another without a look-up."""

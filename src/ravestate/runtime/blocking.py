@@ -8,6 +8,7 @@ from typing import Any
 
 from ravestate.declare.rule import Rule
 
+resource: Any
 try:
     import resource
 except ImportError:  # Windows

@@ -26,9 +26,10 @@ class Host(Protocol):
     """The part of a running context (`Runner`) that its rule contexts use."""
 
     settings: Mapping[str, Any]
-    random: random.Random
     clock: Clock
 
+    @property
+    def random(self) -> random.Random: ...
     @property
     def policy(self) -> Policy: ...
     def receive(self, event: Event) -> None: ...
