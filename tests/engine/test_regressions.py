@@ -55,7 +55,7 @@ def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgott
     )
     play = Play(world)
     assert runs(play.play()) == ["r0"]
-    assert play.engine.dropped == {"m:s0": 1}
+    assert play.engine.state.dropped == {"m:s0": 1}
 
 
 @pytest.mark.parametrize("end", ["resigned", "failed"])
@@ -161,7 +161,7 @@ def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another
     play = Play(world).play()
     assert runs(play) == ["r2", "r0"]
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("3.5 s < Run(")
-    assert not play.engine.waiting
+    assert not play.engine.state.waiting
 
 
 def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_joined() -> None:
@@ -568,3 +568,31 @@ def test_clauses_whose_utilities_differ_in_the_last_digits_are_equals() -> None:
     first, second = (play.engine.policy.rule_plan(f"m:r{n}").clauses[0] for n in (1, 6))
     assert first.base == second.base
     assert "r6" not in runs(play)
+
+
+def test_a_clause_that_recovers_faster_from_nothing_goes_at_once_though_another_clause_may_help_a_rival() -> None:
+    # L15, L16: after its run, both clauses of the rule are worth 0 and the second recovers faster: the first clause waits
+    # for it from this moment on, so the first clause makes no rival of the second one viable.
+    rules = (
+        RuleOf(
+            when=on("s1", "s0"),
+            writes=("v0",),
+            emits=("s1",),
+            acts=(Act(steps=((0.0, ("emit", "s1", 1)), (0.0, ("write", "v0", 0)), (0.0, ("emit", "s1", 2)))),),
+            detached=True,
+        ),
+        RuleOf(when=on("v0:changed"), writes=("v0",), emits=("s1",), acts=(Act(steps=((0.0, ("write", "v0", 1)),)),)),
+    )
+    added = RuleOf(
+        when=((Want("s1"),), (Want("s1"), Gate("v0"))),
+        writes=("v0",),
+        emits=("s0",),
+        detached=True,
+        weight=2.0,
+        cooldown=2.0,
+    )
+    inputs = ((0.5, ("emit", "s1", 2)), (0.0, ("add", added)), (0.0, ("emit", "s0", 1)))
+    world = World((SignalOf(), SignalOf(input=True)), (SlotOf(always=True),), rules, inputs)
+    play = Play(world).play()
+    starts = [line.split(" s <")[0] for line in play.heard if "< Run(" in line]
+    assert (runs(play), starts) == (["r0", "r1", "r2", "r2"], ["0.5"] * 4)

@@ -55,3 +55,9 @@ def test_a_crossing_at_a_rounded_time_is_a_crossing() -> None:
     here, (one, other) = standing({0: 0.1}, 0.7, one={"cooldown": 0.9, "weight": 1.7}, other={"weight": 1.1})
     here.now = here.crossing(one, other)
     assert not here.refuses(other, one)
+
+
+def test_a_rule_that_recovers_faster_from_nothing_overtakes_at_once() -> None:
+    here, (slow, fast) = standing({0: 5.0, 1: 5.0}, 5.0, slow={"cooldown": 20.0}, fast={"cooldown": 5.0})
+    assert here.overtakes(fast, slow)
+    assert not here.overtakes(slow, fast)

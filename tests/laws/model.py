@@ -218,6 +218,9 @@ class Model:
         return clause.base * self.recovery(clause.rule)[0]
 
     def refuses(self, theirs: Any, mine: Any) -> bool:
+        return all(self.goes_before(theirs, mine))
+
+    def goes_before(self, theirs: Any, mine: Any) -> tuple[bool, bool]:
         """Return whether a clause goes before another, now and in the moment after (L15)."""
         (far, fast), (my_far, my_fast) = self.recovery(theirs.rule), self.recovery(mine.rule)
         weight, my_weight = theirs.rule.weight, mine.rule.weight
@@ -229,7 +232,7 @@ class Model:
             now[1],
             (weight * fast, my_weight * my_fast),
         ]
-        return self.leads(now, theirs, mine) and self.leads(soon, theirs, mine)
+        return self.leads(now, theirs, mine), self.leads(soon, theirs, mine)
 
     def leads(self, pairs: list[tuple[float, float]], theirs: Any, mine: Any) -> bool:
         """Compare the first half of the pairs; only if all of it is 0, the second."""
@@ -311,7 +314,7 @@ class Model:
             and other.clause is not act.clause
             and not other.rule.slotset.isdisjoint(act.rule.slotset)
             and not set(other.groups()).isdisjoint(act.groups())
-            and self.refuses(act.clause, other.clause)
+            and self.goes_before(act.clause, other.clause)[1]
         ]
 
     def break_stalemate(self) -> bool:

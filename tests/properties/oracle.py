@@ -7,8 +7,10 @@ from typing import Any
 
 from properties.worlds import PREDICATES, Play
 from ravestate.engine.activation import State
-from ravestate.engine.consent import ask, stalemate
 from ravestate.engine.effects import Effect, Ended, Run
+from ravestate.engine.explain import explain, stand_ins
+from ravestate.engine.snapshot import snapshot
+from ravestate.engine.stalemate import stalemate
 
 __all__ = [
     "Exclusion",
@@ -56,10 +58,10 @@ class Exclusion:
 
     def start(self, play: Play, effect: Run) -> None:
         engine = play.engine
-        activation = engine.running[effect.run]
+        activation = engine.state.running[effect.run]
         clause, rule = activation.clause, activation.clause.rule
         name = rule.name
-        assert rule.index not in engine.retired, f"{name} has retired, and runs"
+        assert rule.index not in engine.state.retired, f"{name} has retired, and runs"
         held = list(zip(clause.needs, activation.spikes, strict=True))
         firm: list[Any] = []
         for need, spike in held:
@@ -94,13 +96,13 @@ class Exclusion:
                 f"{name} (run {mine.run}) starts although {run.rule} (run {run.run}) "
                 f"{'has fired' if run.over else 'runs'} in {shared} on the same slot"
             )
-        for other in engine.waiting:
+        for other in engine.state.waiting:
             if (
                 other is not activation
                 and other.state is State.WAITING
                 and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                 and any(group in groups for group in other.firm_groups())
-                and engine.effective(other.clause) > engine.effective(clause)
+                and engine.state.effective(other.clause) > engine.state.effective(clause)
             ):
                 raise AssertionError(f"{name} starts before {other}, which is ready and worth more")
         self.runs[effect.run] = mine
@@ -110,15 +112,15 @@ def waits_for_a_reason(play: Play) -> None:
     """Assert that each wait has a reason, a viable rival or a taken slot, and an end (L15, L16)."""
     engine = play.engine
     due = engine.next_deadline()
-    if engine.waiting and not engine.running:
-        assert due is not None, f"{list(engine.waiting)} wait, and nothing will ever happen"
+    if engine.state.waiting and not engine.state.running:
+        assert due is not None, f"{list(engine.state.waiting)} wait, and nothing will ever happen"
     if due is not None:
         assert due >= engine.now, f"a deadline at {due} s is past at {engine.now} s"
-    for waiter in list(engine.waiting):
+    for waiter in list(engine.state.waiting):
         assert waiter.state is State.WAITING
         assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
-        assert ask(engine, waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
-    assert not stalemate(engine, engine.waiting), "activations wait for each other alone"
+        assert engine.agenda.consent.ask(waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
+    assert not stalemate(engine.agenda.consent, engine.state.waiting), "activations wait for each other alone"
 
 
 def joined(play: Play) -> None:
@@ -135,17 +137,15 @@ def joined(play: Play) -> None:
                 for other, spike in zip(activation.clause.needs, activation.spikes, strict=True)
                 if spike is not None and other.bit & need.kin
             ]
-            for spike in engine.live.get(need.signal.index, ()):
+            for spike in engine.state.live.get(need.signal.index, ()):
                 apart = any(group is not spike.group.root() for group in held)
-                assert apart or activation.id > spike.before or not engine._fits(need, spike), (
+                assert apart or activation.id > spike.before or not engine.state.fits(need, spike), (
                     f"{activation} lacks {need.signal}, and does not take {spike}"
                 )
 
 
 def still(play: Play) -> dict[str, Any]:
     """Return a snapshot without the parts that time alone changes."""
-    from ravestate.engine.snapshot import snapshot
-
     found = snapshot(play.engine)
     del found["now"]
     for spike in found["spikes"]:
@@ -158,8 +158,8 @@ def still(play: Play) -> dict[str, Any]:
 
 def consistent(engine: Any) -> None:
     """Assert that the tables of the engine agree with one another."""
-    activations = [a for rule in engine.active.values() for a in rule]
-    assert all(engine.active.values()), "an empty set of activations is kept"
+    activations = [a for rule in engine.state.active.values() for a in rule]
+    assert all(engine.state.active.values()), "an empty set of activations is kept"
     for activation in activations:
         clause = activation.clause
         state = activation.state
@@ -167,15 +167,15 @@ def consistent(engine: Any) -> None:
         for need in clause.needs:
             spike = activation.spikes[need.index]
             assert (spike is None) == bool(activation.missing & need.bit), f"{activation} misses {need}?"
-            lacks = activation in engine.lacking.get(need, ())
+            lacks = activation in engine.state.lacking.get(need, ())
             assert lacks == (spike is None), f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"
             if spike is not None:
                 assert activation in spike.holders, f"{spike} does not know of {activation}"
                 if state < State.RUNNING:
-                    assert spike in engine.live.get(spike.signal.index, ()), f"{activation} holds dead {spike}"
+                    assert spike in engine.state.live.get(spike.signal.index, ()), f"{activation} holds dead {spike}"
         assert activation.missing != clause.all_bits, f"{activation} holds nothing"
-        assert (state is State.WAITING) == (activation in engine.waiting), f"{activation} waits?"
-        assert (state >= State.RUNNING) == (engine.running.get(activation.id) is activation)
+        assert (state is State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
+        assert (state >= State.RUNNING) == (engine.state.running.get(activation.id) is activation)
         for group in activation.firm_groups():
             count = sum(
                 1
@@ -186,16 +186,16 @@ def consistent(engine: Any) -> None:
             for member in group.members:
                 assert member.state is not State.ENDED, f"{member} has ended, and is in {group}"
             for waiter in group.interested:
-                assert waiter in engine.waiting, f"{waiter} does not wait, and is in {group}"
+                assert waiter in engine.state.waiting, f"{waiter} does not wait, and is in {group}"
             for slot, holders in group.taken.items():
                 assert holders is None or (holders and all(h.state >= State.RUNNING for h in holders)), slot
     known = set(activations)
-    for where in (engine.waiting, engine.gated, engine.alternatives, engine.running.values()):
+    for where in (engine.state.waiting, engine.state.gated, engine.state.alternatives, engine.state.running.values()):
         assert known.issuperset(where)
-    for need, lacking in engine.lacking.items():
+    for need, lacking in engine.state.lacking.items():
         assert lacking, f"an empty set of those who lack {need} is kept"
         assert known.issuperset(lacking)
-    for index, spikes in engine.live.items():
+    for index, spikes in engine.state.live.items():
         assert spikes, f"an empty set of {engine.policy.signal_plans[index]} is kept"
         for spike in spikes:
             assert known.issuperset(spike.holders), f"{spike} is held by {list(spike.holders)}"
@@ -204,30 +204,45 @@ def consistent(engine: Any) -> None:
                 spike.holders or spike.entries or (signal.retain >= 0 and spike.born + signal.retain >= engine.now)
             ), f"{spike} is kept without a holder"
         assert len(spikes) <= engine.policy.signal_plans[index].limit
-    entries = sum(len(spikes) * half.busy for half, spikes in engine.halves.items())
-    assert engine._busy == entries + sum(not (a.clause.rule.background or a.clause.reflexive) for a in activations)
-    for half, spikes in engine.halves.items():
+    entries = sum(len(spikes) * half.busy for half, spikes in engine.state.halves.items())
+    assert engine.state.busy == entries + sum(not (a.clause.rule.background or a.clause.reflexive) for a in activations)
+    for half, spikes in engine.state.halves.items():
         assert spikes, f"an empty table of {half} is kept"
         for spike in spikes:
-            assert half in engine.halves_of(spike), f"{spike} does not know of {half}"
-            assert any(engine.keeps(need, spike) for need in half.needs), f"{half} holds {spike} for nothing"
-            assert spike in engine.live.get(spike.signal.index, ()), f"{half} holds dead {spike}"
+            assert half in engine.state.halves_of(spike), f"{spike} does not know of {half}"
+            assert any(engine.state.keeps(need, spike) for need in half.needs), f"{half} holds {spike} for nothing"
+            assert spike in engine.state.live.get(spike.signal.index, ()), f"{half} holds dead {spike}"
+
+
+def untouched(play: Play) -> None:
+    """Assert that a snapshot and the explanations of all rules change nothing (L25)."""
+    state = play.engine.state
+    tables = ("active", "live", "halves", "alternatives", "waiting", "asking", "dirty", "out", "values", "stirred")
+    before = {name: repr(getattr(state, name)) for name in tables}
+    counts = state.activations, state.spikes, state.groups, len(state.deadlines)
+    snapshot(play.engine)
+    for rule in play.engine.policy.rule_plans:
+        explain(play.engine, rule)
+    assert counts == (state.activations, state.spikes, state.groups, len(state.deadlines))
+    after = {name: repr(getattr(state, name)) for name in tables}
+    assert after == {**before, "values": after["values"]}
 
 
 def bounded(play: Play) -> None:
     """Assert all that holds whenever the engine is quiet."""
-    play.engine.look()
-    assert not play.engine._out, "looking has started a run"
+    untouched(play)
     consistent(play.engine)
     joined(play)
     waits_for_a_reason(play)
     engine = play.engine
     policy = engine.policy
-    activity = any(not (a.clause.rule.background or a.clause.reflexive) for a in play.active())
+    others = [one for each in stand_ins(engine.state).values() for one in each]
+    activity = any(not (a.clause.rule.background or a.clause.reflexive) for a in (*play.active(), *others))
     assert engine.read(policy.slot_of["core:activity"].index) == activity, "core:activity lies"
-    pressure = any(not a.clause.reflexive for a in engine.waiting)
+    waits = (*engine.state.waiting, *engine.state.alternatives)
+    pressure = any(not a.clause.reflexive for a in waits)
     assert engine.read(policy.slot_of["core:pressure"].index) == pressure, "core:pressure lies"
-    for waiter in engine.gated:
+    for waiter in engine.state.gated:
         assert not all(g.predicate in PREDICATES.values() and _holds(engine, s, g) for s, g in waiter.clause.guards)
 
 
@@ -241,7 +256,7 @@ def _holds(engine: Any, slot: Any, guard: Any) -> bool:
 def empty(play: Play) -> None:
     """Assert that nothing is left (L23)."""
     engine = play.engine
-    assert not engine.running, f"{engine.running} run"
+    assert not engine.state.running, f"{engine.state.running} run"
     for name in (
         "active",
         "live",
@@ -250,17 +265,22 @@ def empty(play: Play) -> None:
         "waiting",
         "alternatives",
         "halves",
-        "_asking",
-        "_dirty",
+        "asking",
+        "dirty",
+        "hoping",
+        "hope_counts",
+        "refused",
+        "stuck",
+        "watches",
+        "watched_by",
+        "errors",
+        "out",
+        "free",
     ):
-        assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
-    for name in ("_watches", "_errors", "_out"):
-        assert not getattr(engine, name), f"{name}: {getattr(engine, name)}"
-    assert not engine._free.new
-    assert not engine._free.line
+        assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
     assert engine.next_deadline() is None
-    assert len(engine._deadlines) == 0
-    assert engine._busy == 0
+    assert len(engine.state.deadlines) == 0
+    assert engine.state.busy == 0
     slots = engine.policy.slot_of
     assert engine.read(slots["core:activity"].index) is False
     assert engine.read(slots["core:pressure"].index) is False

@@ -53,7 +53,7 @@ def test_a_burst_of_ten_thousand_spikes_is_handled_once_each_and_leaves_nothing(
     forget(play)
     assert count() == before
     empty(play)
-    assert play.engine.dropped == {}
+    assert play.engine.state.dropped == {}
 
 
 @settings(max_examples=15)

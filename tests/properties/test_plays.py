@@ -36,6 +36,6 @@ def test_after_a_wipe_of_everything_nothing_is_left(world: World) -> None:
     for _ in range(50):  # the end of activity, or a cancelled run, may raise signals again
         play.wipe_all()
         play.settle(1000.0)
-        if not play.engine.active and not play.engine.live:
+        if not play.engine.state.active and not play.engine.state.live:
             break
     empty(play)

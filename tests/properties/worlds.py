@@ -252,13 +252,21 @@ class Endless(AssertionError):
 class Counted(Engine):
     """An engine that notices when an instant has no end."""
 
-    births = 0
+    before = 0
 
-    def _birth(self, *args: Any) -> None:
-        self.births += 1
+    @property
+    def births(self) -> int:
+        """The number of spikes in this instant."""
+        return self.state.spikes - self.before
+
+    @births.setter
+    def births(self, number: int) -> None:
+        self.before = self.state.spikes - number
+
+    def receive(self, event: Event, now: float) -> None:
+        super().receive(event, now)
         if self.births > BIRTHS:
             raise Endless(f"more than {BIRTHS} spikes at {self.now} s")
-        super()._birth(*args)
 
 
 @dataclass
@@ -483,5 +491,5 @@ class Play:
 
     def active(self) -> Iterator[Any]:
         """Yield all activations."""
-        for activations in self.engine.active.values():
+        for activations in self.engine.state.active.values():
             yield from activations

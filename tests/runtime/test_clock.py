@@ -224,3 +224,51 @@ def test_a_paused_context_may_be_stepped_from_within_a_task() -> None:
             return context.read(said)
 
     assert asyncio.run(talk()).startswith("answer at 2")
+
+
+def test_a_driven_clock_moves_only_as_it_is_told_and_rules_follow_it() -> None:
+    m = rs.Module("m")
+    tick = m.signal("tick", payload=float)
+    go = m.signal("go")
+    late: list[float] = []
+    slept: list[float] = []
+
+    @m.rule(when=tick.max_age(None))
+    async def drive(ctx: rs.RuleContext) -> None:
+        ctx.drive_clock(ctx.payload(tick))
+
+    @m.rule(when=go.min_age(2.0))
+    async def after_two_seconds(ctx: rs.RuleContext) -> None:
+        late.append(ctx.now)
+
+    @m.rule(when=go)
+    async def sleep(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(5.0)
+        slept.append(ctx.now)
+
+    async def main() -> None:
+        async with rs.Context(m) as context:
+
+            async def at(time: float) -> None:
+                context.emit(tick, time)
+                await asyncio.sleep(100.0)  # time of the loop, which is not the clock's
+
+            await at(10.0)
+            assert context.now == 10.0
+            context.emit(go)
+            await at(11.9)
+            assert (context.now, late, slept) == (11.9, [], [])
+            await at(12.5)
+            assert (late, slept) == ([12.5], [])
+            await at(12.0)  # the past changes nothing
+            assert context.now == 12.5
+            context.pause()
+            await at(15.5)
+            assert (context.now, slept) == (12.5, [])
+            context.resume()
+            await asyncio.sleep(100.0)
+            assert context.now == 15.5
+            assert slept == [15.5]
+
+    with asyncio.Runner(loop_factory=VirtualLoop) as runner:
+        runner.run(main())

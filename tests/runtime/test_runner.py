@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.engine.engine import Engine
+from ravestate.engine.agenda import Agenda
 from ravestate.engine.trace import Settled
 from ravestate.runtime import runner as runner_file
 from ravestate.runtime.async_rules import GRACE
@@ -820,7 +820,7 @@ async def test_a_fault_of_the_engine_ends_the_context_with_an_error(
         def fail(*_: Any) -> None:
             raise KeyError("a fault of our own")
 
-        monkeypatch.setattr(Engine, "_consent_round", fail)
+        monkeypatch.setattr(Agenda, "consent_round", fail)
         context.put(talk.heard, "hello")
         for waiting in (answer, context.until_stopped()):
             with pytest.raises(rs.RavestateError, match=r"the engine has failed.*a fault of our own"):

@@ -29,6 +29,8 @@ COMMANDS = {
     "model": "list, fetch and remove language models for small talk",
     "genqa": "read documents, and answer questions from them",
     "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
+    "ros": "check an agent's topics and services, list the network's, and show the messages of one",
+    "robot": "start a stand-in robot with a face on a web page, alone or with an agent behind it",
     "new": "write a small project to start from",
 }
 
@@ -47,6 +49,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("-v", "--verbose", action="count", default=0, help="log more; repeat it to log everything")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)
+    if any(":=" in argument for argument in arguments):
+        from ravestate.cli.ros_args import translate
+
+        arguments = translate(arguments)
     if not {"-h", "--help"}.isdisjoint(arguments):
         from ravestate.cli.agent import listing
 

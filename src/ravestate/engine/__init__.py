@@ -1,8 +1,15 @@
 """The automaton: events and times in, effects out. Pure: no clock, thread, lock, random number or hash order.
 
-The path of an event: ``engine.py`` receives it; ``slots.py`` changes values; ``matching.py`` offers the new spikes;
-``halves.py`` keeps first spikes; ``holdings.py`` makes activations ready; ``agenda.py`` starts them, with consent
-(``consent.py``, ``horizon.py``).
+An event takes one way through the parts of an `Engine`, which share one `State`:
+
+1. *Receive.* `Engine.receive` gets the event and calls its handler. A write goes to `Slots`, which raises the signals.
+2. *Match.* `Matching.birth` creates the spike and offers it to activations: `Holdings.acquire`, then `Holdings.update`.
+   `Halves` and `ConflictSets` save activations that would change nothing. `Holdings.complete` queues a ready one.
+3. *Consent.* `Engine.effects` lets the `Agenda` choose. `Consent.ask` looks for rivals, and a `Horizon` judges whether
+   each may still come. With consent, `Runs.start` orders the run. Without it, `Waits.begin` keeps the `Refusal`.
+4. *Effects.* `Runs.finish` settles a run by the table `OUTCOMES`. `Waits.wake` returns the activations that ask again.
+
+To see why a rule waits, read the `Refusal` of its activation; `explain` puts it into words.
 """
 
 from ravestate.compiled import prefer

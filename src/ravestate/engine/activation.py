@@ -17,14 +17,16 @@ A step that is not in the table of transitions is a bug in the engine.
 from __future__ import annotations
 
 import enum
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from ravestate.engine.group import NOTHING
 from ravestate.errors import EngineError
 
 if TYPE_CHECKING:
+    from ravestate.engine.free import Place
     from ravestate.engine.group import Group
     from ravestate.engine.loops import Lineage
+    from ravestate.engine.refusal import Refusal
     from ravestate.engine.spike import Spike
     from ravestate.policy.model import Clause
 
@@ -82,46 +84,39 @@ COMPLETE, LOSE, REFUSE, GRANT, CANCEL, END = Step
 class Activation:
     """A clause plus the spikes that it has acquired.
 
-    Most activations end before they run or wait. So the class holds the attributes' defaults for these two states.
-
     Attributes:
         id: A number that grows with each new activation; also the number of its run.
-        spikes: Need of the clause → the spike that meets it; None if there is none yet.
+        spikes: For each need of the clause, the spike that meets it; None if there is none yet.
         missing: The bits of the clause's needs without a spike.
+        ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
+        place: While it is ready and needs no consent: its place in the queue (``free.py``).
+        pressed: Group in which others wait for it, though it may never be ready → when its patience ends (seconds; L16).
+        refusal: While it waits: the reasons (``consent.py``).
+        stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
+        groups: The groups in which the run has taken slots, as they were when the run began.
+        wrote: Whether the run has written a slot.
+        deadline: The time at which the run times out (seconds).
+        told: The reason for which the engine cancelled the run; empty if it did not.
+        lineage: In an instant with many runs: the rules that led to the run, including its own rule (L23).
     """
 
-    ripens: float = NEVER
-    """While one of its spikes is too young: the time at which all will be old enough (seconds)."""
-    place: tuple[int, int, int, Activation] | None = None
-    """While it is ready and needs no consent: its place in the queue (``free.py``)."""
-    pressed: dict[Group, float] = MappingProxyType[Any, Any]({})  # type: ignore[assignment]  # replaced on first use
-    """Group in which others wait for it, though it may never be ready → when its patience ends (seconds; L16)."""
-    waits_for: tuple[str, ...] = ()
-    """While it waits: the names of the rules that it waits for."""
-    blockers: tuple[Activation, ...] = ()
-    """While it waits: the live activations on whose progress its turn depends."""
-    interests: tuple[Group, ...] = ()
-    """While it waits: the groups whose changes concern it."""
-    firm: tuple[tuple[Activation, ...], ...] = ()
-    """While it waits: for each rival that work in progress will make ready, or not, the activations at work."""
-    hopes: tuple[tuple[int, int], ...] = ()
-    """While it waits: the things outside its groups on which its turn depends (`Horizon.hopes`)."""
-    bounded: bool = False
-    """Whether it waits for a taken slot, or for a rival whose patience ends the wait."""
-    recheck: float = NEVER
-    """While it waits: the time at which recovering utilities change the order (seconds; L9)."""
-    stands_on: tuple[Spike, ...] = ()
-    """The non-detached spikes of the run: the parents of the spikes that it raises."""
-    groups: tuple[Group, ...] = ()
-    """The groups in which the run has taken slots, as they were when the run began."""
-    wrote: bool = False
-    """Whether the run has written a slot."""
-    deadline: float = NEVER
-    """The time at which the run times out (seconds)."""
-    told: str = ""
-    """The reason for which the engine cancelled the run; empty if it did not."""
-    lineage: Lineage | None = None
-    """In an instant with many runs: the rules that led to the run, including its own rule (L23)."""
+    __slots__ = (
+        "clause",
+        "deadline",
+        "groups",
+        "id",
+        "lineage",
+        "missing",
+        "place",
+        "pressed",
+        "refusal",
+        "ripens",
+        "spikes",
+        "stands_on",
+        "state",
+        "told",
+        "wrote",
+    )
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
@@ -129,6 +124,16 @@ class Activation:
         self.state = GATHERING
         self.spikes: list[Spike | None] = [None] * len(clause.needs)
         self.missing = clause.all_bits
+        self.ripens = NEVER
+        self.place: Place | None = None
+        self.pressed: dict[Group, float] = NOTHING  # replaced on first use
+        self.refusal: Refusal | None = None
+        self.stands_on: tuple[Spike, ...] = ()
+        self.groups: tuple[Group, ...] = ()
+        self.wrote = False
+        self.deadline = NEVER
+        self.told = ""
+        self.lineage: Lineage | None = None
 
     def step(self, step: Step) -> None:
         """Change the state by one step of the table.
@@ -140,10 +145,6 @@ class Activation:
         if state is None:
             raise EngineError(f"activation {self.id} of {self.clause}: {step.name} in state {self.state.name}")
         self.state = state
-
-    def patience_ends(self) -> float:
-        """Return when its patience ends first (seconds), or `NEVER`."""
-        return min(self.pressed.values(), default=NEVER)
 
     def held(self, bits: int) -> Spike | None:
         """Return a spike that the activation holds for one of the needs in `bits`, or None."""

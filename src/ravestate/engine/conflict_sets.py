@@ -12,62 +12,39 @@ from __future__ import annotations
 from ravestate.engine.activation import Activation
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.spike import Spike
+from ravestate.engine.state import State
 from ravestate.policy.model import Clause, SignalPlan
 
 
-class ConflictSets(Holdings):
-    """The layer of the engine that keeps the queues of alternatives."""
+class ConflictSets:
+    """The part of the engine that keeps the queues of alternatives."""
 
-    __slots__ = ()
+    __slots__ = ("holdings", "state")
 
-    def unfold(self, activation: Activation) -> None:
-        """Create the activations of all alternatives in one activation's queue."""
-        clauses, made, base = self.alternatives.pop(activation)
-        spike = activation.spikes[0]
-        assert spike is not None  # it is ready, or runs
-        for position in range(made, len(clauses)):
-            self._activate(clauses[position], base + position + 1, spike)
+    def __init__(self, state: State, holdings: Holdings) -> None:
+        self.state = state
+        self.holdings = holdings
 
-    def unfold_all(self) -> None:
-        """Create the activations of the alternatives in all queues."""
-        for activation in list(self.alternatives):
-            self.unfold(activation)
-
-    def _offer_to_sets(self, signal: SignalPlan, spike: Spike) -> None:
+    def offer(self, signal: SignalPlan, spike: Spike) -> None:
         """Offer a spike to the conflict sets of its signal."""
+        state = self.state
         for clauses in signal.contests:
             if spike.group.finished(clauses[0].rule.slots):
-                for clause in clauses if self.tracer is not None else ():
-                    self._pass_by(clause, spike, "consumed")
+                for clause in clauses if state.tracer is not None else ():
+                    self.holdings.pass_by(clause, spike, "consumed")
                 continue  # the spike is consumed for all clauses of the set
-            clauses = tuple(clause for clause in clauses if self._enters(clause, spike))
+            clauses = tuple([clause for clause in clauses if self._enters(clause, spike)])
             if not clauses:
                 continue
-            base = self._activations
-            self._activations += len(clauses)
+            base = state.activations
+            state.activations += len(clauses)
             self._next(clauses, 0, base, spike)
-        if self.tracer is not None:
+        if state.tracer is not None:
             self.unfold_all()
 
-    def _enters(self, clause: Clause, spike: Spike) -> bool:
-        """Return whether a clause takes a spike: its rule has not retired, and its predicates fit the payload."""
-        if self.retired and clause.rule.index in self.retired:
-            return False
-        for predicate in clause.needs[0].predicates:
-            if not self._test(predicate, spike.payload, clause.rule):
-                self._pass_by(clause, spike, "payload")
-                return False
-        return True
-
-    def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:
-        """Create the activation of the clause at a position; the clauses after it become its alternatives."""
-        activation = self._activate(clauses[position], base + position + 1, spike)
-        if position + 1 < len(clauses):
-            self.alternatives[activation] = (clauses, position + 1, base)
-
-    def _substitute(self, activation: Activation) -> None:
+    def substitute(self, activation: Activation) -> None:
         """Put the next alternative in the place of an activation that has resigned or failed."""
-        queued = self.alternatives.pop(activation, None)
+        queued = self.state.alternatives.pop(activation, None)
         spike = activation.spikes[0]
         if queued is not None and spike is not None:
             clauses, made, base = queued
@@ -77,11 +54,41 @@ class ConflictSets(Holdings):
             if made < len(clauses):
                 self._next(clauses, made, base, spike)
 
+    def unfold(self, activation: Activation) -> None:
+        """Create the activations of all alternatives in one activation's queue."""
+        clauses, made, base = self.state.alternatives.pop(activation)
+        spike = activation.spikes[0]
+        assert spike is not None  # it is ready, or runs
+        for position in range(made, len(clauses)):
+            if spike.refused is None or clauses[position].rule.index not in spike.refused:
+                self._activate(clauses[position], base + position + 1, spike)
+
+    def unfold_all(self) -> None:
+        """Create the activations of the alternatives in all queues."""
+        for activation in list(self.state.alternatives):
+            self.unfold(activation)
+
+    def _enters(self, clause: Clause, spike: Spike) -> bool:
+        """Return whether a clause takes a spike: its rule has not retired, and its predicates fit the payload."""
+        if self.state.retired and clause.rule.index in self.state.retired:
+            return False
+        for predicate in clause.needs[0].predicates:
+            if not self.state.test(predicate, spike.payload, clause.rule):
+                self.holdings.pass_by(clause, spike, "payload")
+                return False
+        return True
+
+    def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:
+        """Create the activation of the clause at a position; the clauses after it become its alternatives."""
+        activation = self._activate(clauses[position], base + position + 1, spike)
+        if position + 1 < len(clauses):
+            self.state.alternatives[activation] = (clauses, position + 1, base)
+
     def _activate(self, clause: Clause, number: int, spike: Spike) -> Activation:
-        activation = self._new_activation(clause, number)
-        self._acquire(activation, clause.needs[0], spike)
+        activation = self.holdings.new_activation(clause, number)
+        self.holdings.acquire(activation, clause.needs[0], spike)
         group = spike.group.root()
         if group.interested:
-            self._dirty[group] = None
-        self._complete(activation)
+            self.state.dirty[group] = None
+        self.holdings.complete(activation)
         return activation

@@ -1,16 +1,19 @@
 """The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or needs no deadline.
 
-A table, `DEADLINES` in ``engine.py``, has two functions for each kind: whether an entry still counts, and what to do
-when it is due.
+`Deadlines` knows which entries still count. ``engine.py`` has a table, `DUE`, of handlers for entries that are due.
 """
 
 from __future__ import annotations
 
 import enum
 import heapq
-from collections.abc import Callable, Sequence
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from ravestate.engine.activation import RUNNING
+
+if TYPE_CHECKING:
+    from ravestate.engine.state import State
 
 
 class Kind(enum.IntEnum):
@@ -30,24 +33,21 @@ class Kind(enum.IntEnum):
 RIPEN, LOOK, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
-Table = Sequence[tuple[Callable[[Any, float, Any], bool], Callable[[Any, float, Any], None]]]
-"""For each kind: a function for entries that still count, and one for entries that are due. Both get the engine, the time
-(seconds) and the owner of an entry."""
+"""A time (seconds), a kind, the entry's number, and its owner."""
 
 
 class Deadlines:
-    """A heap of (time in seconds, kind, number, owner) of one engine."""
+    """A heap of the deadlines of one engine."""
 
-    __slots__ = ("_count", "_engine", "_heap", "_limit", "_table", "earliest")
+    __slots__ = ("_count", "_heap", "_limit", "earliest", "state")
 
-    def __init__(self, engine: Any, table: Table) -> None:
+    def __init__(self, state: State) -> None:
+        self.state = state
         self.earliest = inf
         """A time (seconds) before which no entry is due."""
         self._heap: list[Entry] = []
         self._count = 0
         self._limit = 256
-        self._engine = engine
-        self._table = table
 
     def add(self, time: float, kind: Kind, owner: Any) -> None:
         """Add an entry that is due at a time (seconds)."""
@@ -56,29 +56,47 @@ class Deadlines:
             self.earliest = time
         heapq.heappush(self._heap, (time, kind, self._count, owner))
         if len(self._heap) > self._limit:  # remove stale entries before there are many
-            self._heap = [entry for entry in self._heap if self._stands(entry)]
+            self._heap = [entry for entry in self._heap if self._counts(entry[0], entry[1], entry[3])]
             heapq.heapify(self._heap)
             self._limit = max(256, 2 * len(self._heap))
 
     def next(self) -> float | None:
-        """Return the time of the first valid entry (seconds); None if there is no valid entry."""
-        heap, table, engine = self._heap, self._table, self._engine
-        while heap and not table[heap[0][1]][0](engine, heap[0][0], heap[0][3]):
+        """Return the time of the first entry that counts (seconds); None if there is none."""
+        heap = self._heap
+        while heap:
+            time, kind, _, owner = heap[0]
+            if self._counts(time, kind, owner):
+                self.earliest = time
+                return time
             heapq.heappop(heap)
-        self.earliest = heap[0][0] if heap else inf
-        return self.earliest if heap else None
+        self.earliest = inf
+        return None
 
     def pop(self, now: float) -> Entry | None:
-        """Remove the first valid entry, and return it, if it is due at `now` (seconds); else return None."""
+        """Remove the first entry that counts, and return it, if it is due at `now` (seconds); else return None."""
         due = self.next()
         return heapq.heappop(self._heap) if due is not None and due <= now else None
 
-    def fall_due(self, entry: Entry) -> None:
-        """Do what an entry is for."""
-        self._table[entry[1]][1](self._engine, entry[0], entry[3])
-
-    def _stands(self, entry: Entry) -> bool:
-        return self._table[entry[1]][0](self._engine, entry[0], entry[3])
+    def _counts(self, time: float, kind: Kind, owner: Any) -> bool:
+        """Return whether an entry still counts."""
+        if kind == RIPEN:
+            return owner.ripens == time
+        if kind == LOOK:
+            return self.state.is_live(owner[1])
+        if kind == RECHECK:
+            return owner.refusal is not None and owner.refusal.recheck == time
+        if kind == PATIENCE:
+            group, rival = owner[0].root(), owner[1]
+            if isinstance(rival, int):  # the rival stands by, and so do those who wait for it
+                return bool(group.interested)
+            return rival.state < RUNNING and rival.pressed.get(group) == time
+        if kind == EXPIRE:
+            return bool(owner.holders) or self.state.is_live(owner)
+        if kind == FORGET:
+            return self.state.is_live(owner)
+        if kind == TIMEOUT:
+            return owner.deadline == time
+        return owner.due == time and owner.run.state == RUNNING  # WATCH
 
     def __len__(self) -> int:
         return len(self._heap)

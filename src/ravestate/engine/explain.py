@@ -9,9 +9,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import GATHERING, NEVER, WAITING, Activation
+from ravestate.engine.activation import GATHERING, NEVER, READY, WAITING, Activation
 from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
+from ravestate.engine.refusal import Refusal
+from ravestate.engine.state import State
 from ravestate.engine.trace import Born, GaveUp, Held, Passed, Pressed, Record, Settled, Started, Told, Waits
+from ravestate.engine.waits import patience_of_rivals
 from ravestate.policy.model import Clause, RulePlan
 
 if TYPE_CHECKING:
@@ -104,15 +107,15 @@ class Explanation:
 
 def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limit: int = 12) -> Explanation:
     """Return the state of a rule, with at most `limit` lines of its history from `records`, the trace."""
-    engine.look()
+    state = engine.state
     records = [*records]
     return Explanation(
         rule.name,
-        engine.now,
-        rule.index in engine.retired,
-        tuple(_clause(engine, clause) for clause in rule.clauses),
-        tuple(_activation(engine, activation) for activation in engine.active.get(rule.index, ())),
-        tuple(_missing(engine, rule, records)),
+        state.now,
+        rule.index in state.retired,
+        tuple(_clause(state, clause) for clause in rule.clauses),
+        tuple(activations(state).get(rule.index, ())),
+        tuple(_missing(state, rule, records)),
         tuple(
             f"{seconds(record.time)}: {words}"
             for record in records
@@ -121,45 +124,80 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
     )
 
 
-def _clause(engine: Engine, clause: Clause) -> ClauseState:
+def _clause(state: State, clause: Clause) -> ClauseState:
     return ClauseState(
         clause.source,
         tuple(signal.name for signal in clause.signals),
-        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in engine.policy.pathways.of_clause(clause)),
+        tuple(tuple(sorted(signal.name for signal in pathway)) for pathway in state.policy.pathways.of_clause(clause)),
         clause.utility,
-        engine.effective(clause),
-        tuple((str(guard), engine.opens(slot, guard)) for slot, guard in clause.guards),
+        state.effective(clause),
+        tuple((str(guard), state.opens(slot, guard)) for slot, guard in clause.guards),
     )
 
 
-def _activation(engine: Engine, activation: Activation) -> ActivationState:
+def _activation(state: State, activation: Activation) -> ActivationState:
     clause = activation.clause
-    state = activation.state.name.lower()
+    name = activation.state.name.lower()
     if activation.state is GATHERING and not activation.missing:
-        state = "gated" if activation in engine.gated else "ripening"
+        name = "gated" if activation in state.gated else "ripening"
     waits: list[tuple[str, float]] = []
-    if activation.state is WAITING:
-        mine = engine.effective(clause)
-        for name in activation.waits_for:
-            theirs = max(engine.effective(c) for c in engine.policy.rule_plan(name).clauses)
-            waits.append((name, max(0.0, theirs - mine)))
-    bounds = [activation.ripens, activation.patience_ends(), activation.deadline]
+    refusal = activation.refusal
+    if refusal is not None:
+        mine = state.effective(clause)
+        for rival in refusal.names:
+            theirs = max(state.effective(c) for c in state.policy.rule_plan(rival).clauses)
+            waits.append((rival, max(0.0, theirs - mine)))
+    bounds = [activation.ripens, min(activation.pressed.values(), default=NEVER), activation.deadline]
     if activation.state is GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)
         bounds += [spike.born + need.max_age for spike, need in held if spike is not None]
     until = min(bounds)
-    if activation.state is WAITING:
-        latest = engine.patience_of_rivals(activation)
-        until = NEVER if latest is None or activation.blockers else latest
+    if refusal is not None:
+        latest = patience_of_rivals(state, activation)
+        until = NEVER if latest is None or refusal.blockers else latest
     return ActivationState(
         activation.id,
-        state,
+        name,
         clause.source,
-        tuple((spike.signal.name, engine.now - spike.born) for spike in activation.spikes if spike is not None),
+        tuple((spike.signal.name, state.now - spike.born) for spike in activation.spikes if spike is not None),
         tuple(need.signal.name for need in clause.needs if need.bit & activation.missing),
         tuple(waits),
         None if until == NEVER else until,
     )
+
+
+def activations(state: State) -> dict[int, list[ActivationState]]:
+    """Return the live activations by rule (its number), oldest first."""
+    found = {rule: [*active] for rule, active in state.active.items()}
+    for rule, others in stand_ins(state).items():
+        found.setdefault(rule, []).extend(others)
+    return {rule: [_activation(state, one) for one in sorted(all_, key=_age)] for rule, all_ in found.items()}
+
+
+def stand_ins(state: State) -> dict[int, list[Activation]]:
+    """Return the activations that the entries of halves and the queues of alternatives stand for, by rule.
+
+    They are in no table: an explanation changes nothing.
+    """
+    found: dict[int, list[Activation]] = {}
+    for half, spikes in state.halves.items():
+        for spike in spikes:
+            for need in half.needs:
+                if state.keeps(need, spike):
+                    found.setdefault(need.clause.rule.index, []).append(state.stand_in(need, spike))
+    for best, (clauses, made, base) in state.alternatives.items():
+        spike = best.spikes[0]
+        for place in range(made, len(clauses)):
+            clause = clauses[place]
+            if spike is None or (spike.refused is not None and clause.rule.index in spike.refused):
+                continue
+            other = Activation(base + place + 1, clause)
+            other.spikes[0], other.missing, other.state = spike, 0, READY
+            if best.state >= WAITING:
+                other.state, other.refusal = WAITING, Refusal()
+                other.refusal.names[best.clause.rule.name] = other.refusal.blockers[best] = None
+            found.setdefault(clause.rule.index, []).append(other)
+    return found
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
@@ -218,7 +256,7 @@ def join(names: Iterable[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
+def _missing(state: State, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
     """Yield a sentence for each signal of a rule that has not occurred: which rules may raise it, how each ended."""
     if not records:
         return
@@ -231,6 +269,10 @@ def _missing(engine: Engine, rule: RulePlan, records: Sequence[Record]) -> Itera
             without(cause.name, ends[cause.name])
             if cause.name in ends
             else f"{cause.name} may raise it but has not run"
-            for cause in engine.policy.causes.all_causes[signal.index]
+            for cause in state.policy.causes.all_causes[signal.index]
         ]
         yield f"{signal.name} has not occurred" + (f": {'; '.join(raisers)}" if raisers else "")
+
+
+def _age(activation: Activation) -> int:
+    return activation.id

@@ -54,3 +54,6 @@ class Free:
             self.line.append(place)
         else:
             heapq.heappush(self._between, place)
+
+    def __bool__(self) -> bool:
+        return bool(self.new or self.line)

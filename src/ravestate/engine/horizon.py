@@ -22,14 +22,13 @@ the steps whose strengths it needs, and `_solve` keeps those that wait on a stac
 from __future__ import annotations
 
 from collections.abc import Generator, Set
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
+from ravestate.engine.group import Group
+from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
+from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need
-
-if TYPE_CHECKING:
-    from ravestate.engine.agenda import Agenda as Engine
-    from ravestate.engine.group import Group
 
 NO, SPECULATIVE, FIRM = 0, 1, 2
 
@@ -37,15 +36,12 @@ Slots = frozenset[int]
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
 
-RULE, OUTSIDE, SEEN = range(3)
-"""Kinds of hope: an activation of a rule elsewhere; a live rule that may raise a signal; a new spike to look at."""
-
 
 class Horizon:
-    """The horizons of the engine's groups at one moment, for one asking activation.
+    """The horizons of the engine's groups at one moment, for one asking activation. It reads the state, and changes nothing.
 
     Args:
-        engine: The engine.
+        state: The state of the engine.
         still: The activations that count as doing nothing: the asking one, and those that wait for it.
 
     Attributes:
@@ -62,16 +58,16 @@ class Horizon:
         "_known",
         "_path",
         "_still",
-        "engine",
         "hopes",
         "recheck",
         "roots",
+        "state",
         "still",
         "visited",
     )
 
-    def __init__(self, engine: Engine, still: Set[Activation]) -> None:
-        self.engine = engine
+    def __init__(self, state: State, still: Set[Activation]) -> None:
+        self.state = state
         self.still = still
         self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
         self._cuts = 0  # how often a cycle was cut
@@ -116,7 +112,7 @@ class Horizon:
         if clause.apart:
             return 0  # any spike that it lacks must come from the group that it stands on
         reach = self._rules(group).keys()
-        ancestors = self.engine.policy.causes.ancestors
+        ancestors = self.state.policy.causes.ancestors
         bits = 0
         for need in clause.needs:
             if not need.detached and not reach.isdisjoint(ancestors(need.signal.index)):
@@ -129,11 +125,9 @@ class Horizon:
         if not open_bits:
             return []
         self.hopes[RULE, clause.rule.index] = 0
-        self.engine.unfold_clause(clause)
-        active = self.engine.active.get(clause.rule.index)
         return [
             one
-            for one in active or ()
+            for one in self.state.active.get(clause.rule.index, ())
             if one.clause is clause
             and one.state is GATHERING
             and one.missing & open_bits
@@ -143,7 +137,7 @@ class Horizon:
 
     def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> Step:
         rule = clause.rule
-        if rule.index in self.engine.retired:
+        if rule.index in self.state.retired:
             return NO
         mark = len(self.roots)
         member = False
@@ -213,7 +207,7 @@ class Horizon:
     def _seen(self, need: Need, group: Group, slots: Slots) -> Step:
         """Return the strength with which anything may meet a detached need."""
         self.hopes[SEEN, need.signal.index] = 0
-        spike = self.engine.newest(need)
+        spike = self.state.newest(need)
         if spike is not None:
             self.visited[spike.group.root()] = None
             self.recheck = min(self.recheck, spike.born + need.max_age)
@@ -223,9 +217,8 @@ class Horizon:
 
     def _guards(self, clause: Clause, group: Group, slots: Slots) -> Generator[Any, int, bool]:
         """Return whether each of a clause's predicates on slots is true, or its slot may yet change in this group."""
-        engine = self.engine
         for slot, guard in clause.guards:
-            if engine.holds(slot, guard, clause.rule):
+            if self.state.opens(slot, guard):
                 continue
             if (yield from self._comes(slot.signals[0].index, group, slots)) != FIRM:
                 return False
@@ -236,7 +229,7 @@ class Horizon:
         if (signal, group) in self._path:
             self._cuts += 1
             return NO
-        if self._rules(group).keys().isdisjoint(self.engine.policy.causes.ancestors(signal)):
+        if self._rules(group).keys().isdisjoint(self.state.policy.causes.ancestors(signal)):
             return NO
         known = self._known.get((signal, group, slots))
         if known is None:
@@ -247,10 +240,10 @@ class Horizon:
     def _caused(self, signal: int, group: Group, slots: Slots) -> Step:
         """Return the strength with which one of the rules that may raise a signal will do so."""
         cuts, mark = self._cuts, len(self.roots)
-        by_rule, retired = self._by_rule[group], self.engine.retired
+        by_rule, retired = self._by_rule[group], self.state.retired
         self._path.add((signal, group))
         best = NO
-        for rule in self.engine.policy.causes.causes[signal]:
+        for rule in self.state.policy.causes.causes[signal]:
             if not rule.slotset.isdisjoint(slots) or rule.index in retired:
                 continue
             inner = slots | rule.slotset if rule.slots else slots
@@ -292,13 +285,13 @@ class Horizon:
         signal = need.signal
         if signal.input:
             return True
-        causes = self.engine.policy.causes
+        causes = self.state.policy.causes
         wide = causes.wide_ancestors(signal.index)
         if wide:
             hope = (OUTSIDE, signal.index)
             most = self.hopes.setdefault(hope, 0)
             narrow = causes.ancestors(signal.index)
-            live = self.engine.active
+            live = self.state.active
             for rule in wide if len(wide) < len(live) else live:
                 alive = len(live.get(rule, ()))
                 if alive and rule in wide:

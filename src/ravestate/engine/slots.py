@@ -11,60 +11,77 @@ from ravestate.engine import trace
 from ravestate.engine.activation import Activation
 from ravestate.engine.matching import Matching
 from ravestate.engine.spike import Spike
+from ravestate.engine.state import State
 from ravestate.errors import RuleError, UndeclaredError
 from ravestate.policy.model import SlotPlan
 
 
-class Slots(Matching):
-    """The layer of the engine that writes slots and raises their signals."""
+class Slots:
+    """The part of the engine that writes slots and raises their signals."""
 
-    __slots__ = ()
+    __slots__ = ("matching", "state")
 
-    def _mark_write(self, slot: SlotPlan, run: Activation | None) -> None:
-        """Note that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
-        if run is not None:
-            if slot.index not in run.clause.rule.slotset:
-                raise UndeclaredError(f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}")
-            run.wrote = True
+    def __init__(self, state: State, matching: Matching) -> None:
+        self.state = state
+        self.matching = matching
+
+    def write(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
+        """Write a slot, for a run or for code outside. An equal value changes nothing, unless the slot says otherwise."""
+        if slot.is_collection:
+            self._replace(slot, value, run)
+            return
+        _mark_write(slot, run)
+        if slot.is_flag:
+            value = bool(value)
+        if slot.always or not equal(self.state.read(slot.index), value):
+            self._change(slot, value, self.matching.parents(run), run)
+
+    def set_flag(self, flag: SlotPlan, value: bool) -> None:
+        """Change a built-in flag, and raise its signals only if a rule, the tracer or the runtime may hear them."""
+        state = self.state
+        if flag.heard or state.tracer is not None or self._is_watched(flag) or flag.index in state.policy.guarded:
+            self._change(flag, value, (), None)
+        else:
+            state.values[flag.index] = value
+
+    def store(self, slot: SlotPlan, key: str, item: Any, run: Activation | None) -> None:
+        """Store an item of a collection, or remove it (`ABSENT`). An equal item changes nothing (L2)."""
+        _mark_write(slot, run)
+        self._change_item(slot, key, item, run)
 
     def _change(self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None) -> None:
         """Set the value of a value or flag slot, and raise its signals (L2, L13)."""
-        self.values[slot.index] = value
-        if self.tracer is not None:
-            self.tracer(trace.Set(self.now, slot.name, value, 0 if run is None else run.id))
-        if len(parents) > 1:
-            self._group_of(parents)  # the parents' groups merge (L11), even if no rule hears the slot
-        if slot.heard or self.tracer is not None or (self.watched and self._watched(slot)):
+        state, matching = self.state, self.matching
+        state.values[slot.index] = value
+        if state.tracer is not None:
+            state.tracer(trace.Set(state.now, slot.name, value, 0 if run is None else run.id))
+        if slot.heard or state.tracer is not None or self._is_watched(slot):
+            group = matching.group_of(parents)
             if slot.keep_latest:
                 for signal in slot.signals:
-                    self._withdraw(signal, "superseded")
+                    matching.holdings.withdraw(signal, "superseded")
             raised = slot.signals
             if slot.is_flag:
                 raised = (slot.signals[0], slot.signals[1] if value else slot.signals[2])
-            group = self._group_of(parents)
             for signal in raised:
-                self._birth(signal, value, parents, group, run)
-        if slot.index in self.policy.guarded:
+                matching.birth(signal, value, parents, group, run)
+        elif len(parents) > 1:
+            matching.group_of(parents)  # the parents' groups merge (L11), although no rule hears the slot
+        if slot.index in state.policy.guarded:
             self._regate(slot)
 
-    def _change_item(
-        self,
-        slot: SlotPlan,
-        key: str,
-        item: Any,
-        run: Activation | None,
-    ) -> None:
-        """Store or remove an item of a collection, and raise the slot's signals. An equal item changes nothing (L2)."""
-        items = self._unseen.get(slot.index)
-        old: Mapping[str, Any] = self.read(slot.index) if items is None else items
+    def _change_item(self, slot: SlotPlan, key: str, item: Any, run: Activation | None) -> None:
+        state, matching = self.state, self.matching
+        items = state.unseen.get(slot.index)
+        old: Mapping[str, Any] = state.read(slot.index) if items is None else items
         known = old.get(key, ABSENT)
         if known is item or (known is not ABSENT and item is not ABSENT and equal(known, item)):
             return
         if items is None:
             items = dict(old)
-            self.values[slot.index] = MappingProxyType(items)
-        if self.tracer is None:
-            self._unseen[slot.index] = items
+            state.values[slot.index] = MappingProxyType(items)
+        if state.tracer is None:
+            state.unseen[slot.index] = items
         changed, added, removed = slot.signals
         raised = (changed,)
         if item is ABSENT:
@@ -74,43 +91,57 @@ class Slots(Matching):
             if known is ABSENT:
                 raised = (changed, added)
             items[key] = item
-        if self.tracer is not None:
-            self._unseen.pop(slot.index, None)
-            self.tracer(trace.Set(self.now, slot.name, items, 0 if run is None else run.id))
+        if state.tracer is not None:
+            state.unseen.pop(slot.index, None)
+            state.tracer(trace.Set(state.now, slot.name, items, 0 if run is None else run.id))
         entry = Entry(key, known if item is ABSENT else item)
-        parents, group = self._origin(run)
+        parents = matching.parents(run)
+        group = matching.group_of(parents)
         for signal in raised:
             if signal.keep_latest:
-                self._withdraw(signal, "superseded")
-            self._birth(signal, entry, parents, group, run)
-        if slot.index in self.policy.guarded:
+                matching.holdings.withdraw(signal, "superseded")
+            matching.birth(signal, entry, parents, group, run)
+        if slot.index in state.policy.guarded:
             self._regate(slot)
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
         """Replace all items of a collection; each item that differs counts as a write of its own."""
         if not isinstance(value, Mapping):
             raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
-        self._mark_write(slot, run)
+        _mark_write(slot, run)
         items = cast("Mapping[str, Any]", value)
-        old: Mapping[str, Any] = self.read(slot.index)
-        for key in [*(k for k in old if k not in items), *items]:
+        old: Mapping[str, Any] = self.state.read(slot.index)
+        for key in [*[k for k in old if k not in items], *items]:
             self._change_item(slot, key, items.get(key, ABSENT), run)
 
-    def _watched(self, slot: SlotPlan) -> bool:
+    def _is_watched(self, slot: SlotPlan) -> bool:
         """Return whether the runtime wants a report of the spikes of one of the slot's signals."""
-        return any(signal.name in self.watched for signal in slot.signals)
+        watched = self.state.watched
+        if watched:
+            for signal in slot.signals:
+                if signal.name in watched:
+                    return True
+        return False
 
     def _regate(self, slot: SlotPlan) -> None:
         """Judge the predicates on a slot again, because its value has changed."""
-        for activation in list(self.gated):
-            if activation in self.gated and any(guarded is slot for guarded, _ in activation.clause.guards):
-                del self.gated[activation]
-                self._update(activation)
-        for activation in self.waiting:
-            self._asking[activation] = None
-        for clause, watches in list(self._watches.items()):
+        state = self.state
+        for activation in list(state.gated):
+            if activation in state.gated and any(guarded is slot for guarded, _ in activation.clause.guards):
+                del state.gated[activation]
+                self.matching.holdings.update(activation)
+        state.asking.update(state.waiting)
+        for clause, watches in list(state.watches.items()):
             for watch in list(watches.values()) if clause.guards else ():
-                self._judge(watch)
+                self.matching.runs.judge(watch)
+
+
+def _mark_write(slot: SlotPlan, run: Activation | None) -> None:
+    """Note that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
+    if run is not None:
+        if slot.index not in run.clause.rule.slotset:
+            raise UndeclaredError(f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}")
+        run.wrote = True
 
 
 class _Absent:

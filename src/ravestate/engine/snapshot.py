@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
 from ravestate.declare.wording import shown
-from ravestate.engine.explain import explain
+from ravestate.engine.explain import activations, stand_ins
 
 if TYPE_CHECKING:
     from ravestate.engine.engine import Engine
@@ -21,44 +21,50 @@ def snapshot(engine: Engine) -> dict[str, Any]:
         ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
         ``next_deadline`` (seconds or None).
     """
-    engine.look()
-    groups = {spike.group.root() for spikes in engine.live.values() for spike in spikes}
+    state = engine.state
+    by_rule = activations(state)
+    holders: dict[int, list[int]] = {}
+    for others in stand_ins(state).values():
+        for other in others:
+            for spike in other.spikes:
+                if spike is not None:
+                    holders.setdefault(spike.id, []).append(other.id)
+    groups = {spike.group.root() for spikes in state.live.values() for spike in spikes}
     return {
-        "now": engine.now,
-        "slots": {plan.name: plain(engine.read(plan.index)) for plan in engine.policy.slot_plans},
+        "now": state.now,
+        "slots": {plan.name: plain(state.read(plan.index)) for plan in state.policy.slot_plans},
         "spikes": [
             {
                 "id": spike.id,
                 "signal": spike.signal.name,
-                "age": engine.now - spike.born,
+                "age": state.now - spike.born,
                 "group": spike.group.root().id,
                 "parents": [parent.id for parent in spike.parents],
                 "payload": plain(spike.payload),
-                "holders": [holder.id for holder in spike.holders],
+                "holders": [*(holder.id for holder in spike.holders), *holders.get(spike.id, ())],
             }
-            for spikes in engine.live.values()
+            for spikes in state.live.values()
             for spike in spikes
         ],
         "activations": [
             {
-                "id": state.id,
+                "id": one.id,
                 "rule": rule.name,
-                "state": state.state,
-                "condition": state.condition,
-                "holds": [{"signal": signal, "age": age} for signal, age in state.holds],
-                "lacks": list(state.lacks),
-                "waits_for": [{"rule": name, "nats": nats} for name, nats in state.waits_for],
-                "until": state.until,
+                "state": one.state,
+                "condition": one.condition,
+                "holds": [{"signal": signal, "age": age} for signal, age in one.holds],
+                "lacks": list(one.lacks),
+                "waits_for": [{"rule": name, "nats": nats} for name, nats in one.waits_for],
+                "until": one.until,
             }
-            for rule in engine.policy.rule_plans
-            if rule.index in engine.active
-            for state in explain(engine, rule).activations
+            for rule in state.policy.rule_plans
+            for one in by_rule.get(rule.index, ())
         ],
         "groups": [
             {
                 "id": group.id,
                 "taken": {
-                    engine.policy.slot_plans[slot].name: None
+                    state.policy.slot_plans[slot].name: None
                     if holders is None
                     else [holder.clause.rule.name for holder in holders]
                     for slot, holders in group.taken.items()
@@ -66,8 +72,8 @@ def snapshot(engine: Engine) -> dict[str, Any]:
             }
             for group in sorted(groups, key=lambda group: group.id)
         ],
-        "dropped": dict(engine.dropped),
-        "retired": [rule.name for rule in engine.policy.rule_plans if rule.index in engine.retired],
+        "dropped": dict(state.dropped),
+        "retired": [rule.name for rule in state.policy.rule_plans if rule.index in state.retired],
         "next_deadline": engine.next_deadline(),
     }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ravestate.policy.model import SignalPlan
@@ -14,38 +13,63 @@ if TYPE_CHECKING:
     from ravestate.engine.loops import Lineage
 
 
-@dataclass(slots=True, eq=False, repr=False)
 class Spike:
     """An occurrence of a signal: payload, time of birth (seconds), parents, causal group, and holders.
 
     Attributes:
         rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
         before: The number of the last activation that is older than the spike.
-        source: The number of the run that raised the spike; 0 if code outside raised it.
+        lineage: In an instant with many runs: the rules that led to the spike (L23).
         holders: The activations that hold the spike, in the order in which they took it.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         entries: How many halves hold the spike without an activation (``halves.py``).
         parted: The numbers of the clauses in these halves that do not hold the spike: they gave it up, or have an
             activation with it.
         refused: The numbers of the rules that gave the spike up for good.
-        lineage: In an instant with many runs: the rules that led to the spike (L23).
     """
 
-    id: int
-    signal: SignalPlan
-    payload: Any
-    born: float
-    group: Group
-    parents: tuple[Spike, ...]
-    source: int
-    rule: int
-    before: int
-    lineage: Lineage | None = field(init=False, default=None)
-    holders: dict[Activation, None] = field(init=False, default_factory=dict[Any, None])
-    expiring: tuple[float, ...] = field(init=False, default=())
-    entries: int = field(init=False, default=0)
-    parted: set[int] | None = field(init=False, default=None)
-    refused: set[int] | None = field(init=False, default=None)
+    __slots__ = (
+        "before",
+        "born",
+        "entries",
+        "expiring",
+        "group",
+        "holders",
+        "id",
+        "lineage",
+        "parents",
+        "parted",
+        "payload",
+        "refused",
+        "rule",
+        "signal",
+    )
+
+    def __init__(
+        self,
+        id: int,
+        signal: SignalPlan,
+        payload: Any,
+        born: float,
+        group: Group,
+        parents: tuple[Spike, ...],
+        rule: int,
+        before: int,
+    ) -> None:
+        self.id = id
+        self.signal = signal
+        self.payload = payload
+        self.born = born
+        self.group = group
+        self.parents = parents
+        self.rule = rule
+        self.before = before
+        self.lineage: Lineage | None = None
+        self.holders: dict[Activation, None] = {}
+        self.expiring: tuple[float, ...] = ()
+        self.entries = 0
+        self.parted: set[int] | None = None
+        self.refused: set[int] | None = None
 
     def refuse(self, rule: int) -> None:
         """Note that a rule gives the spike up for good."""

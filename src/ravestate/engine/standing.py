@@ -41,20 +41,31 @@ class Standing:
         """Return whether a clause goes before another, both now and in the moment after."""
         if not (theirs.rule.cooldown or mine.rule.cooldown):
             return theirs.base > mine.base or (theirs.base == mine.base and theirs.index < mine.index)
-        (far, fast), (my_far, my_fast) = self.recovery(theirs), self.recovery(mine)
-        worth = (theirs.utility * theirs.rule.weight, mine.utility * mine.rule.weight)
-        weight = (theirs.rule.weight, mine.rule.weight)
-        now = (worth[0] * far, worth[1] * my_far)
-        trend = (worth[0] * fast, worth[1] * my_fast)
-        bare = (weight[0] * far, weight[1] * my_far)
+        now, soon = self._leads(theirs, mine)
+        return now and soon
+
+    def overtakes(self, mine: Clause, theirs: Clause) -> bool:
+        """Return whether a clause goes before another in the moment after: the other clause waits for it (L16)."""
+        if not (theirs.rule.cooldown or mine.rule.cooldown):
+            return mine.base > theirs.base or (mine.base == theirs.base and mine.index < theirs.index)
+        return self._leads(mine, theirs)[1]
+
+    def _leads(self, one: Clause, other: Clause) -> tuple[bool, bool]:
+        """Return whether a clause goes before another now, and whether it does in the moment after."""
+        (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
+        worth = (one.utility * one.rule.weight, other.utility * other.rule.weight)
+        weight = (one.rule.weight, other.rule.weight)
+        now = (worth[0] * far, worth[1] * their_far)
+        trend = (worth[0] * fast, worth[1] * their_fast)
+        bare = (weight[0] * far, weight[1] * their_far)
         lead = _lead(now)
         soon = lead or _lead(trend)
         if now == (0.0, 0.0):
             lead = _lead(bare)
             if trend == (0.0, 0.0):
-                soon = lead or _lead((weight[0] * fast, weight[1] * my_fast))
-        first = 1 if theirs.index < mine.index else -1
-        return (lead or first) > 0 and (soon or first) > 0
+                soon = lead or _lead((weight[0] * fast, weight[1] * their_fast))
+        first = 1 if one.index < other.index else -1
+        return (lead or first) > 0, (soon or first) > 0
 
     def crossing(self, one: Clause, other: Clause) -> float:
         """Return when recovery next changes the order of two clauses (seconds); `inf` if it never does."""

@@ -2,12 +2,19 @@
 
 Each table is indexed by what an event concerns: live spikes by signal, activations by rule, and incomplete activations
 by the need that they lack. So the cost of an event does not grow with the number of rules.
+
+The other parts of the engine share one state. Each table has one owner, which alone changes it:
+
+- ``holdings.py``: `active`, `lacking`, `gated`, `busy`; ``entries.py``: `live`, `halves`
+- ``conflict_sets.py``: `alternatives`; ``waits.py``: `waiting`, `hoping`, `refused`, `stuck`
+- ``runs.py``: `running`, `retired`, `ran`, `watches`, `watched_by`; ``slots.py``: `values`
 """
 
 from __future__ import annotations
 
 import copy
 from collections import OrderedDict
+from collections.abc import Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -18,9 +25,9 @@ from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
 from ravestate.engine.group import Group
-from ravestate.engine.horizon import OUTSIDE, RULE
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
+from ravestate.engine.standing import Standing
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
 from ravestate.policy.model import Clause, Half, Need, RulePlan, SlotPlan
@@ -31,54 +38,68 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 
 
 class State:
-    """The slots, live spikes and activations of an engine, and the work that is still to be done."""
+    """The slots, live spikes and activations of an engine, and the work that is still to be done.
+
+    Args:
+        policy: A policy from ``rs.compile``.
+        patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (L16).
+    """
 
     __slots__ = (
-        "_activations",
-        "_acts",
-        "_asking",
-        "_blamed",
-        "_busy",
-        "_deadlines",
-        "_dirty",
-        "_errors",
-        "_free",
-        "_groups",
-        "_hope_counts",
-        "_loops",
-        "_out",
-        "_refused",
-        "_spikes",
-        "_stirred",
-        "_stuck",
-        "_unseen",
-        "_watched_by",
-        "_watches",
+        "activations",
         "active",
+        "activity",
+        "acts",
         "alternatives",
+        "asking",
+        "blamed",
+        "busy",
+        "deadlines",
+        "dirty",
         "dropped",
+        "errors",
+        "free",
         "gated",
+        "groups",
         "halves",
+        "hope_counts",
         "hoping",
         "lacking",
         "live",
+        "loops",
         "now",
+        "out",
+        "patience",
         "policy",
+        "pressure",
+        "ran",
+        "refused",
         "retired",
         "running",
+        "spikes",
+        "standing",
+        "stirred",
+        "stuck",
         "tracer",
+        "unseen",
         "values",
         "waiting",
         "watched",
+        "watched_by",
+        "watches",
     )
 
-    def __init__(self, policy: Policy) -> None:
+    def __init__(self, policy: Policy, patience: float) -> None:
         self.policy = policy
+        self.activity = policy.slot_of["core:activity"]
+        self.pressure = policy.slot_of["core:pressure"]
+        self.patience = patience
         self.now = 0.0
         self.tracer: Tracer | None = None
+        self.deadlines = Deadlines(self)
         self.values: dict[int, Any] = {}
         """Number of a slot that was written or read → its value."""
-        self._unseen: dict[int, dict[str, Any]] = {}
+        self.unseen: dict[int, dict[str, Any]] = {}
         """Number of a collection that was not read since its last change → its items. Changing them needs no copy."""
         self.live: dict[int, dict[Spike, None]] = {}
         """Number of a signal → its live spikes, oldest first."""
@@ -91,93 +112,93 @@ class State:
         before theirs (``halves.py``)."""
         self.gated: dict[Activation, None] = {}
         """Activations that hold all their spikes while a predicate on a slot is false."""
+        self.free = Free()
+        """The ready activations that need no consent."""
+        self.asking: dict[Activation, None] = {}
+        """The ready or waiting activations that are about to ask for consent."""
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
+        self.refused: dict[Activation, None] = {}
+        """The activations refused since the last search for a stalemate."""
+        self.stuck: dict[Activation, None] = {}
+        """The activations found in a stalemate since they were refused."""
+        self.dirty: dict[Group, None] = {}
+        """The groups in which something ended: the activations that wait there ask again."""
+        self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
+        """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
+        self.hope_counts: dict[tuple[int, int], int] = {}
+        """The same keys → the greatest count in `Horizon.hopes`."""
+        self.stirred: dict[tuple[int, int], None] = {}
+        """The keys of `hoping` that have changed."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
         """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
         them have had an activation; the activation number just before theirs."""
-        self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
-        """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
-        self._hope_counts: dict[tuple[int, int], int] = {}  # the same keys → the greatest count in `Horizon.hopes`
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
+        self.ran: dict[int, float] = {}
+        """Number of a rule with a cooldown → the time of its last run (seconds)."""
+        self.standing = Standing(self.ran)
         self.retired: set[int] = set()
         """The numbers of the rules that have retired."""
+        self.watches: dict[Clause, dict[Activation, Watch]] = {}
+        """Clause of an `until` condition → its runs, and how far each has met the clause."""
+        self.watched_by: dict[Spike, dict[Watch, None]] = {}
+        """Spike → the watches that hold it."""
         self.dropped: dict[str, int] = {}
         """Signal's name → how many of its spikes were dropped by its limit (L23)."""
         self.watched: dict[str, int] = {}
         """The names of the signals whose spikes are reported as effects, as the keys of a table."""
-        self._out: list[Effect] = []
-        self._acts = False  # whether one of these effects starts or cancels a run
-        self._free = Free()
-        self._asking: dict[Activation, None] = {}  # ready or waiting activations that are about to ask for consent
-        self._refused: dict[Activation, None] = {}  # activations refused since the last search for a stalemate
-        self._stuck: dict[Activation, None] = {}  # activations found in a stalemate since they were refused
-        self._dirty: dict[Group, None] = {}  # groups in which something ended
-        self._stirred: dict[tuple[int, int], None] = {}  # the keys of `hoping` that have changed
-        self._watches: dict[Clause, dict[Activation, Watch]] = {}
-        self._watched_by: dict[Spike, dict[Watch, None]] = {}  # spike → the watches that hold it
-        # Failures that ``core:error`` has not reported yet, each with the rules that led to it.
-        self._errors: list[tuple[RuleFailure, Lineage | None]] = []
-        self._loops = Loops()
-        self._blamed: set[int] = set()  # the ids of predicates whose failure was reported
-        self._deadlines: Deadlines
-        self._busy: int = 0  # how many activations count for `core:activity`
-        self._activations: int = 0  # the number of the newest activation
-        self._spikes = 0
-        self._groups = 0
+        self.out: list[Effect] = []
+        """The effects that the runtime has not taken yet."""
+        self.acts = False
+        """Whether one of these effects starts or cancels a run."""
+        self.errors: list[tuple[RuleFailure, Lineage | None]] = []
+        """Failures that ``core:error`` has not reported yet, each with the rules that led to it."""
+        self.blamed: set[int] = set()
+        """The ids of the predicates whose failure was reported."""
+        self.loops = Loops()
+        self.busy = 0
+        """How many activations count for ``core:activity``."""
+        self.activations = 0
+        """The number of the newest activation."""
+        self.spikes = 0
+        """The number of the newest spike."""
+        self.groups = 0
+        """The number of the newest causal group."""
 
-    def _new_activation(self, clause: Clause, number: int) -> Activation:
-        """Create an activation of a clause; it is about to take its first spike."""
-        activation = Activation(number, clause)
-        rule = clause.rule
-        active = self.active.get(rule.index)
-        if active is None:
-            active = self.active[rule.index] = {}
-        active[activation] = None
-        if not (rule.background or clause.reflexive):
-            self._busy += 1
-        if self.hoping:
-            self.stir_rule(rule)
-        return activation
+    def adopt(self, policy: Policy) -> None:
+        """Replace the policy by one that begins with the same rules in the same order, and has more."""
+        self.policy = policy
+        self.activity = policy.slot_of["core:activity"]
+        self.pressure = policy.slot_of["core:pressure"]
+        clauses, signals = policy.clause_plans, policy.signal_plans
+        for activations in self.active.values():
+            for activation in activations:
+                activation.clause = clauses[activation.clause.index]
+        for spikes in (*self.live.values(), self.watched_by):
+            for spike in spikes:
+                spike.signal = signals[spike.signal.index]
+        self.lacking = {clauses[n.clause.index].needs[n.index]: lacking for n, lacking in self.lacking.items()}
+        self.watches = {clauses[clause.index]: watches for clause, watches in self.watches.items()}
+        for watches in self.watches.values():
+            for watch in watches.values():
+                watch.clause = clauses[watch.clause.index]
 
-    def stir_rule(self, rule: RulePlan) -> None:
-        """Note that an activation of a rule has come, changed or gone: activations in other groups may depend on it."""
-        others = len(self.active.get(rule.index, ())) - 1
-        for kind, number in self.hoping:
-            if (
-                number == rule.index
-                if kind == RULE
-                else kind == OUTSIDE
-                and others <= self._hope_counts[kind, number]
-                and rule.index in self.policy.causes.wide_ancestors(number)
-            ):
-                self._stirred[kind, number] = None
+    # ------------------------------------------------------------------------------------ spikes
 
     def is_live(self, spike: Spike) -> bool:
         """Return whether a spike is live: something holds it, or detached needs may look at it."""
-        return spike in self.live.get(spike.signal.index, ())
-
-    def read(self, slot: int) -> Any:
-        """Return the value of the slot with this number."""
-        if self._unseen:
-            self._unseen.pop(slot, None)
-        try:
-            return self.values[slot]
-        except KeyError:
-            default: Any = self.policy.slot_plans[slot].slot.default
-            if not isinstance(default, PASSIVE):
-                default = copy.deepcopy(default)  # contexts share no state
-            self.values[slot] = default
-            return self.values[slot]
+        live = self.live.get(spike.signal.index)
+        return live is not None and spike in live
 
     def newest(self, need: Need) -> Spike | None:
         """Return the newest live spike that fits a need, or None."""
-        return next(
-            (spike for spike in reversed(self.live.get(need.signal.index, {})) if self._fits(need, spike)), None
-        )
+        for spike in reversed(self.live.get(need.signal.index, {})):
+            if self.fits(need, spike):
+                return spike
+        return None
 
-    def _fits(self, need: Need, spike: Spike) -> bool:
+    def fits(self, need: Need, spike: Spike) -> bool:
         """Return whether a live spike may meet a need: age and payload fit, and the rule has not lost it for good."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and (need.max_age or spike.born < self.now):
@@ -189,30 +210,85 @@ class State:
                 return False
             if need.clause.cyclic and spike.descends_from(rule.index):
                 return False
-        return all(self._test(predicate, spike.payload, rule) for predicate in need.predicates)
+        for predicate in need.predicates:
+            if not self.test(predicate, spike.payload, rule):
+                return False
+        return True
 
-    def holds(self, slot: SlotPlan, guard: Holds, rule: RulePlan) -> bool:
-        """Return whether a predicate on a slot's value is true. A predicate that raises is false, and is reported."""
-        return self._test(guard.predicate, self.read(slot.index), rule)
+    def halves_of(self, spike: Spike) -> Sequence[Half]:
+        """Return the halves that hold a spike."""
+        return [half for half in spike.signal.halves if spike in self.halves.get(half, ())] if spike.entries else ()
+
+    def keeps(self, need: Need, spike: Spike) -> bool:
+        """Return whether the need's half holds a spike for the need's clause."""
+        held = self.halves.get(need.half) if need.half is not None else None
+        return held is not None and spike in held and not (spike.parted and need.clause.index in spike.parted)
+
+    def entry_number(self, need: Need, spike: Spike) -> int:
+        """Return the number of the activation for which the need's half holds a spike."""
+        half = need.half
+        assert half is not None
+        return self.halves[half][spike] + half.places[need.clause.rule.index] + 1
+
+    def stand_in(self, need: Need, spike: Spike) -> Activation:
+        """Return the activation for which the need's half holds a spike. It is in no table."""
+        activation = Activation(self.entry_number(need, spike), need.clause)
+        activation.spikes[need.index] = spike
+        activation.missing &= ~need.bit
+        return activation
+
+    # ------------------------------------------------------------------------------------ slots and predicates
+
+    def read(self, slot: int) -> Any:
+        """Return the value of the slot with this number."""
+        if self.unseen:
+            self.unseen.pop(slot, None)
+        try:
+            return self.values[slot]
+        except KeyError:
+            default: Any = self.policy.slot_plans[slot].slot.default
+            if not isinstance(default, PASSIVE):
+                default = copy.deepcopy(default)  # contexts share no state
+            self.values[slot] = default
+            return self.values[slot]
+
+    def is_open(self, clause: Clause) -> bool:
+        """Return whether the clause's predicates on slots are true. A predicate that raises is false, and is reported."""
+        for slot, guard in clause.guards:
+            if not self.test(guard.predicate, self.read(slot.index), clause.rule):
+                return False
+        return True
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
-        """Return the result of `holds` for a debugger: a predicate that raises counts as false, but is not reported."""
+        """Return whether a predicate on a slot is true. One that raises counts as false, but is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
         except Exception:  # the designer's predicate may raise anything
             return False
 
-    def _test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
+    def test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
+        """Return the result of a rule's predicate. A predicate that raises is false, and is reported once."""
         try:
             return bool(predicate(value))
         except Exception as exception:  # a predicate is the designer's code: it may raise anything
-            if id(predicate) not in self._blamed:
-                self._blamed.add(id(predicate))
-                self._fail(rule, exception, signal=True)
+            if id(predicate) not in self.blamed:
+                self.blamed.add(id(predicate))
+                self.fail(rule, exception, signal=True)
             return False
 
-    def _fail(self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None) -> None:
+    def fail(self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None) -> None:
         """Report a failure of a rule to the runtime; with `signal`, ``core:error`` occurs next."""
-        self._out.append(Failed(rule.name, exception))
+        self.out.append(Failed(rule.name, exception))
         if signal:
-            self._errors.append((RuleFailure(rule.name, exception), lineage))
+            self.errors.append((RuleFailure(rule.name, exception), lineage))
+
+    # ------------------------------------------------------------------------------------ utility
+
+    def effective(self, clause: Clause) -> float:
+        """Return the effective utility of a clause now (L9): utility x weight x recovery, in nats."""
+        self.standing.now = self.now
+        return self.standing.effective(clause)
+
+    def order(self, activation: Activation) -> tuple[float, int, int]:
+        """Return the sort key of a ready activation: greatest effective utility, then first declared, then oldest."""
+        return (-self.effective(activation.clause), activation.clause.index, activation.id)

@@ -15,7 +15,7 @@ from ravestate.errors import nearest
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
     from ravestate.modules.modality import emotion, interloc, rawio
-    from ravestate.modules.platform import conio, matrixio, telegramio, voiceio, webio
+    from ravestate.modules.platform import conio, matrixio, roboyio, ros1, ros2, telegramio, voiceio, webio
     from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
 
 __all__ = [
@@ -34,6 +34,9 @@ __all__ = [
     "ontology",
     "persqa",
     "rawio",
+    "roboyio",
+    "ros1",
+    "ros2",
     "telegramio",
     "verbaliser",
     "voiceio",
@@ -47,6 +50,9 @@ BUILT_IN = {
     "webio": "platform",
     "telegramio": "platform",
     "matrixio": "platform",
+    "roboyio": "platform",
+    "ros1": "platform",
+    "ros2": "platform",
     "rawio": "modality",
     "interloc": "modality",
     "emotion": "modality",

@@ -1,4 +1,7 @@
-"""A context's clock. It starts at zero, follows the loop's time, and can be halted, set forward and started again."""
+"""A context's clock. It starts at zero, follows the loop's time, and can be halted, set forward and started again.
+
+It can also be driven by another clock, such as that of a simulation.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +15,14 @@ class Clock:
         self._loop = loop
         self._origin = loop.time()
         self._halted: float | None = None
+        self._driven: float | None = None
         self._sleepers: dict[asyncio.Future[None], tuple[float, asyncio.TimerHandle | None]] = {}
 
     def now(self) -> float:
         """Return the time on this clock (seconds)."""
-        return self._loop.time() - self._origin if self._halted is None else self._halted
+        if self._halted is not None:
+            return self._halted
+        return self._loop.time() - self._origin if self._driven is None else self._driven
 
     def on_loop(self, time: float) -> float:
         """Convert a time on this clock to the loop's time (seconds). A later halt invalidates the result."""
@@ -26,6 +32,21 @@ class Clock:
     def halted(self) -> bool:
         """Whether the clock is halted."""
         return self._halted is not None
+
+    @property
+    def driven(self) -> bool:
+        """Whether another clock drives this one."""
+        return self._driven is not None
+
+    def drive(self, time: float) -> None:
+        """Set the clock forward to `time` (seconds). From now on it moves only by such calls, not with the loop's time."""
+        self._driven = max(self.now() if self._driven is None else self._driven, time)
+        for sleeper, (until, timer) in self._sleepers.items():
+            if timer is not None:
+                timer.cancel()
+                self._sleepers[sleeper] = until, None
+            if self._halted is None and until <= self._driven:
+                _wake(sleeper)
 
     async def sleep(self, seconds: float) -> None:
         """Wait until `seconds` (not NaN) have passed on this clock; with 0 or less, only give other tasks a turn."""
@@ -37,7 +58,7 @@ class Clock:
         future: asyncio.Future[None] = self._loop.create_future()
         until = self.now() + seconds
         timer = None
-        if self._halted is None:
+        if self._halted is None and self._driven is None:
             timer = self._loop.call_later(seconds, _wake, future)
         self._sleepers[future] = until, timer
         try:
@@ -73,6 +94,9 @@ class Clock:
         if self._halted is not None:
             self._origin = self._loop.time() - self._halted
             self._halted = None
+            if self._driven is not None:
+                self.drive(self._driven)
+                return
             for sleeper, (until, _) in self._sleepers.items():
                 timer = self._loop.call_at(self.on_loop(until), _wake, sleeper)
                 self._sleepers[sleeper] = until, timer

@@ -38,6 +38,7 @@ class Host(Protocol):
     def add_rule(self, rule: Rule[Any, Any]) -> None: ...
     def stop(self, failure: RavestateError | None) -> None: ...
     async def quiet(self) -> None: ...
+    def drive(self, time: float) -> None: ...
 
 
 class RuleContext:
@@ -165,6 +166,15 @@ class RuleContext:
     async def quiet(self) -> None:
         """Wait until no foreground rule runs or waits for consent."""
         await self._host.quiet()
+
+    def drive_clock(self, time: float) -> None:
+        """Set the context's clock forward to `time` (seconds since the context's start), as a simulation's clock says.
+
+        From the first call on, the clock moves by these calls alone: time passes as fast as the simulation's, and halts
+        with it. A time in the past changes nothing.
+        """
+        self._alive()
+        self._host.drive(time)
 
     def stop(self, failure: RavestateError | None = None) -> None:
         """Ask the context to end: it raises ``rs.shutdown``, waits a few seconds, and cancels the rules that still run.

@@ -319,6 +319,17 @@ class Runner:
                 self._timer = None
             self._schedule()  # not at once: the caller may be a task, and rules start outside any task
 
+    def drive(self, time: float) -> None:
+        """Set the clock forward to `time` (seconds), and keep it from moving by itself; see `Clock.drive`."""
+        self.clock.drive(time)
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        due = self._engine.next_deadline()
+        if due is not None and due <= self.clock.now() and not self.closed and not self.clock.halted:
+            self._fall_due(due)
+            self._schedule()
+
     def engine_now(self) -> Engine:
         """Return the engine for inspection, after it has handled all deadlines that are due."""
         self._engine.advance(max(self._engine.now, self.clock.now()))
@@ -335,7 +346,7 @@ class Runner:
     def _arm(self) -> None:
         """Set the timer to the engine's next deadline. Leave a timer that fires earlier: it does no harm."""
         due = self._engine.next_deadline()
-        if due is None or (self._timer is not None and self._timer_due <= due):
+        if due is None or self.clock.driven or (self._timer is not None and self._timer_due <= due):
             return
         if self._timer is not None:
             self._timer.cancel()

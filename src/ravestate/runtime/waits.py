@@ -87,7 +87,7 @@ class Waits:
             )
 
         def done() -> bool:
-            if any(holder.ripens != NEVER for s in engine.live.get(shutdown, ()) for holder in s.holders):
+            if any(holder.ripens != NEVER for s in engine.state.live.get(shutdown, ()) for holder in s.holders):
                 return False
             return not any(n not in known and counts(a) for n, a in self.alive().items())
 

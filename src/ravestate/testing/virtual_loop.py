@@ -36,6 +36,9 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     functions that `asyncio.to_thread` runs.
     """
 
+    is_virtual = True
+    """Read by modules that connect to the world: in virtual time, they do not."""
+
     def __init__(self) -> None:
         self._virtual = 0.0
         self.goal: float | None = None

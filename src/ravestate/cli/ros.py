@@ -1,0 +1,220 @@
+"""``ravestate ros``: check what an agent is bound to, list the topics of the network, and show the messages of one."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import sys
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from ravestate.cli.agent import load_agent
+from ravestate.errors import PlatformError, nearest
+from ravestate.loading.spec import AgentSpec
+
+if TYPE_CHECKING:
+    from ravestate.modules.platform.ros import Node
+
+LONG = 64
+"""The number of items of a list above which `echo` leaves out the rest."""
+LOOKS = 8
+"""The number of looks for a topic, because nodes of ROS 2 find each other one by one."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    checking = actions.add_parser(
+        "check",
+        help="show what an agent is bound to, and whether there is another end; without an agent: whether there is ROS",
+        description="Show what the slots of an agent are bound to, whether there is another end, and whether the types match. "
+        "Without an agent, show whether ROS is installed and its network answers. Exit code 1: something is missing.",
+    )
+    checking.add_argument("modules", nargs="*", metavar="MODULE", help="the agent: modules or an agent file")
+    checking.add_argument("-f", "--file", metavar="FILE", help="an agent file")
+    listing = actions.add_parser("topics", help="list the topics, services and actions of the network")
+    echoing = actions.add_parser("echo", help="print the messages of a topic, one line of JSON for each")
+    echoing.add_argument("topic", metavar="TOPIC", help="the topic's name, such as /chat")
+    echoing.add_argument("--type", help="the type of its messages, if nobody publishes yet")
+    echoing.add_argument("-n", "--count", type=int, default=0, help="end after so many messages")
+    for action in (checking, listing, echoing):
+        action.add_argument(
+            "--set", dest="sets", action="append", default=[], metavar="MODULE.KEY=VALUE",
+            help="a setting, e.g. ros2.domain=7 or ros2.backend=bus (may be repeated)",
+        )  # fmt: skip
+        if action is not checking:
+            action.add_argument(
+                "--version", type=int, choices=(1, 2), help="ROS 1 or ROS 2; by default, the one that is here"
+            )
+
+
+def run(options: argparse.Namespace) -> int:
+    options.seed = None
+    try:
+        if options.action == "check":
+            return asyncio.run(_check_agent(options) if options.modules or options.file else _check_machine(options))
+        return asyncio.run(_with_node(options, _topics if options.action == "topics" else _echo))
+    except TimeoutError as error:
+        raise PlatformError(str(error)) from error
+
+
+def _settings(options: argparse.Namespace) -> dict[str, Any]:
+    from ravestate.modules import ros1, ros2
+    from ravestate.settings import load_settings
+
+    agent = AgentSpec()
+    agent.load([("ros1", Path()), ("ros2", Path())])
+    for text in options.sets:
+        agent.set(text)
+    agent.check()
+    return dict(load_settings([ros1.module, ros2.module], agent.settings))
+
+
+def _make(version: int, settings: dict[str, Any]) -> Node:
+    from ravestate.modules import ros1, ros2
+
+    module: Any = ros1 if version == 1 else ros2
+    return module.make_node(settings[f"ros{version}"])
+
+
+async def _check_machine(options: argparse.Namespace) -> int:
+    settings, works = _settings(options), 0
+    for version in (1, 2):
+        node = _make(version, settings)
+        try:
+            graph = await node.graph()
+            print(f"ok       ros{version}  {len(graph['topics'])} topics, {len(graph['services'])} services")
+            works += 1
+        except PlatformError as error:
+            print(f"MISSING  {error}" if str(error).startswith("ros") else f"MISSING  ros{version}  {error}")
+        finally:
+            await node.close()
+    return 0 if works else 1
+
+
+async def _check_agent(options: argparse.Namespace) -> int:
+    from ravestate.modules.platform.ros import TopicSlot
+    from ravestate.modules.platform.ros.checking import Line, check
+    from ravestate.runtime.agent import Agent
+
+    spec = load_agent(options)
+    agent = Agent(*spec.modules, **spec.options())
+    slots = [slot for slot in agent.policy.slots.values() if isinstance(slot, TopicSlot)]
+    lines: list[Line] = []
+    for version in (1, 2):
+        own = [slot for slot in slots if slot.binding.version == version]
+        if not own:
+            continue
+        node = _make(version, dict(agent.settings))
+        try:
+            lines += await check(node, own)
+        except PlatformError as error:
+            lines += [Line(False, slot.name, str(error)) for slot in own]
+        finally:
+            await node.close()
+    if not lines:
+        print("this agent has no slot that is a topic, a service or an action", file=sys.stderr)
+        return 0
+    width = max(len(line.what) for line in lines)
+    for line in lines:
+        print(f"{'ok' if line.good else 'FAULT':<7}  {line.what:<{width}}  {line.text}")
+    return int(not all(line.good for line in lines))
+
+
+async def _with_node(
+    options: argparse.Namespace, act: Callable[[argparse.Namespace, Node, dict[str, Any]], Awaitable[int]]
+) -> int:
+    settings = _settings(options)
+    faults: list[str] = []
+    for version in (options.version,) if options.version else (2, 1):
+        node = _make(version, settings)
+        try:
+            try:
+                graph = await node.graph(10.0 if options.version else 6.0)
+            except PlatformError as error:
+                faults.append(str(error))
+                continue
+            if not options.version and version == 2 and options.action == "echo" and not _finds(graph, options.topic):
+                graph = await _look_again(node, options.topic)
+                if not _finds(graph, options.topic) and not options.type:
+                    faults.append(f"ros2: no topic {options.topic}{nearest(options.topic, _names(graph))}")
+                    continue
+            return await act(options, node, graph)
+        finally:
+            await node.close()
+    raise PlatformError("; ".join(faults))
+
+
+def _names(graph: dict[str, Any]) -> list[str]:
+    return [row["name"] for row in graph["topics"]]
+
+
+def _finds(graph: dict[str, Any], topic: str) -> bool:
+    return any(row["name"] == topic and row["types"] for row in graph["topics"])
+
+
+async def _look_again(node: Node, topic: str) -> dict[str, Any]:
+    """Return the graph once it has the topic, or after two seconds: nodes of ROS 2 find each other one by one."""
+    graph: dict[str, Any] = {}
+    for _ in range(LOOKS):
+        graph = await node.graph()
+        if _finds(graph, topic):
+            break
+        await asyncio.sleep(0.25)
+    return graph
+
+
+async def _topics(options: argparse.Namespace, node: Node, graph: dict[str, Any]) -> int:
+    if not options.version or options.version == 2:
+        graph = await _look_again(node, "")
+    for kind in ("topics", "services", "actions"):
+        for row in sorted(graph[kind], key=lambda row: row["name"]):
+            ends = f"{row['publishers']} > {row['subscribers']}" if kind == "topics" else f"{row['servers']} offer it"
+            print(f"{kind[:-1]:<7}  {row['name']}  {', '.join(row['types']) or '?'}  {ends}")
+    return 0
+
+
+async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) -> int:
+    from ravestate.modules.platform.ros import plain, quality
+
+    if not _finds(graph, options.topic) and not options.type:
+        graph = await _look_again(node, options.topic)
+    row = next((row for row in graph["topics"] if row["name"] == options.topic), None)
+    if row is None and not options.type:
+        raise PlatformError(
+            f"there is no topic {options.topic}{nearest(options.topic, _names(graph))}; ravestate ros topics lists them. To "
+            "wait for one: --type std_msgs/String"
+        )
+    done, count = asyncio.Event(), 0
+
+    def show(message: Any) -> None:
+        nonlocal count
+        count += 1
+        print(json.dumps(_shortened(plain(message)), ensure_ascii=False), flush=True)
+        if count == options.count:
+            done.set()
+
+    best = row is not None and row.get("reliability") == ["best_effort"]
+    qos = quality("sensor_data" if best else None, depth=100, latch=False)
+    type_: str = options.type or (row["types"][0] if row is not None and row["types"] else "")
+    if not type_:
+        raise PlatformError(f"the type of {options.topic} is not known: --type std_msgs/String")
+    node.subscribe(
+        options.topic, type_, lambda message: None if done.is_set() else show(message), latest=False, qos=qos
+    )
+    await done.wait()
+    return 0
+
+
+def _shortened(value: Any) -> Any:
+    """Return plain data without the middle of its long lists, such as the pixels of an image."""
+    if isinstance(value, dict):
+        fields = cast("dict[str, Any]", value)
+        return {key: _shortened(item) for key, item in fields.items()}
+    if isinstance(value, list):
+        items = cast("list[Any]", value)
+        if len(items) > LONG:
+            return [*items[:8], f"... {len(items)} values"]
+        return [_shortened(item) for item in items]
+    return value

@@ -1,0 +1,44 @@
+"""The outcome of a run, by how its function ended and what the engine had told it (L18, L20, L21).
+
+The key of a row is the engine's reason to cancel the run, empty if there was none, and the end of the function. A row
+has two outcomes: one for a run that wrote no slot, and one for a run that wrote one. A run that *fired* consumes its
+slots. After any other end the slots are free, and the next best rule may answer.
+"""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from ravestate.engine import events
+
+DONE, RESIGNED, FAILED, RETIRED = KINDS = get_args(events.OutcomeKind)
+INTERRUPTED, TIMEOUT, WIPED = "interrupted", "timeout", "wiped"
+
+End = tuple[str, bool]
+"""An outcome (`reasons.Outcome`), and whether the run has fired."""
+
+OUTCOMES: dict[tuple[str, str], tuple[End, End]] = {
+    # told, ended              no slot written         a slot written
+    ("", DONE): ((DONE, True), (DONE, True)),
+    ("", RESIGNED): ((RESIGNED, False), (FAILED, True)),  # to resign after a write is an error
+    ("", FAILED): ((FAILED, False), (FAILED, True)),
+    ("", RETIRED): ((RETIRED, True), (RETIRED, True)),
+    (INTERRUPTED, DONE): ((INTERRUPTED, True), (INTERRUPTED, True)),
+    (INTERRUPTED, RESIGNED): ((INTERRUPTED, True), (FAILED, True)),
+    (INTERRUPTED, FAILED): ((FAILED, True), (FAILED, True)),
+    (INTERRUPTED, RETIRED): ((RETIRED, True), (RETIRED, True)),
+    (TIMEOUT, DONE): ((FAILED, False), (FAILED, True)),
+    (TIMEOUT, RESIGNED): ((FAILED, False), (FAILED, True)),
+    (TIMEOUT, FAILED): ((FAILED, False), (FAILED, True)),
+    (TIMEOUT, RETIRED): ((FAILED, False), (FAILED, True)),
+    # A run that is wiped before it wrote a slot has answered nothing: other rules may answer the remaining spikes.
+    (WIPED, DONE): ((WIPED, False), (WIPED, True)),
+    (WIPED, RESIGNED): ((WIPED, False), (FAILED, True)),
+    (WIPED, FAILED): ((FAILED, False), (FAILED, True)),
+    (WIPED, RETIRED): ((RETIRED, False), (RETIRED, True)),
+}
+
+
+def verdict(told: str, ended: str, wrote: bool) -> End:
+    """Return the outcome of a run, and whether it has fired."""
+    return OUTCOMES[told, ended][wrote]

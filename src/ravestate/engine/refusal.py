@@ -1,0 +1,49 @@
+"""A refusal: the reasons for which a ready activation waits (L15)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from ravestate.engine.activation import NEVER, Activation
+
+if TYPE_CHECKING:
+    from ravestate.engine.group import Group
+
+RULE, OUTSIDE, SEEN = range(3)
+"""Kinds of hope: an activation of a rule elsewhere; a live rule that may raise a signal; a new spike to look at."""
+
+
+class Refusal:
+    """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
+
+    Attributes:
+        names: The names of the rules that the activation waits for.
+        blockers: The live activations on whose progress the refusal depends.
+        firm: For each rival that will be ready, or fail, by work in progress: the activations at work.
+        taken: Whether a slot is taken.
+        pressed: Whether a rival may never be ready, so that only its patience ends the wait.
+        hopes: Things outside its groups on which the refusal depends (`Horizon.hopes`).
+        interests: The groups whose changes may lift the refusal.
+        recheck: The earliest time at which recovering utilities, or the age of a spike, may lift it (seconds).
+    """
+
+    __slots__ = ("blockers", "firm", "hopes", "interests", "names", "pressed", "recheck", "taken")
+
+    def __init__(self) -> None:
+        self.interests: dict[Group, None] = {}
+        self.hopes: Mapping[tuple[int, int], int] = {}
+        self.names: dict[str, None] = {}
+        self.blockers: dict[Activation, None] = {}
+        self.firm: list[tuple[Activation, ...]] = []
+        self.taken = False
+        self.pressed = False
+        self.recheck = NEVER
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the wait is for a taken slot, or for a rival whose patience ends the wait."""
+        return self.taken or self.pressed
+
+    def __bool__(self) -> bool:
+        return bool(self.names)

@@ -1,0 +1,237 @@
+"""Runs: a rule's function starts, is watched, and ends (L17, L18, L21)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ravestate.declare.wording import said
+from ravestate.engine import events, trace
+from ravestate.engine.activation import CANCEL, GRANT, NEVER, RUNNING, Activation
+from ravestate.engine.conflict_sets import ConflictSets
+from ravestate.engine.deadlines import TIMEOUT, WATCH
+from ravestate.engine.effects import Cancel, CancelReason, Ended, Run
+from ravestate.engine.group import NOTHING, Group
+from ravestate.engine.holdings import Holdings
+from ravestate.engine.loops import MANY, TURNS
+from ravestate.engine.outcomes import FAILED, RESIGNED, verdict
+from ravestate.engine.spike import Spike
+from ravestate.engine.state import State
+from ravestate.engine.watch import Watch
+from ravestate.errors import RuleError, RuleTimeout
+from ravestate.policy.model import RulePlan
+
+
+class Runs:
+    """The part of the engine that starts, cancels and settles runs.
+
+    Args:
+        report_ends: Whether each run ends with an `Ended` effect.
+    """
+
+    __slots__ = ("holdings", "report_ends", "sets", "state")
+
+    def __init__(self, state: State, holdings: Holdings, sets: ConflictSets, report_ends: bool) -> None:
+        self.state = state
+        self.holdings = holdings
+        self.sets = sets
+        self.report_ends = report_ends
+
+    def start(self, activation: Activation) -> None:
+        """Start an activation: it takes its slots in its groups, and its function runs (L17)."""
+        state = self.state
+        clause = activation.clause
+        rule = clause.rule
+        activation.step(GRANT)
+        if activation.refusal is not None:
+            self.holdings.waits.end(activation)
+        activation.pressed = NOTHING
+        activation.stands_on = activation.firm_spikes()
+        if rule.slots:
+            groups = activation.firm_groups()
+            activation.groups = tuple(groups)
+            for group in groups:
+                for slot in rule.slots:
+                    group.take(slot, (activation,))
+        elif len(clause.needs) > 1 or len(rule.clauses) > 1:
+            self.holdings.give_up(activation, "consumed")  # L10
+        state.running[activation.id] = activation
+        loops = state.loops
+        loops.runs += 1
+        if loops.runs > MANY and (loop := loops.trace(activation)):
+            state.fail(loop[0], RuleError(_endless(loop)), signal=True)
+        if rule.timeout is not None:
+            activation.deadline = state.now + rule.timeout
+            state.deadlines.add(activation.deadline, TIMEOUT, activation)
+        for until in rule.until:
+            state.watches.setdefault(until, {})[activation] = Watch(activation, until)
+        payloads: dict[str, Any] = {}
+        for spike in activation.spikes:
+            if spike is not None:
+                payloads[spike.signal.name] = spike.payload
+        values: dict[str, Any] = {}
+        for slot in rule.readable:
+            values[state.policy.slot_plans[slot].name] = state.read(slot)
+        if state.tracer is not None:
+            ids = tuple([spike.id for spike in activation.spikes if spike is not None])
+            state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids))
+        state.acts = True
+        state.out.append(Run(activation.id, rule.rule, payloads, values))
+
+    def cancel(self, run: Activation, reason: CancelReason) -> None:
+        """Cancel a run, and order the runtime to stop its function."""
+        state = self.state
+        run.step(CANCEL)
+        run.told = reason
+        run.deadline = NEVER
+        if state.tracer is not None:
+            state.tracer(trace.Told(state.now, run.id, run.clause.rule.name, reason))
+        state.acts = True
+        state.out.append(Cancel(run.id, reason))
+
+    # ------------------------------------------------------------------------------------ until
+
+    def watch(self, spike: Spike) -> None:
+        """Offer a new spike to the `until` conditions of runs (L21)."""
+        state = self.state
+        for need in spike.signal.watchers:
+            for run, watch in list(state.watches.get(need.clause, {}).items()):
+                rule = run.clause.rule
+                if run.state == RUNNING and all([state.test(p, spike.payload, rule) for p in need.predicates]):
+                    held = watch.spikes[need.index]
+                    if held is None or not need.min_age or held.born + need.max_age < state.now:
+                        watch.spikes[need.index] = spike  # else the older spike ripens first
+                        state.watched_by.setdefault(spike, {})[watch] = None
+                        if held is not None and held not in watch.spikes:
+                            self._unwatch(watch, held)
+                    self.judge(watch)
+
+    def judge(self, watch: Watch) -> None:
+        """Interrupt the run of a watch whose condition is met, or set the time at which it will be met (L21)."""
+        state = self.state
+        due = watch.met_at(state.now)
+        if due is None or watch.run.state != RUNNING:
+            return
+        if due > state.now:
+            watch.due = due
+            state.deadlines.add(due, WATCH, watch)
+        elif state.is_open(watch.clause):
+            self.cancel(watch.run, "interrupted")
+
+    def on_watch(self, watch: Watch) -> None:
+        """Judge an `until` condition whose spikes are old enough now (L21)."""
+        watch.due = NEVER
+        self.judge(watch)
+
+    def _unwatch(self, watch: Watch, spike: Spike) -> None:
+        """Note that a watch no longer keeps a spike."""
+        watches = self.state.watched_by.get(spike, {})
+        watches.pop(watch, None)
+        if not watches:
+            self.state.watched_by.pop(spike, None)
+
+    # ------------------------------------------------------------------------------------ the end
+
+    def finish(self, run: Activation, kind: events.OutcomeKind, reason: str, exception: BaseException | None) -> None:
+        """Settle a run whose function has ended: `verdict` has the table of the outcomes (L18)."""
+        state = self.state
+        del state.running[run.id]
+        rule = run.clause.rule
+        outcome, fired = verdict(run.told, kind, run.wrote)
+        if run.told == "timeout":
+            late = f"rule {rule.name} took longer than its timeout of {rule.timeout:g} s ({rule.rule.origin})"
+            exception = RuleTimeout(late)
+        elif outcome == FAILED and kind == RESIGNED:
+            written = ", ".join(state.policy.slot_plans[slot].name for slot in rule.slots)
+            exception = RuleError(
+                f"rule {rule.name} resigned after it had written {written}: resign before the first write"
+            )
+        if rule.cooldown and fired:
+            self._tire(rule)
+        for clause in rule.until:
+            self._end_watch(run, state.watches[clause].pop(run))
+        if fired:
+            self._consume(run)
+        else:
+            self._relinquish(run)
+        if state.tracer is not None:
+            text = reason or (said(exception) if exception is not None else "")
+            state.tracer(trace.Settled(state.now, run.id, rule.name, outcome, text, fired, exception))
+        if self.report_ends:
+            state.out.append(Ended(run.id, rule.name, outcome, fired))
+        on_error = kind == FAILED and _handles_error(run)
+        self.holdings.end(run)
+        if outcome == FAILED:
+            failure = exception or RuleError(f"rule {rule.name} failed")
+            state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run))
+
+    def _tire(self, rule: RulePlan) -> None:
+        """Note that a rule with a cooldown has run: the activations whose order this changes ask again (L9, L15)."""
+        state = self.state
+        state.ran[rule.index] = state.now
+        for waiter in state.waiting:
+            if waiter.clause.rule is rule or (waiter.refusal is not None and rule.name in waiter.refusal.names):
+                state.asking[waiter] = None
+
+    def _end_watch(self, run: Activation, watch: Watch) -> None:
+        for spike in watch.spikes:
+            if spike is not None:
+                self._unwatch(watch, spike)
+        if not self.state.watches[watch.clause]:
+            del self.state.watches[watch.clause]
+
+    def _consume(self, run: Activation) -> None:
+        """Settle a run as Done (L18): consume its slots in its groups; make their other writers give up the spikes."""
+        state = self.state
+        rule = run.clause.rule
+        if not rule.slots:
+            return
+        groups = _roots(run)
+        for group in groups:
+            if state.tracer is not None:
+                group.note(rule.slots, rule.name, run.id)
+            for slot in rule.slots:
+                group.take(slot, None)
+        for group in groups:
+            for other in list(group.members):
+                if (
+                    other is not run
+                    and other.state < RUNNING
+                    and not other.clause.rule.slotset.isdisjoint(rule.slotset)
+                ):
+                    self.holdings.lose_group(other, group, "consumed", run)
+            for spike in list(group.entries) if group.entries else ():
+                for half in state.halves_of(spike):
+                    if not half.slotset.isdisjoint(rule.slotset):
+                        self.holdings.entries.drop(spike, half)
+            state.dirty[group] = None
+
+    def _relinquish(self, run: Activation) -> None:
+        """Settle Resign, or Error before a write (L18): free the run's slots, make its rule give up the run's spikes,
+        and let the next alternative ask."""
+        for group in _roots(run):
+            for slot in run.clause.rule.slots:
+                group.free(slot, run)
+            self.state.dirty[group] = None
+        self.holdings.give_up(run, "resigned")
+        self.sets.substitute(run)
+
+
+def _roots(run: Activation) -> list[Group]:
+    """Return the groups to which the run's groups belong now, each once."""
+    return list(dict.fromkeys([group.root() for group in run.groups]))
+
+
+def _handles_error(run: Activation) -> bool:
+    """Return whether a run stands on ``core:error``: its own failure does not signal another one."""
+    return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
+
+
+def _endless(rules: Sequence[RulePlan]) -> str:
+    """Return the error message about an endless loop of `rules`."""
+    names = ", ".join(rule.name for rule in rules)
+    whom = "each other" if len(rules) > 1 else "itself"
+    return (
+        f"an endless loop: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
+        ".min_age(seconds) behind a signal of the loop, so that time passes"
+    )

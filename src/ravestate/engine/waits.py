@@ -1,0 +1,118 @@
+"""Waiting: what makes an activation that was refused consent ask again (L15, L16).
+
+An activation waits for a reason: a `Refusal`. It asks again when a group changes on which the reason depends, or a thing
+outside its groups (a hope). Nothing else makes it ask, so an event costs nothing for those that it does not concern.
+"""
+
+from __future__ import annotations
+
+from ravestate.engine import trace
+from ravestate.engine.activation import NEVER, REFUSE, Activation
+from ravestate.engine.deadlines import RECHECK
+from ravestate.engine.refusal import OUTSIDE, RULE, Refusal
+from ravestate.engine.state import State
+from ravestate.policy.model import RulePlan
+
+
+class Waits:
+    """The part of the engine that keeps the tables of the waiting activations."""
+
+    __slots__ = ("state",)
+
+    def __init__(self, state: State) -> None:
+        self.state = state
+
+    def begin(self, activation: Activation, refusal: Refusal) -> None:
+        """Make an activation wait, for the reasons in `refusal`."""
+        state = self.state
+        before = activation.refusal
+        activation.step(REFUSE)
+        self.end(activation)
+        activation.refusal = refusal
+        state.waiting[activation] = state.refused[activation] = None
+        for hope, most in refusal.hopes.items():
+            state.hoping.setdefault(hope, {})[activation] = None
+            state.hope_counts[hope] = max(most, state.hope_counts.get(hope, 0))
+        for group in refusal.interests:
+            group.concern(activation)
+        if refusal.recheck < NEVER:
+            state.deadlines.add(refusal.recheck, RECHECK, activation)
+        if state.tracer is not None and (before is None or [*before.names] != [*refusal.names]):
+            until = None if refusal.blockers else patience_of_rivals(state, activation)
+            rule = activation.clause.rule.name
+            state.tracer(trace.Waits(state.now, activation.id, rule, tuple(refusal.names), until))
+
+    def end(self, activation: Activation) -> None:
+        """Make an activation stop waiting, so that changes elsewhere do not make it ask again."""
+        state = self.state
+        refusal = activation.refusal
+        if refusal is None:
+            return
+        activation.refusal = None
+        state.waiting.pop(activation, None)
+        state.refused.pop(activation, None)
+        if state.stuck:
+            state.stuck.pop(activation, None)
+        for hope in refusal.hopes:
+            hoping = state.hoping.get(hope)
+            if hoping is not None:
+                hoping.pop(activation, None)
+                if not hoping:
+                    del state.hoping[hope], state.hope_counts[hope]
+        for group in refusal.interests:
+            group.root().forget(activation)
+
+    def stir(self, activation: Activation) -> None:
+        """Make the activations that wait for this one ask again, because its spikes have changed."""
+        for group in activation.firm_groups():
+            if group.interested:
+                self.state.dirty[group] = None
+        if self.state.hoping:
+            self.stir_rule(activation.clause.rule)
+
+    def stir_rule(self, rule: RulePlan) -> None:
+        """Note that an activation of a rule has come, changed or gone: activations in other groups may depend on it."""
+        state = self.state
+        others = len(state.active.get(rule.index, ())) - 1
+        for hope in state.hoping:
+            kind, number = hope
+            if kind == RULE:
+                if number == rule.index:
+                    state.stirred[hope] = None
+            elif (
+                kind == OUTSIDE
+                and others <= state.hope_counts[hope]
+                and rule.index in state.policy.causes.wide_ancestors(number)
+            ):
+                state.stirred[hope] = None
+
+    def wake(self) -> dict[Activation, None]:
+        """Return the activations that ask for consent now: new ones, and those whose reason to wait has changed."""
+        state = self.state
+        asking = state.asking
+        state.asking = {}
+        if state.dirty or state.stirred:
+            for group in state.dirty:
+                asking.update(group.interested)
+            state.dirty.clear()
+            for hope in state.stirred:
+                asking.update(state.hoping.get(hope, {}))
+            state.stirred.clear()
+        return asking
+
+    def pass_time(self) -> None:
+        """Judge stalemates again, because with time the reasons to wait may change."""
+        if self.state.stuck:
+            self.state.refused.update(self.state.stuck)
+            self.state.stuck.clear()
+
+
+def patience_of_rivals(state: State, activation: Activation) -> float | None:
+    """Return when the patience of all pressured rivals of a waiting activation has ended (seconds), or None."""
+    names = activation.refusal.names if activation.refusal is not None else ()
+    clauses = state.policy.clause_plans
+    times: list[float] = []
+    for group in activation.firm_groups():
+        times += [m.pressed[group] for m in group.members if m.clause.rule.name in names and group in m.pressed]
+        times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names and t > state.now]
+    return max(times, default=None)

@@ -1,0 +1,134 @@
+"""A robot's data file: the names, types and ranges of its topics and services."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, Literal
+
+import pydantic
+
+from ravestate.errors import DeclarationError, nearest
+from ravestate.modules._yaml import read_text
+from ravestate.yaml_text import load_yaml
+
+ROBOTS = Path(__file__).with_name("robots")
+
+
+class Port(pydantic.BaseModel):
+    """A topic or a service of the robot, and the field of its messages that counts."""
+
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
+
+    topic: str = ""
+    """The topic's name; empty for a service."""
+    service: str = ""
+    """The service's name; empty for a topic."""
+    type: str
+    """The type of the messages."""
+    field: str
+    """The field, with dots for one within another: ``angular.z``."""
+
+    @pydantic.model_validator(mode="after")
+    def _one_name(self) -> Port:
+        if bool(self.topic) == bool(self.service):
+            raise ValueError("write either `topic` or `service`")
+        return self
+
+    def pack(self, value: Any) -> dict[str, Any]:
+        """Return a message in which the field has this value."""
+        for name in reversed(self.field.split(".")):
+            value = {name: value}
+        return value
+
+    def unpack(self, message: Any) -> Any:
+        """Return the field of a message."""
+        for name in self.field.split("."):
+            message = getattr(message, name)
+        return message
+
+
+class Direction(Port):
+    """Where the speaker is."""
+
+    unit: Literal["radians", "degrees"] = "radians"
+
+    def radians(self, message: Any) -> float:
+        """Return the direction: radians to the left of straight ahead, between -pi and pi."""
+        value = float(self.unpack(message))
+        angle = math.radians(value) if self.unit == "degrees" else value
+        return math.atan2(math.sin(angle), math.cos(angle))
+
+
+class Axis(Port):
+    """An axis of the head, or of the whole robot if it has no head."""
+
+    low: float
+    """The lowest angle (radians)."""
+    high: float
+    """The highest angle (radians)."""
+    speed: float | None = pydantic.Field(None, gt=0)
+    """The field is a speed, and this is the one to turn with (radians a second). None: the field is the angle."""
+
+    def limited(self, angle: float) -> float:
+        """Return the nearest angle that the axis reaches."""
+        return min(self.high, max(self.low, angle))
+
+
+class Faces(Port):
+    """The expressions of the face."""
+
+    faces: dict[str, str]
+    """Ravestate's name of an expression → the robot's."""
+
+
+class Gestures(Port):
+    """The gestures of the robot."""
+
+    gestures: dict[str, str]
+    """Ravestate's name of a gesture → the robot's."""
+
+
+class Robot(pydantic.BaseModel):
+    """A robot. Everything that it does not have may be left out."""
+
+    model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
+
+    name: str
+    definitions: Path | None = None
+    """A folder with the definitions of its messages, beside the file."""
+    hear: Port | None = None
+    direction: Direction | None = None
+    people: Port | None = None
+    speak: Port | None = None
+    express: Faces | None = None
+    head: dict[Literal["yaw", "pitch", "roll"], Axis] = pydantic.Field(default_factory=dict[Any, Any])
+    gesture: Gestures | None = None
+
+
+def load_robot(name: str) -> Robot:
+    """Return the robot of a data file.
+
+    Args:
+        name: ``roboy``, ``turtlebot``, or the path of a file of your own.
+
+    Raises:
+        DeclarationError: There is no such file, or it is wrong; the message names the line to write.
+    """
+    path = Path(name).expanduser()
+    if path.suffix not in (".yaml", ".yml"):
+        path = ROBOTS / f"{name}.yaml"
+    if not path.is_file():
+        known = sorted(file.stem for file in ROBOTS.glob("*.yaml"))
+        raise DeclarationError(
+            f"roboyio.robot={name!r}: there is no such robot{nearest(name, known)}; write {', '.join(known)}, or the path of "
+            "a data file (.yaml)"
+        )
+    try:
+        robot = Robot.model_validate(load_yaml(read_text(path, "robot file"), str(path)))
+    except pydantic.ValidationError as error:
+        first = error.errors()[0]
+        raise DeclarationError(f"{path}: {'.'.join(map(str, first['loc']))}: {first['msg']}") from error
+    if robot.definitions is not None:
+        robot = robot.model_copy(update={"definitions": (path.parent / robot.definitions).resolve()})
+    return robot

@@ -1,0 +1,17 @@
+"""Serving a robot beside platforms with many users: the robot has one context of its own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ravestate.runtime.agent import Agent
+
+
+async def serve(agent: Agent) -> None:
+    """Run the context of the robot until a rule stops it or the task is cancelled."""
+    from .names import here
+
+    async with agent.context() as context:
+        context.put(here, True)
+        await context.until_stopped()

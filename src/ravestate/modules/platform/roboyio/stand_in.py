@@ -1,0 +1,172 @@
+"""The stand-in robot: a node that offers the topics and services of a robot's data file, and shows what they do."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from ravestate.modules.platform.ros import Channel, Node, quality
+
+from .robot import Axis, Port, Robot
+
+QUALITY = quality(None, depth=100, latch=False)
+RATE = 14.0
+"""The characters a second that the stand-in speaks."""
+SHORTEST = 0.8
+"""The seconds that the shortest utterance takes."""
+TICK = 0.05
+"""Seconds between two steps of a robot that turns."""
+
+
+@dataclass(slots=True)
+class Looks:
+    """The visible state of the robot.
+
+    Attributes:
+        name: The robot's name.
+        face: Ravestate's name of the expression.
+        yaw, pitch, roll: The head's angles (radians).
+        text: The words in the speech bubble; empty if there are none.
+        seconds: The time that speaking these words takes.
+        gesture: The last gesture, with a number, so that the same one counts again.
+        people: The names of the people whom the robot sees.
+    """
+
+    name: str
+    face: str = "neutral"
+    yaw: float = 0.0
+    pitch: float = 0.0
+    roll: float = 0.0
+    text: str = ""
+    seconds: float = 0.0
+    gesture: tuple[str, int] = ("", 0)
+    people: list[str] = field(default_factory=list[str])
+
+
+class StandIn:
+    """A robot on a page.
+
+    Args:
+        robot: The robot's data file.
+        node: A node of its own; this class does not close it.
+        sleep: Waits for seconds; a test may pass a faster one.
+
+    Raises:
+        PlatformError: A type is unknown, or there is no ROS here.
+    """
+
+    def __init__(self, robot: Robot, node: Node, sleep: Callable[[float], Any] = asyncio.sleep) -> None:
+        self.robot = robot
+        self.looks = Looks(robot.name)
+        self._watchers: set[Callable[[dict[str, Any]], None]] = set()
+        self._sleep = sleep
+        self._turning: dict[str, float] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        if robot.definitions is not None:
+            node.types.definitions.add(robot.definitions)
+        self._node = node
+        self._senses: dict[str, tuple[Port, Channel]] = {}
+        for name, port in (("hear", robot.hear), ("direction", robot.direction), ("people", robot.people)):
+            if port is not None:
+                self._senses[name] = port, node.advertise(port.topic, port.type, qos=QUALITY)
+        self._take(robot.speak, self._speak)
+        self._take(robot.express, self._express)
+        self._take(robot.gesture, self._perform)
+        for name, axis in robot.head.items():
+            self._take(axis, self._turner(name, axis))
+
+    # ------------------------------------------------------------------------------- the visitor's side
+
+    def watch(self, watcher: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
+        """Call `watcher` with the looks now and after each change; return a function that ends it."""
+        self._watchers.add(watcher)
+        watcher(asdict(self.looks))
+        return lambda: self._watchers.discard(watcher)
+
+    def hear(self, text: str, direction: float = 0.0) -> None:
+        """Let the robot hear a visitor, who stands in a direction (radians, positive: to the robot's left)."""
+        if "direction" in self._senses:
+            port, channel = self._senses["direction"]
+            degrees = getattr(port, "unit", "radians") == "degrees"
+            channel.publish(port.pack(round(direction * 57.29578) if degrees else direction))
+        if "hear" in self._senses:
+            port, channel = self._senses["hear"]
+            channel.publish(port.pack(text))
+
+    def see(self, names: list[str]) -> None:
+        """Let the robot see these people, and nobody else."""
+        self._show(people=names)
+        if "people" in self._senses:
+            port, channel = self._senses["people"]
+            channel.publish(port.pack(", ".join(names)))
+
+    async def close(self) -> None:
+        """End what the robot does."""
+        for task in self._tasks:
+            task.cancel()
+
+    # ------------------------------------------------------------------------------- the robot's side
+
+    def _take(self, port: Port | None, act: Callable[[Any], Any]) -> None:
+        if port is None:
+            return
+        if port.service:
+
+            async def serve(request: Any) -> dict[str, Any]:
+                await act(port.unpack(request))
+                return {"success": True}
+
+            self._node.offer(port.service, port.type, serve)
+        else:
+            self._node.subscribe(
+                port.topic, port.type, lambda message: self._start(act(port.unpack(message))), latest=False, qos=QUALITY
+            )
+
+    def _start(self, act: Any) -> None:
+        task = asyncio.ensure_future(act)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _speak(self, text: str) -> None:
+        seconds = max(SHORTEST, len(text) / RATE)
+        self._show(text=text, seconds=seconds)
+        try:
+            await self._sleep(seconds)
+        finally:
+            if self.looks.text == text:
+                self._show(text="", seconds=0.0)
+
+    async def _express(self, name: str) -> None:
+        assert self.robot.express is not None
+        known = {theirs: ours for ours, theirs in self.robot.express.faces.items()}
+        if name not in known:
+            raise ValueError(f"{self.robot.name} has no expression {name!r}: {', '.join(known)}")
+        self._show(face=known[name])
+
+    async def _perform(self, name: str) -> None:
+        self._show(gesture=(name, self.looks.gesture[1] + 1))
+
+    def _turner(self, name: str, axis: Axis) -> Callable[[float], Any]:
+        async def turn(value: float) -> None:
+            if axis.speed is None:
+                self._show(**{name: axis.limited(value)})
+                return
+            running = name in self._turning
+            self._turning[name] = value
+            if value and not running:
+                while speed := self._turning.get(name, 0.0):
+                    self._show(**{name: axis.limited(getattr(self.looks, name) + speed * TICK)})
+                    await self._sleep(TICK)
+            if not self._turning.get(name):
+                self._turning.pop(name, None)
+
+        return turn
+
+    def _show(self, **changes: Any) -> None:
+        for name, value in changes.items():
+            setattr(self.looks, name, value)
+        looks = asdict(self.looks)
+        for watcher in list(self._watchers):
+            watcher(looks)

@@ -1,0 +1,271 @@
+"""The built-in bus: what ROS is for an agent and the stand-in robot on a machine without ROS.
+
+The bus is a server on a local TCP port. It speaks the frames of a bridge process (``children/pipe.py``), and passes
+messages and calls from one node to the others.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import json
+import socket
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+from .frames import Frames, Handle, Kind
+from .node import MakeLink
+
+AGAIN = 0.5
+"""Seconds between two attempts to reach the bus."""
+
+
+class Bus:
+    """A bus; ``async with Bus(port) as bus`` serves it on the running loop.
+
+    Args:
+        port: The TCP port on the loopback interface; 0 takes a free one.
+        host: The interface's address.
+
+    Raises:
+        PlatformError: The port is taken.
+    """
+
+    def __init__(self, port: int = 7411, host: str = "127.0.0.1") -> None:
+        self.address = f"{host}:{port}"
+        """The address for nodes."""
+        self._host, self._port = host, port
+        self._nodes: set[_BusNode] = set()
+        self._calls: dict[int, tuple[_BusNode, int, int]] = {}
+        self._numbers = itertools.count(1)
+
+    async def __aenter__(self) -> Bus:
+        sock = socket.socket()
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            sock.bind((self._host, self._port))
+        except OSError as error:
+            sock.close()
+            raise PlatformError(
+                f"the bus cannot listen on {self.address} ({error.strerror}): does another stand-in robot run? "
+                "Another port: --bus 127.0.0.1:7412"
+            ) from error
+        sock.listen()
+        sock.setblocking(False)
+        self.address = f"{self._host}:{sock.getsockname()[1]}"
+        self._sock = sock
+        asyncio.get_running_loop().add_reader(sock, self._accept)
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        asyncio.get_running_loop().remove_reader(self._sock)
+        self._sock.close()
+        for node in list(self._nodes):
+            node.frames.close()
+
+    def _accept(self) -> None:
+        with contextlib.suppress(BlockingIOError):
+            connection, _ = self._sock.accept()
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._nodes.add(_BusNode(self, connection))
+
+    def leave(self, node: _BusNode) -> None:
+        """Forget a node, and tell those that wait for its answers."""
+        self._nodes.discard(node)
+
+    def find(self, kind: str, name: str) -> list[tuple[_BusNode, int, dict[str, Any]]]:
+        """Return node, channel and binding of all channels of a kind and name."""
+        return [
+            (node, channel, binding)
+            for node in self._nodes
+            for channel, binding in node.bindings.items()
+            if binding["kind"] == kind and binding["name"] == name
+        ]
+
+    def publish(self, binding: Mapping[str, Any], body: memoryview) -> None:
+        """Pass a message on to all subscribers of its topic."""
+        for node, channel, other in self.find("subscriber", binding["name"]):
+            if other["type"] == binding["type"]:
+                node.frames.send(Kind.MESSAGE, channel, 0, body)
+            else:
+                node.note(channel, f"{binding['name']} carries {binding['type']}, not {other['type']}")
+
+    def call(self, caller: _BusNode, channel: int, number: int, body: memoryview) -> None:
+        """Pass a call on to the server of its service."""
+        binding = caller.bindings[channel]
+        found = self.find("server", binding["name"])
+        if not found:
+            caller.frames.tell(Kind.FAULT, f"nobody offers {binding['name']}", channel, number)
+            return
+        server, place, other = found[0]
+        if other["type"] != binding["type"]:
+            caller.frames.tell(
+                Kind.FAULT, f"{binding['name']} is a {other['type']}, not {binding['type']}", channel, number
+            )
+            return
+        own = next(self._numbers)
+        self._calls[own] = caller, channel, number
+        server.frames.send(Kind.CALL, place, own, body)
+
+    def answer(self, kind: Kind, own: int, body: memoryview) -> None:
+        """Pass an answer on to the caller."""
+        caller, channel, number = self._calls.pop(own, (None, 0, 0))
+        if caller is not None and kind is Kind.FAULT:
+            caller.frames.tell(Kind.FAULT, bytes(body).decode(), channel, number)
+        elif caller is not None:
+            caller.frames.send(kind, channel, number, body)
+
+    def graph(self, asker: _BusNode) -> dict[str, Any]:
+        """Return what other nodes publish, subscribe and serve."""
+        topics: dict[str, dict[str, Any]] = {}
+        services: dict[str, dict[str, Any]] = {}
+        for node in self._nodes:
+            for binding in node.bindings.values():
+                name, kind = binding["name"], binding["kind"]
+                other = int(node is not asker)
+                if kind in ("publisher", "subscriber"):
+                    row = topics.setdefault(name, {"name": name, "types": [], "publishers": 0, "subscribers": 0})
+                    row[f"{kind}s"] += other
+                elif kind == "server":
+                    row = services.setdefault(name, {"name": name, "types": [], "servers": 0})
+                    row["servers"] += other
+                else:
+                    continue
+                if binding["type"] not in row["types"]:
+                    row["types"].append(binding["type"])
+        return {"topics": list(topics.values()), "services": list(services.values()), "actions": []}
+
+
+class _BusNode:
+    """The bus's side of the connection to one node."""
+
+    def __init__(self, bus: Bus, connection: socket.socket) -> None:
+        self.bindings: dict[int, dict[str, Any]] = {}
+        self._bus = bus
+        self._latched: dict[int, memoryview] = {}
+        self.frames = Frames(connection, self._handle, lambda: bus.leave(self))
+
+    def note(self, channel: int, text: str) -> None:
+        """Send a warning about a channel."""
+        self.frames.tell(Kind.NOTE, {"text": text, "level": "warning"}, channel)
+
+    def _handle(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
+        bus = self._bus
+        if kind is Kind.OPEN:
+            self.frames.send(Kind.READY)
+        elif kind is Kind.BIND:
+            binding = self.bindings[channel] = json.loads(bytes(body))
+            if binding["kind"] == "subscriber":
+                for node, other, _ in bus.find("publisher", binding["name"]):
+                    if other in node._latched:
+                        self.frames.send(Kind.MESSAGE, channel, 0, node._latched[other])
+        elif kind is Kind.UNBIND:
+            self.bindings.pop(channel, None)
+        elif kind is Kind.MESSAGE and channel in self.bindings:
+            if self.bindings[channel]["latch"]:
+                self._latched[channel] = body
+            bus.publish(self.bindings[channel], body)
+        elif kind is Kind.CALL and channel in self.bindings:
+            bus.call(self, channel, number, body)
+        elif kind in (Kind.ANSWER, Kind.FAULT):
+            bus.answer(kind, number, body)
+        elif kind is Kind.ASK:
+            self.frames.tell(Kind.TOLD, bus.graph(self), 0, number)
+        elif kind is Kind.CLOSE:
+            self.frames.close()
+            bus.leave(self)
+
+
+class BusLink:
+    """A node's connection to the bus. It is made again when the bus is back."""
+
+    pid = None
+
+    def __init__(
+        self,
+        address: str,
+        config: Mapping[str, Any],
+        handle: Handle,
+        ready: Callable[[], None],
+        lost: Callable[[str], None],
+    ) -> None:
+        self.failed: PlatformError | None = None
+        self.restarts = 0
+        self._address = address
+        self._config = config
+        self._handle, self._ready, self._lost = handle, ready, lost
+        self._frames: Frames | None = None
+        self._works = False
+        self._task: asyncio.Task[None] | None = None
+
+    @property
+    def frames(self) -> Frames | None:
+        """The pipe to the bus, once it is ready for work."""
+        return self._frames if self._works else None
+
+    def start(self) -> None:
+        """Connect as soon as there is a bus."""
+        host, _, port = self._address.rpartition(":")
+        if not port.isdecimal():
+            self.failed = PlatformError(f"bus={self._address!r} is no address: write HOST:PORT, such as 127.0.0.1:7411")
+            return
+        self._task = asyncio.ensure_future(self._connect(host or "127.0.0.1", int(port)))
+
+    async def _connect(self, host: str, port: int) -> None:
+        loop, told = asyncio.get_running_loop(), False
+        while True:
+            sock = socket.socket()
+            sock.setblocking(False)
+            try:
+                await loop.sock_connect(sock, (host, port))
+                break
+            except OSError:
+                sock.close()
+                if not told:
+                    told = True
+                    note = {
+                        "text": f"waits for the bus at {self._address}: start `ravestate robot`",
+                        "level": "warning",
+                    }
+                    self._handle(Kind.NOTE, 0, 0, memoryview(json.dumps(note).encode()))
+                await asyncio.sleep(AGAIN)
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._frames = Frames(sock, self._take, self._broken)
+        self._frames.tell(Kind.OPEN, self._config)
+
+    def _take(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
+        if kind is Kind.READY:
+            self._works = True
+            self._ready()
+        else:
+            self._handle(kind, channel, number, body)
+
+    def _broken(self) -> None:
+        self._works = False
+        self.restarts += 1
+        self._lost(f"the bus at {self._address} is gone; waits until it is back")
+        self.start()
+
+    async def close(self) -> None:
+        """Take leave of the bus."""
+        if self._task is not None:
+            self._task.cancel()
+        if self._frames is not None:
+            self._frames.send(Kind.CLOSE)
+            await self._frames.flush()
+            self._frames.close()
+
+    def kill(self) -> None:
+        """Close the connection at once."""
+        if self._task is not None:
+            self._task.cancel()
+        if self._frames is not None:
+            self._frames.close()
+
+
+def bus_link(address: str) -> MakeLink:
+    """Return the maker of links to the bus at an address."""
+    return lambda config, handle, ready, lost: BusLink(address, config, handle, ready, lost)

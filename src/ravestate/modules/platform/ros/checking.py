@@ -1,0 +1,90 @@
+"""The check of an agent's slots: whether there is another end, whether the types match, and how to mend it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+from .definitions import full_name
+from .node import Node
+from .slots import TopicSlot
+
+KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
+OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
+"""Kind of a slot → the other end that it needs, as the graph calls it."""
+PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
+
+LOOKS = 8
+"""The number of looks at the network, because other nodes show up one by one."""
+PAUSE = 0.4
+"""Seconds between two looks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of a check.
+
+    Attributes:
+        good: Whether all is well.
+        what: The slot or part.
+        text: Its binding and its other end; after a fault, how to mend it.
+    """
+
+    good: bool
+    what: str
+    text: str
+
+
+async def check(node: Node, slots: Iterable[TopicSlot]) -> list[Line]:
+    """Check the slots of one node against the network.
+
+    Raises:
+        PlatformError: There is no ROS here, or no master.
+    """
+    wanted = list(slots)
+    lines: list[Line] = []
+    for look in range(LOOKS):
+        graph = await node.graph()
+        lines = [look_at(slot, node, graph) for slot in wanted]
+        if all(line.good for line in lines) or look == LOOKS - 1:
+            break
+        await asyncio.sleep(PAUSE)
+    return lines
+
+
+def look_at(slot: TopicSlot, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
+    """Return what the network has for a slot."""
+    binding = slot.binding
+    name = node.absolute(binding.name)
+    bound = f"{binding.kind} of {name} ({binding.type})"
+    try:
+        node.types.require(binding.type, KINDS[binding.kind])
+    except PlatformError as error:
+        return Line(False, slot.name, f"{bound}: {error}")
+    row = next((row for row in graph[PLACES[binding.kind]] if row["name"] == name), None)
+    count = 0 if row is None else row[OTHERS[binding.kind]]
+    if not count or row is None:
+        known = [row["name"] for row in graph[PLACES[binding.kind]] if _has(row, binding.type, KINDS[binding.kind])]
+        hint = f"; of this type there is {', '.join(sorted(known)[:3])}: write remap or another name" if known else ""
+        return Line(False, slot.name, f"{bound}: no {OTHERS[binding.kind]}{hint or ': start the other node'}")
+    if row["types"] and not _has(row, binding.type, KINDS[binding.kind]):
+        return Line(
+            False, slot.name, f"{bound}: the other end has {row['types'][0]}: write type={_short(row['types'][0])!r}"
+        )
+    reliable = binding.kind == "subscriber" and binding.options["qos"]["reliability"] == "reliable"
+    if reliable and row.get("reliability") == ["best_effort"]:
+        return Line(False, slot.name, f"{bound}: its publishers are best-effort: write qos='sensor_data'")
+    return Line(True, slot.name, f"{bound}: {count} {OTHERS[binding.kind]}")
+
+
+def _has(row: Mapping[str, Any], type_: str, kind: str) -> bool:
+    return full_name(type_, kind) in [full_name(each, kind) for each in row["types"]]
+
+
+def _short(name: str) -> str:
+    parts = name.split("/")
+    return f"{parts[0]}/{parts[-1]}"

@@ -1,0 +1,212 @@
+"""The child's end of the pipe between an agent and its bridge process. The programs beside this file use it.
+
+A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. A body of at least `LARGE` bytes
+travels in shared memory: it is copied into it once, and the pipe carries the file descriptor.
+"""
+
+# pyright: basic
+from __future__ import annotations
+
+import array
+import json
+import mmap
+import os
+import signal
+import socket
+import struct
+import sys
+import threading
+import time
+
+HEAD = struct.Struct("<BBxxIII")
+SHARED = 1  # a flag: the body is in shared memory
+LARGE = 1 << 16
+
+OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
+"""The kinds of frames.
+
+From the agent: OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE. From the bridge: READY, FEEDBACK, TOLD, NOTE. Both: MESSAGE,
+CALL, ANSWER, FAULT.
+"""
+
+
+class Pipe:
+    """A connected socket that carries frames. `send` is thread-safe; one thread receives."""
+
+    def __init__(self, sock):
+        self._sock = sock
+        self._sending = threading.Lock()
+        self._rest = bytearray()
+        self._fds = []
+
+    def send(self, kind, channel=0, number=0, body=b""):
+        """Send a frame. It blocks while the agent does not read."""
+        size = len(body)
+        with self._sending:
+            if size >= LARGE and hasattr(os, "memfd_create"):
+                fd = os.memfd_create("ravestate")
+                try:
+                    rest = memoryview(body)
+                    while rest:
+                        rest = rest[os.write(fd, rest) :]
+                    rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", [fd]))]
+                    head = HEAD.pack(kind, SHARED, channel, number, size)
+                    sent = self._sock.sendmsg([head], rights)
+                    self._sock.sendall(head[sent:])
+                finally:
+                    os.close(fd)
+            else:
+                self._sock.sendall(HEAD.pack(kind, 0, channel, number, size) + bytes(body))
+
+    def tell(self, kind, value, channel=0, number=0):
+        """Send a frame whose body is a value as JSON."""
+        self.send(kind, channel, number, json.dumps(value).encode())
+
+    def note(self, channel, text, level="warning"):
+        """Send a note for the agent's log about a channel; channel 0 is the whole node."""
+        self.tell(NOTE, {"text": text, "level": level}, channel)
+
+    def receive(self):
+        """Wait for a frame; return its kind, channel, number and body.
+
+        Raises:
+            EOFError: The agent has closed the pipe.
+        """
+        kind, flags, channel, number, size = HEAD.unpack(self._take(HEAD.size))
+        if flags & SHARED:
+            fd = self._fds.pop(0)
+            try:
+                body = mmap.mmap(fd, size, access=mmap.ACCESS_READ)
+            finally:
+                os.close(fd)
+            return kind, channel, number, memoryview(body)
+        return kind, channel, number, self._take(size)
+
+    def _take(self, size):
+        while len(self._rest) < size:
+            fds = array.array("i")
+            block, ancillary, _, _ = self._sock.recvmsg(1 << 18, socket.CMSG_LEN(16 * fds.itemsize))
+            for level, type_, data in ancillary:
+                if level == socket.SOL_SOCKET and type_ == socket.SCM_RIGHTS:
+                    fds.frombytes(data[: len(data) - len(data) % fds.itemsize])
+            self._fds.extend(fds)
+            if not block:
+                raise EOFError
+            self._rest += block
+        taken = bytes(self._rest[:size])
+        del self._rest[:size]
+        return taken
+
+
+class Outlet:
+    """The way of one subscription's messages to the agent.
+
+    With `latest`, the next message leaves once the agent has acknowledged the last one, and newer messages replace those
+    that wait.
+    """
+
+    def __init__(self, pipe, channel, latest):
+        self._pipe, self._channel, self._latest = pipe, channel, latest
+        self._lock = threading.Lock()
+        self._busy = False
+        self._pending = None
+
+    def put(self, body):
+        """Pass a message on."""
+        if self._latest:
+            with self._lock:
+                if self._busy:
+                    self._pending = body
+                    return
+                self._busy = True
+        self._pipe.send(MESSAGE, self._channel, 0, body)
+
+    def acknowledge(self):
+        """Note that the agent has handled the last message."""
+        with self._lock:
+            body, self._pending = self._pending, None
+            self._busy = body is not None
+        if body is not None:
+            self._pipe.send(MESSAGE, self._channel, 0, body)
+
+
+def serve(open_node):
+    """Connect to the agent, and obey it until it closes the pipe.
+
+    Args:
+        open_node: A function of the pipe and the configuration, which returns an object with the methods ``bind``,
+            ``unbind``, ``message``, ``call``, ``answer``, ``cancel``, ``ask`` and ``close``.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the agent, which closes this process in order
+    pipe = Pipe(socket.socket(fileno=int(sys.argv[1])))
+    try:
+        kind, _, _, body = pipe.receive()
+        assert kind == OPEN
+        try:
+            node = open_node(pipe, json.loads(bytes(body)))
+        except BaseException as error:
+            pipe.tell(FAULT, reason(error))
+            return
+        pipe.send(READY)
+        _obey(pipe, node)
+        node.close()
+    except (EOFError, OSError):
+        pass
+    finally:
+        sys.stdout.flush()
+        os._exit(0)  # threads of the libraries must not keep the process
+
+
+def _obey(pipe, node):
+    outlets = {}
+    while True:
+        kind, channel, number, body = pipe.receive()
+        try:
+            if kind == BIND:
+                binding = json.loads(body)
+                if binding["kind"] == "subscriber":
+                    outlets[channel] = Outlet(pipe, channel, binding["latest"])
+                node.bind(channel, binding, outlets.get(channel))
+            elif kind == ACK:
+                if channel in outlets:
+                    outlets[channel].acknowledge()
+            elif kind == MESSAGE:
+                node.message(channel, body)
+            elif kind == CALL:
+                node.call(channel, number, body)
+            elif kind in (ANSWER, FAULT):
+                node.answer(channel, number, body, kind == FAULT)
+            elif kind == CANCEL:
+                node.cancel(channel, number)
+            elif kind == UNBIND:
+                outlets.pop(channel, None)
+                node.unbind(channel)
+            elif kind == ASK:
+                pipe.tell(TOLD, node.ask(), 0, number)
+            elif kind == CLOSE:
+                return
+        except (EOFError, BrokenPipeError):
+            raise
+        except Exception as error:
+            if kind == ASK:
+                pipe.tell(TOLD, {"error": reason(error)}, 0, number)
+            elif kind == CALL:
+                pipe.tell(FAULT, reason(error), channel, number)
+            else:
+                pipe.tell(NOTE, {"text": reason(error), "level": "error", "failed": kind == BIND}, channel)
+
+
+def reason(error):
+    """Return a sentence about an exception."""
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+
+
+def every(seconds, function):
+    """Call a function in a thread every `seconds`, until the process ends."""
+
+    def run():
+        while True:
+            time.sleep(seconds)
+            function()
+
+    threading.Thread(target=run, daemon=True).start()

@@ -1,0 +1,244 @@
+"""The bridge process of ROS 1: a rospy node that passes messages on as they are on the wire."""
+
+# pyright: basic, reportMissingImports=false
+from __future__ import annotations
+
+import os
+import socket
+import threading
+import time
+import xmlrpc.client
+
+from pipe import ANSWER, CALL, FAULT, Pipe, every, reason, serve
+
+PROBE = 1.0  # seconds between two looks at the master
+
+
+def message_class(type_, md5, text=""):
+    """Return a class whose messages are bytes that are on the wire already."""
+    import genpy
+
+    class Raw(genpy.Message):
+        __slots__ = ("data",)
+        _slot_types = ("uint8[]",)
+        _type = type_
+        _md5sum = md5
+        _full_text = text
+        _has_header = False
+
+        def __init__(self, data=b""):
+            self.data = data
+
+        def serialize(self, buff):
+            buff.write(self.data)
+
+        def deserialize(self, data):
+            self.data = data
+            return self
+
+    return Raw
+
+
+class Ros1Node:
+    """A rospy node that does what the agent says; see `pipe.serve`."""
+
+    def __init__(self, pipe: Pipe, config):
+        os.environ.update({key: value for key, value in config["environment"].items() if value})
+        import rosgraph
+
+        self._pipe = pipe
+        self._uri = rosgraph.get_master_uri()
+        waits = False
+        while not self._master_pid():
+            if not waits:
+                pipe.note(0, f"waits for a ROS master at {self._uri}: start one with `roscore`")
+                waits = True
+            time.sleep(PROBE / 4)
+        self._pid = self._master_pid()
+        namespace, _, name = config["name"].rpartition("/")
+        os.environ["ROS_NAMESPACE"] = namespace or "/"
+        import rospy
+
+        self._rospy = rospy
+        rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
+        self._channels = {}
+        self._bindings = {}
+        self._replies = {}
+        self._number = 0
+        self._lock = threading.Lock()
+        every(PROBE, self._look_at_master)
+
+    def _master_pid(self):
+        try:
+            proxy = xmlrpc.client.ServerProxy(self._uri)
+            code, _, pid = proxy.getPid("/ravestate")  # type: ignore[misc]
+            return pid if code == 1 else 0
+        except (OSError, xmlrpc.client.Error):
+            return 0
+
+    def _look_at_master(self):
+        """End the process if there is another master than at the start; the next process registers there."""
+        pid = self._master_pid()
+        if pid == self._pid:
+            return
+        if not pid:
+            self._pipe.note(0, f"the ROS master at {self._uri} is gone; waits until it is back")
+            while not (pid := self._master_pid()):
+                time.sleep(PROBE / 4)
+        if pid != self._pid:
+            os._exit(3)
+        self._pipe.note(0, "the ROS master is back", "info")
+
+    def bind(self, channel, binding, outlet):
+        rospy, kind = self._rospy, binding["kind"]
+        self._bindings[channel] = binding
+        type_, md5 = binding.get("type"), binding.get("md5")
+        if kind == "subscriber":
+            self._channels[channel] = self._subscribe(channel, binding, outlet)
+        elif kind == "publisher":
+            self._channels[channel] = rospy.Publisher(
+                binding["name"], message_class(type_, md5, binding["text"]), latch=binding["latch"],
+                queue_size=binding["depth"], tcp_nodelay=True,
+            )  # fmt: skip
+        elif kind == "client":
+            self._channels[channel] = self._service_class(type_, "*")
+        elif kind == "server":
+            service = self._service_class(type_, md5)
+            self._channels[channel] = rospy.Service(
+                binding["name"], service, lambda request: self._serve(channel, service, request)
+            )
+
+    def _subscribe(self, channel, binding, outlet):
+        rospy = self._rospy
+        warned = set()
+
+        def take(message):
+            header = message._connection_header
+            if header.get("type") != binding["type"] or header.get("md5sum", "*") not in (binding["md5"], "*"):
+                other = header.get("callerid"), header.get("type")
+                if other not in warned:
+                    warned.add(other)
+                    self._pipe.note(channel, _mismatch(binding, header))
+                return
+            outlet.put(message._buff)
+
+        # Subscribers of one topic share rospy's queue, so it may not be short for the sake of one: the outlet skips messages.
+        return rospy.Subscriber(
+            binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 24, tcp_nodelay=True
+        )
+
+    def _service_class(self, type_, md5):
+        class Service:
+            _type = type_
+            _md5sum = md5
+            _request_class = message_class(type_ + "Request", md5)
+            _response_class = message_class(type_ + "Response", md5)
+
+        return Service
+
+    def _serve(self, channel, service, request):
+        with self._lock:
+            self._number += 1
+            number = self._number
+            done = self._replies[number] = [threading.Event(), b"", False]
+        self._pipe.send(CALL, channel, number, request.data)
+        done[0].wait()
+        if done[2]:
+            raise self._rospy.ServiceException(bytes(done[1]).decode("utf-8", "replace"))
+        return service._response_class(bytes(done[1]))
+
+    def message(self, channel, body):
+        publisher = self._channels[channel]
+        publisher.publish(publisher.data_class(bytes(body)))
+
+    def call(self, channel, number, body):
+        threading.Thread(target=self._call, args=(channel, number, bytes(body)), daemon=True).start()
+
+    def _call(self, channel, number, body):
+        name, service = self._bindings[channel]["name"], self._channels[channel]
+        try:
+            self._rospy.wait_for_service(name, timeout=self._bindings[channel]["timeout"])
+            wanted = self._bindings[channel]["md5"]
+            found = service_header(self._rospy.resolve_name(name), self._uri)
+            if found.get("md5sum") not in (None, wanted):
+                raise TypeError(
+                    "the service {} has the type {}, not {}: write type={!r}".format(
+                        name, found.get("type"), service._type, found.get("type")
+                    )
+                )
+            answer = self._rospy.ServiceProxy(name, service)(service._request_class(body))
+            self._pipe.send(ANSWER, channel, number, answer.data)
+        except Exception as error:
+            self._pipe.tell(FAULT, reason(error), channel, number)
+
+    def answer(self, channel, number, body, failed):
+        done = self._replies.pop(number, None)
+        if done is not None:
+            done[1], done[2] = body, failed
+            done[0].set()
+
+    def cancel(self, channel, number):
+        pass  # ROS 1 has no way to withdraw a call; the agent forgets its answer
+
+    def unbind(self, channel):
+        thing = self._channels.pop(channel, None)
+        if hasattr(thing, "unregister"):
+            thing.unregister()
+        elif hasattr(thing, "shutdown"):
+            thing.shutdown()
+
+    def ask(self):
+        import rosgraph
+
+        master = rosgraph.Master(self._rospy.get_name())
+        publishers, subscribers, services = master.getSystemState()
+        types = dict(master.getTopicTypes())
+        own = self._rospy.get_name()
+        found = {}
+        for place, rows in (("publishers", publishers), ("subscribers", subscribers)):
+            for name, nodes in rows:
+                row = found.setdefault(name, {"name": name, "types": [], "publishers": 0, "subscribers": 0})
+                row[place] = len([node for node in nodes if node != own])
+                if types.get(name, "*") != "*":
+                    row["types"] = [types[name]]
+        listed = []
+        for name, nodes in services:
+            type_ = service_header(name, self._uri).get("type") if own not in nodes else None
+            listed.append(
+                {"name": name, "types": [type_] if type_ else [], "servers": len([n for n in nodes if n != own])}
+            )
+        return {"topics": list(found.values()), "services": listed, "actions": []}
+
+    def close(self):
+        time.sleep(0.05)  # the last messages leave in threads of rospy
+        self._rospy.signal_shutdown("the agent ends")
+
+
+def _mismatch(binding, header):
+    return "{}: {} publishes {}, which is not the {} that the agent reads: write type={!r}{}".format(
+        binding["name"], header.get("callerid"), header.get("type"), binding["type"], header.get("type"),
+        " (same name, but other fields: give the agent the publisher's .msg files in ros1.definitions)"
+        if header.get("type") == binding["type"] else "",
+    )  # fmt: skip
+
+
+def service_header(name, uri):
+    """Return the fields with which a service presents itself: its type and MD5 sum; empty if it does not answer."""
+    import rosgraph
+    from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
+
+    try:
+        address = rosgraph.Master("/ravestate", uri).lookupService(name)
+        host, _, port = address[len("rosrpc://") :].rpartition(":")
+        with socket.create_connection((host, int(port.strip("/"))), timeout=2.0) as sock:
+            from io import BytesIO
+
+            fields = {"probe": "1", "md5sum": "*", "callerid": "/ravestate", "service": name}
+            write_ros_handshake_header(sock, fields)
+            return dict(read_ros_handshake_header(sock, BytesIO(), 2048))
+    except Exception:
+        return {}
+
+
+if __name__ == "__main__":
+    serve(Ros1Node)

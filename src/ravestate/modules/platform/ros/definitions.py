@@ -1,0 +1,113 @@
+"""The definitions of messages, services and actions: ``.msg``, ``.srv`` and ``.action`` files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+
+ENDINGS = {"msg": ".msg", "srv": ".srv", "action": ".action"}
+
+PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
+"""Kind of a definition → the messages that it consists of, in the order of the file."""
+
+COMMON = {
+    "std_srvs/srv/Empty": "---",
+    "std_srvs/srv/SetBool": "bool data\n---\nbool success\nstring message",
+    "std_srvs/srv/Trigger": "---\nbool success\nstring message",
+}
+"""The services that most robots have, for places where their packages are not installed."""
+
+
+def full_name(name: str, kind: str = "msg") -> str:
+    """Return the full name of a type: ``std_msgs/msg/String`` for ``std_msgs/String``.
+
+    Args:
+        name: A name with one or two slashes.
+        kind: ``msg``, ``srv`` or ``action``; the middle of the full name.
+
+    Raises:
+        PlatformError: The name does not look like the name of a type.
+    """
+    parts = name.split("/") if isinstance(name, str) else []  # pyright: ignore[reportUnnecessaryIsInstance]
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or not all(part.replace("_", "a").isalnum() for part in parts) or parts[1] not in ENDINGS:
+        raise PlatformError(f"{name!r} is not the name of a {kind} type: write PACKAGE/NAME, such as std_msgs/String")
+    return "/".join(parts)
+
+
+class Definitions:
+    """The definition files in some folders.
+
+    Args:
+        own: The user's files, or folders that hold them.
+        folders: Returns the folders that hold packages: ``FOLDER/PACKAGE/msg/NAME.msg``.
+    """
+
+    def __init__(self, own: Iterable[Path] = (), folders: Callable[[], Iterable[Path]] = tuple) -> None:
+        self._own = [path.expanduser() for path in own]
+        self._folders = folders
+
+    def add(self, path: Path) -> None:
+        """Add a file, or a folder of files."""
+        if path not in self._own:
+            self._own.append(path)
+
+    def text(self, name: str) -> str | None:
+        """Return the text of the definition of a type with its full name; None if there is none.
+
+        Raises:
+            PlatformError: A file or folder of the user is missing, or unreadable.
+        """
+        package, kind, short = name.split("/")
+        for path in self._files(package, kind, short):
+            if path.is_file():
+                try:
+                    return path.read_text("utf-8")
+                except (OSError, UnicodeDecodeError) as error:
+                    raise PlatformError(f"cannot read the definition {path}: {error}") from error
+        return COMMON.get(name)
+
+    def _files(self, package: str, kind: str, short: str) -> Iterator[Path]:
+        file = f"{short}{ENDINGS[kind]}"
+        for path in self._own:
+            if path.is_file():
+                if path.name == file:
+                    yield path
+                continue
+            if not path.is_dir():
+                raise PlatformError(f"there is no file or folder {path}: see the setting `definitions`")
+            yield path / package / kind / file
+            if path.name == package:
+                yield path / kind / file
+            yield path / kind / file
+            yield path / file
+        for folder in self._folders():
+            yield folder / package / kind / file
+
+
+def messages(name: str, text: str) -> Iterator[tuple[str, str]]:
+    """Yield the full name and the text of each message that a definition consists of.
+
+    Raises:
+        PlatformError: A service or an action has too few or too many parts.
+    """
+    kind = name.split("/")[1]
+    if kind == "msg":
+        yield name, text
+        return
+    parts: list[list[str]] = [[]]
+    for line in text.splitlines():
+        if line.strip() == "---":
+            parts.append([])
+        else:
+            parts[-1].append(line)
+    titles = PARTS[kind]
+    if len(parts) != len(titles):
+        raise PlatformError(
+            f"the definition of {name} has {len(parts)} parts instead of {len(titles)} ({', '.join(titles)})"
+        )
+    for title, lines in zip(titles, parts, strict=True):
+        yield f"{name}_{title}", "\n".join(lines)

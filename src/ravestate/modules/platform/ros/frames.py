@@ -1,0 +1,196 @@
+"""The agent's end of the pipe to a bridge process: frames over a socket, without blocking the loop.
+
+``children/pipe.py`` describes the frames; it is the other end.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import mmap
+import os
+import socket
+import struct
+from collections import deque
+from collections.abc import Callable
+from enum import IntEnum
+from typing import Any
+
+HEAD = struct.Struct("<BBxxIII")
+SHARED = 1
+"""A flag of a frame: its body is in shared memory."""
+LARGE = 1 << 16
+"""The number of bytes from which on a body travels in shared memory."""
+BLOCK = 1 << 18
+TURN = 64
+"""The maximum number of frames for which the loop is kept busy at a time."""
+
+
+class Kind(IntEnum):
+    """The kind of a frame."""
+
+    OPEN = 1
+    BIND = 2
+    UNBIND = 3
+    MESSAGE = 4
+    ACK = 5
+    CALL = 6
+    ANSWER = 7
+    FAULT = 8
+    FEEDBACK = 9
+    CANCEL = 10
+    ASK = 11
+    TOLD = 12
+    NOTE = 13
+    READY = 14
+    CLOSE = 15
+
+
+Handle = Callable[[Kind, int, int, memoryview], None]
+
+
+class Frames:
+    """A socket that carries frames, on a running loop.
+
+    Args:
+        sock: The connected socket; this object closes it.
+        handle: Called on the loop with the kind, channel, number and body of each frame that comes.
+        lost: Called once on the loop when the other end has closed the socket.
+    """
+
+    def __init__(self, sock: socket.socket, handle: Handle, lost: Callable[[], None]) -> None:
+        self._sock = sock
+        sock.setblocking(False)
+        self._local = sock.family == socket.AF_UNIX and hasattr(os, "memfd_create")
+        self._loop = asyncio.get_running_loop()
+        self._handle = handle
+        self._lost = lost
+        self._rest = bytearray()
+        self._fds: deque[int] = deque()
+        self._out: deque[tuple[memoryview, int | None]] = deque()
+        self._closed = False
+        self._flushed = asyncio.Event()
+        self._flushed.set()
+        self._loop.add_reader(sock, self._readable)
+
+    def send(self, kind: Kind, channel: int = 0, number: int = 0, body: bytes | memoryview = b"") -> None:
+        """Send a frame, now or as soon as the other end reads."""
+        if self._closed:
+            return
+        if self._local and len(body) >= LARGE:
+            fd = os.memfd_create("ravestate")
+            rest = memoryview(body).cast("B")
+            while rest:
+                rest = rest[os.write(fd, rest) :]
+            self._out.append((memoryview(HEAD.pack(kind, SHARED, channel, number, len(body))), fd))
+        else:
+            self._out.append((memoryview(HEAD.pack(kind, 0, channel, number, len(body)) + bytes(body)), None))
+        if self._flushed.is_set():
+            self._writable()
+
+    def tell(self, kind: Kind, value: Any, channel: int = 0, number: int = 0) -> None:
+        """Send a frame whose body is a value as JSON."""
+        self.send(kind, channel, number, json.dumps(value).encode())
+
+    async def flush(self) -> None:
+        """Wait until all frames have left."""
+        await self._flushed.wait()
+
+    def close(self) -> None:
+        """Close the socket."""
+        if self._closed:
+            return
+        self._closed = True
+        self._flushed.set()
+        self._loop.remove_reader(self._sock)
+        self._loop.remove_writer(self._sock)
+        self._sock.close()
+        for fd in (*self._fds, *(fd for _, fd in self._out if fd is not None)):
+            os.close(fd)
+        self._fds.clear()
+        self._out.clear()
+
+    def _writable(self) -> None:
+        while self._out:
+            data, fd = self._out[0]
+            try:
+                sent = socket.send_fds(self._sock, [data], [fd]) if fd is not None else self._sock.send(data)
+            except (BlockingIOError, InterruptedError):
+                self._flushed.clear()
+                self._loop.add_writer(self._sock, self._writable)
+                return
+            except OSError:
+                self._out.popleft()
+                self._end()
+                return
+            if fd is not None:
+                os.close(fd)
+            if sent < len(data):
+                self._out[0] = data[sent:], None
+            else:
+                self._out.popleft()
+        if not self._flushed.is_set():
+            self._loop.remove_writer(self._sock)
+            self._flushed.set()
+
+    def _readable(self) -> None:
+        if self._closed:
+            return
+        try:
+            if self._local:
+                block, fds, _, _ = socket.recv_fds(self._sock, BLOCK, 16)
+                self._fds.extend(fds)
+            else:
+                block = self._sock.recv(BLOCK)
+        except (BlockingIOError, InterruptedError):
+            return
+        except OSError:
+            block = b""
+        if not block:
+            self._end()
+            return
+        self._rest += block
+        self._parse()
+
+    def _parse(self) -> None:
+        """Handle the frames that are complete. After `TURN` of them, read no more until the loop had a turn."""
+        rest, start = self._rest, 0
+        for _ in range(TURN):
+            if self._closed or len(rest) - start < HEAD.size:
+                break
+            kind, flags, channel, number, size = HEAD.unpack_from(rest, start)
+            inline = 0 if flags & SHARED else size
+            if len(rest) - start < HEAD.size + inline:
+                break
+            start += HEAD.size
+            if flags & SHARED:
+                body = _mapped(self._fds.popleft(), size)
+            else:
+                body = memoryview(bytes(rest[start : start + size]))
+            start += inline
+            self._handle(Kind(kind), channel, number, body)
+        else:
+            if not self._closed:
+                self._loop.remove_reader(self._sock)
+                self._loop.call_soon(self._go_on)
+        del rest[:start]
+
+    def _go_on(self) -> None:
+        if not self._closed:
+            self._loop.add_reader(self._sock, self._readable)
+            self._parse()
+
+    def _end(self) -> None:
+        if not self._closed:
+            self.close()
+            with contextlib.suppress(RuntimeError):
+                self._loop.call_soon(self._lost)
+
+
+def _mapped(fd: int, size: int) -> memoryview:
+    """Return the bytes in shared memory. They live as long as somebody holds a view of them."""
+    try:
+        return memoryview(mmap.mmap(fd, size, access=mmap.ACCESS_READ))
+    finally:
+        os.close(fd)

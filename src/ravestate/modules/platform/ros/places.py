@@ -1,0 +1,130 @@
+"""The places in which ROS may be installed: which interpreter runs a bridge, and with which environment."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+
+from ravestate.errors import PlatformError
+from ravestate.folders import user_folder
+
+CHILDREN = Path(__file__).with_name("children")
+
+ROS1_MEND = "ROS 1 needs rospy: apt-get install python3-rospy ros-core, or name the Python that has it in ros1.python"
+ROS2_MEND = (
+    "ROS 2 needs rclpy: source your ROS 2 installation, or `make ros`, or pip install ros-rclpy ros-rmw-fastrtps-cpp "
+    "ros-std-msgs in an environment and name its Python in ros2.python. For topics alone, pip install cyclonedds does"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A program beside this file, and what runs it.
+
+    Attributes:
+        name: The user's name for it.
+        program: The file's name in the folder `CHILDREN`.
+        python: The interpreter.
+        setup: A shell script to source first; None if there is none.
+        environment: Variables to set.
+        mend: The remedy to name after a failure to start.
+    """
+
+    name: str
+    program: str
+    python: str
+    setup: Path | None = None
+    environment: Mapping[str, str] = field(default_factory=dict[str, str])
+    mend: str = ""
+
+    def command(self, fd: int) -> list[str]:
+        """Return the command line that runs the program with the file descriptor of its pipe."""
+        line = [self.python, str(CHILDREN / self.program), str(fd)]
+        if self.setup is None:
+            return line
+        return ["bash", "-c", f"source {shlex.quote(str(self.setup))} && exec {shlex.join(line)}"]
+
+    @property
+    def folders(self) -> list[Path]:
+        """The folders that hold packages of message definitions."""
+        paths = [Path(path) for path in os.environ.get("ROS_PACKAGE_PATH", "").split(":") if path]
+        for variable in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH"):
+            paths += [Path(path) / "share" for path in os.environ.get(variable, "").split(":") if path]
+        if self.setup is not None:
+            paths.append(self.setup.parent / "share")
+        return [*paths, Path(self.python).parent.parent / "share"]
+
+
+def ros1_place(python: Path | None) -> Place:
+    """Return where rospy is: the setting, the sourced ROS 1, one under /opt/ros, or Debian's packages.
+
+    Raises:
+        PlatformError: It is nowhere.
+    """
+    if python is not None:
+        return Place("ros1", "ros1_node.py", str(python.expanduser()), mend=f". {ROS1_MEND}")
+    if os.environ.get("ROS_VERSION") == "1":
+        return Place("ros1", "ros1_node.py", _system_python())
+    for setup in sorted(Path("/opt/ros").glob("*/setup.bash"), reverse=True):
+        if any(setup.parent.glob("lib/python3*/*-packages/rospy")):
+            return Place("ros1", "ros1_node.py", _system_python(), setup)
+    if Path("/usr/lib/python3/dist-packages/rospy").is_dir():
+        return Place("ros1", "ros1_node.py", "/usr/bin/python3")
+    raise PlatformError(ROS1_MEND)
+
+
+def ros2_place(python: Path | None, backend: str = "auto") -> Place:
+    """Return where rclpy or DDS is.
+
+    The order: the setting, the sourced ROS 2, one under /opt/ros, this environment, that of ``make ros``, and then DDS in
+    the same environments.
+
+    Args:
+        python: The interpreter of the setting.
+        backend: ``auto``, ``rclpy`` or ``dds``.
+
+    Raises:
+        PlatformError: It is nowhere.
+    """
+    apart = [Path(sys.prefix).parent / ".venvs" / "ros2", user_folder("data") / "ros2"]
+    if backend in ("auto", "rclpy"):
+        if python is not None:
+            return _ros2(str(python.expanduser()))
+        if os.environ.get("ROS_VERSION") == "2":
+            return _ros2(_system_python())
+        for setup in sorted(Path("/opt/ros").glob("*/setup.bash"), reverse=True):
+            if any(setup.parent.glob("lib/python3*/*-packages/rclpy")):
+                return _ros2(_system_python(), setup)
+        if find_spec("rclpy") is not None:
+            return _ros2(sys.executable)
+        for folder in apart:
+            if any(folder.glob("lib/python3*/site-packages/rclpy")):
+                return _ros2(str(folder / "bin" / "python"))
+    if backend in ("auto", "dds"):
+        if python is not None:
+            return _dds(str(python.expanduser()))
+        if find_spec("cyclonedds") is not None:
+            return _dds(sys.executable)
+        for folder in apart:
+            if any(folder.glob("lib/python3*/site-packages/cyclonedds")):
+                return _dds(str(folder / "bin" / "python"))
+    raise PlatformError(ROS2_MEND)
+
+
+def _ros2(python: str, setup: Path | None = None) -> Place:
+    return Place("ros2", "ros2_node.py", python, setup, mend=f". {ROS2_MEND}")
+
+
+def _dds(python: str) -> Place:
+    return Place("ros2", "dds_node.py", python, mend=". DDS needs cyclonedds: pip install cyclonedds")
+
+
+def _system_python() -> str:
+    """Return the system's interpreter, for which ROS is built; the one on the path may be that of an environment."""
+    return "/usr/bin/python3" if Path("/usr/bin/python3").exists() else shutil.which("python3") or sys.executable

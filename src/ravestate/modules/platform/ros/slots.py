@@ -1,0 +1,429 @@
+"""Slots that are topics, services and actions. `ros1` and `ros2` declare them on a user's module."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+import ravestate as rs
+from ravestate.declare.arguments import check_name
+from ravestate.declare.condition import Compound, Condition, Constraint
+from ravestate.declare.module import as_module
+from ravestate.declare.signal import Signal
+from ravestate.declare.wording import place_of_call
+from ravestate.errors import DeclarationError, PlatformError
+
+from .definitions import full_name
+from .naming import quality
+
+if TYPE_CHECKING:
+    from .node import Channel, Node
+
+DEEP = 1000
+"""The number of messages that may wait on the way to an agent that wants all of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """The topic, service or action of a slot.
+
+    Attributes:
+        version: 1 for ROS 1, 2 for ROS 2.
+        kind: The kind of the slot.
+        name: The name of the topic, service or action, as the designer wrote it.
+        type: The name of its type, as the designer wrote it.
+        options: The arguments of the `Node` method that opens it.
+    """
+
+    version: Literal[1, 2]
+    kind: Literal["subscriber", "publisher", "service", "action"]
+    name: str
+    type: str
+    options: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+    def open(self, node: Node) -> Channel:
+        """Open the channel of a publisher, a service or an action."""
+        if self.kind == "publisher":
+            return node.advertise(self.name, self.type, **self.options)
+        if self.kind == "service":
+            return node.client(self.name, self.type, **self.options)
+        return node.action(self.name, self.type, **self.options)
+
+
+class TopicSlot(rs.Slot[Any]):
+    """A slot that is a topic. Its value is the last message; None before the first."""
+
+    __slots__ = ("binding",)
+    binding: Binding
+
+
+class ServiceSlot(TopicSlot):
+    """A slot that is a service.
+
+    A write is a request, and raises ``requested``. The response raises ``changed``; a failure raises ``failed`` with the
+    reason as text.
+    """
+
+    __slots__ = ("failed", "requested")
+    names = ("requested",)
+    answers: tuple[str, ...] = ("changed", "failed")
+    """The signals that the other end causes. The slot's own write does not raise them."""
+    requested: rs.Signal[Any]
+    failed: rs.Signal[str]
+
+
+class ActionSlot(ServiceSlot):
+    """A slot that is an action of ROS 2.
+
+    A write is a goal, and raises ``requested``. Feedback raises ``feedback``, the result raises ``changed``, and a failure
+    (refused, aborted, cancelled) raises ``failed`` with the reason as text.
+    """
+
+    __slots__ = ("feedback",)
+    answers = ("changed", "failed", "feedback")
+    feedback: rs.Signal[Any]
+
+
+@dataclass(eq=False, slots=True)
+class Goal:
+    """A goal whose sender waits for the result; see `perform`."""
+
+    value: Any
+    result: asyncio.Future[Any]
+    task: asyncio.Task[Any] | None = None
+
+    def cancel(self) -> None:
+        """Cancel the goal."""
+        if self.task is not None:
+            self.task.cancel()
+        self.result.cancel()
+
+
+class Declarations:
+    """Declares slots of one version of ROS on modules.
+
+    Args:
+        version: 1 or 2.
+        module: The module ``ros1`` or ``ros2``; modules with such slots require it.
+        node: Its slot with the node of the context.
+    """
+
+    def __init__(self, version: Literal[1, 2], module: rs.Module, node: rs.Slot[Node | None]) -> None:
+        self.version: Literal[1, 2] = version
+        self.module = module
+        self.node = node
+
+    def subscriber(
+        self,
+        module: Any,
+        name: str,
+        *,
+        topic: str,
+        type: str,
+        keep: Literal["latest", "all"] = "latest",
+        rate: float | None = None,
+        qos: str | Mapping[str, Any] | None = None,
+        latch: bool = False,
+    ) -> rs.Slot[Any]:
+        """Declare a slot that follows a topic: each message becomes the slot's value, and raises ``.changed``.
+
+        Args:
+            module: The module to declare the slot on.
+            name: The slot's name.
+            topic: The topic, such as ``/chat``; relative names and ``~private`` ones are allowed.
+            type: The type of its messages, such as ``std_msgs/String``.
+            keep: ``latest`` lets a newer message replace one that waits; ``all`` takes each.
+            rate: The maximum number of messages a second; the newest of each interval is taken.
+            qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
+            latch: ROS 2: whether to get the last message of a publisher that latches.
+
+        Raises:
+            DeclarationError: An argument is wrong.
+        """
+        self._check(type, "msg")
+        if keep not in ("latest", "all"):
+            raise DeclarationError(f"subscriber {name}: keep={keep!r}: write keep='latest' or keep='all'")
+        if rate is not None and not (isinstance(rate, (int, float)) and rate > 0):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise DeclarationError(f"subscriber {name}: rate={rate!r} must be a number of messages a second above 0")
+        options = {
+            "latest": keep == "latest", "rate": rate,
+            "qos": quality(qos, depth=DEEP if keep == "all" else 10, latch=latch),
+        }  # fmt: skip
+        binding = Binding(self.version, "subscriber", topic, type, options)
+        slot = self._slot(module, name, TopicSlot, binding, keep="latest" if keep == "latest" else "all", input=True)
+        node = self.node
+
+        @module_of(module).rule(
+            when=node.changed.max_age(None).detached(),
+            reads=node,
+            writes=slot,
+            until=node.changed,
+            detached=True,  # each message is a cause of its own
+            background=True,
+            name=f"{name}_receive",
+        )
+        async def receive(ctx: rs.RuleContext) -> rs.Resign | None:
+            """Write each message of the topic to the slot."""
+            if (here := ctx[node]) is None:
+                return rs.Resign("there is no node")
+
+            def take(message: Any) -> None:
+                ctx[slot] = message
+
+            channel = _opened(ctx, here, slot, take)
+            try:
+                await asyncio.get_running_loop().create_future()
+            finally:
+                if channel is not None:
+                    channel.close()
+            return None
+
+        return slot
+
+    def publisher(
+        self,
+        module: Any,
+        name: str,
+        *,
+        topic: str,
+        type: str,
+        latch: bool = False,
+        qos: str | Mapping[str, Any] | None = None,
+    ) -> rs.Slot[Any]:
+        """Declare a slot that publishes: each write becomes a message on a topic.
+
+        Args:
+            module, name, topic, type, qos: As for `subscriber`.
+            latch: Whether subscribers that come later get the last message.
+
+        Raises:
+            DeclarationError: An argument is wrong.
+        """
+        self._check(type, "msg")
+        options = {"latch": latch, "qos": quality(qos, depth=100, latch=latch)}
+        slot = self._slot(module, name, TopicSlot, Binding(self.version, "publisher", topic, type, options))
+        node = self.node
+
+        @module_of(module).rule(
+            when=slot.changed.max_age(None).detached(), reads=node, background=True, name=f"{name}_publish"
+        )
+        async def publish(ctx: rs.RuleContext) -> rs.Resign | None:
+            """Publish each value of the slot."""
+            if (here := ctx[node]) is None:
+                return rs.Resign("there is no node")
+            _channel(here, slot).publish(ctx.payload(slot.changed))
+            return None
+
+        return slot
+
+    def service(self, module: Any, name: str, *, service: str, type: str, timeout: float = 5.0) -> ServiceSlot:
+        """Declare a slot that calls a service: a write is the request, ``.changed`` brings the response.
+
+        Args:
+            module, name: As for `subscriber`.
+            service: The service's name.
+            type: Its type, such as ``std_srvs/SetBool``.
+            timeout: Seconds within which the response must come; else ``.failed`` is raised.
+
+        Raises:
+            DeclarationError: An argument is wrong.
+        """
+        self._check(type, "srv")
+        binding = Binding(self.version, "service", service, type, {"timeout": _seconds(timeout, name)})
+        slot = self._slot(module, name, ServiceSlot, binding)
+        node = self.node
+
+        @module_of(module).rule(
+            when=slot.requested.max_age(None), reads=node, emits=(slot.changed, slot.failed), name=f"{name}_call"
+        )
+        async def call(ctx: rs.RuleContext) -> rs.Resign | None:
+            """Call the service, and raise its answer."""
+            if (here := ctx[node]) is None:
+                return rs.Resign("there is no node")
+            try:
+                answer = await _channel(here, slot).call(ctx.payload(slot.requested))
+            except PlatformError as error:
+                ctx.log.warning("%s", error)
+                ctx.emit(slot.failed, str(error))
+            else:
+                ctx.emit(slot.changed, answer)
+            return None
+
+        return slot
+
+    def action(
+        self,
+        module: Any,
+        name: str,
+        *,
+        action: str,
+        type: str,
+        timeout: float = 5.0,
+        until: Condition | None = None,
+    ) -> ActionSlot:
+        """Declare a slot that is an action: a write is the goal, ``.feedback`` and ``.changed`` bring feedback and result.
+
+        The goal is cancelled when `until` is met, or the ``until`` of a rule that writes the slot.
+
+        Args:
+            module, name: As for `subscriber`.
+            action: The action's name.
+            type: Its type, such as ``nav2_msgs/NavigateToPose``.
+            timeout: Seconds within which the action's server must be there.
+            until: A condition that cancels the goal.
+
+        Raises:
+            DeclarationError: An argument is wrong.
+        """
+        self._check(type, "action")
+        binding = Binding(self.version, "action", action, type, {"timeout": _seconds(timeout, name)})
+        slot = self._slot(module, name, ActionSlot, binding)
+        node = self.node
+
+        @module_of(module).rule(
+            when=slot.requested.max_age(None),
+            reads=node,
+            emits=(slot.changed, slot.failed, slot.feedback),
+            until=until,
+            name=f"{name}_act",
+        )
+        async def act(ctx: rs.RuleContext) -> rs.Resign | None:
+            """Send the goal, and raise its feedback and its result."""
+            if (here := ctx[node]) is None:
+                return rs.Resign("there is no node")
+            asked = ctx.payload(slot.requested)
+            goal = asked if isinstance(asked, Goal) else None
+            value = asked if goal is None else goal.value
+            call = _channel(here, slot).call(value, lambda message: ctx.emit(slot.feedback, message))
+            task = asyncio.ensure_future(call)
+            goals = here.goals.setdefault(slot.name, set())
+            goals.add(task)
+            if goal is not None:
+                goal.task = task
+            try:
+                await asyncio.wait((task,))
+            finally:
+                task.cancel()
+                goals.discard(task)
+            reason = "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
+            if reason:
+                ctx.emit(slot.failed, reason)
+            else:
+                ctx.emit(slot.changed, task.result())
+            if goal is not None and not goal.result.done():
+                if reason:
+                    goal.result.set_exception(PlatformError(reason))
+                else:
+                    goal.result.set_result(task.result())
+            return None
+
+        return slot
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _check(self, type: str, kind: str) -> None:
+        try:
+            full_name(type, kind)
+        except PlatformError as error:
+            raise DeclarationError(str(error)) from None
+
+    def _slot(self, module: Any, name: str, cls: type[Any], binding: Binding, **options: Any) -> Any:
+        owner = module_of(module)
+        check_name(name, f"{owner.name}.slot")
+        slot = cls(f"{owner.name}:{name}", None, origin=place_of_call(), always=True, **options)
+        slot.binding = binding
+        if isinstance(slot, ServiceSlot):
+            for what in slot.answers:
+                answer: rs.Signal[Any] = rs.Signal(f"{slot.name}:{what}", None, origin=slot.origin)
+                setattr(slot, what, answer)
+                owner.signals.append(answer)
+        owner.slots.append(slot)
+        if self.module not in owner.requires and owner is not self.module:
+            owner.requires.append(self.module)
+        return slot
+
+
+async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
+    """Send a goal from a rule, and return its result. When the rule is interrupted, the goal is cancelled.
+
+    Args:
+        ctx: The rule's context; the rule declares ``writes=slot``.
+        slot: The slot of the action.
+        goal: The goal, as for any write.
+
+    Raises:
+        PlatformError: The goal was refused, aborted or cancelled, or there is no server.
+    """
+    sent = Goal(goal, asyncio.get_running_loop().create_future())
+    ctx[slot] = sent
+    try:
+        return await sent.result
+    except asyncio.CancelledError:
+        sent.cancel()
+        raise
+
+
+def module_of(module: Any) -> rs.Module:
+    """Return the module that an argument denotes."""
+    return as_module(module)
+
+
+def bind_all(ctx: rs.RuleContext, node: Node, version: int) -> None:
+    """Open the channels of all slots of a context that publish or call; add the rules that cancel goals."""
+    for slot in ctx.policy.slots.values():
+        if isinstance(slot, TopicSlot) and slot.binding.version == version and slot.binding.kind != "subscriber":
+            with contextlib.suppress(PlatformError):  # its own rule reports it when it is used
+                _channel(node, slot)
+            if isinstance(slot, ActionSlot):
+                _cancel_with_writers(ctx, node, slot)
+
+
+def _cancel_with_writers(ctx: rs.RuleContext, node: Node, slot: ActionSlot) -> None:
+    """Cancel a slot's goals when the ``until`` of a rule that writes the slot is met."""
+    for rule in list(ctx.policy.rules.values()):
+        if slot in rule.writes and rule.until is not None:
+            owner, name = slot.name.split(":")
+            title = f"{name}_cancel_{rule.name.replace(':', '_')}"
+
+            @rs.Module(owner).rule(when=_looking(rule.until), background=True, name=title)
+            async def cancel(ctx: rs.RuleContext) -> None:
+                """Cancel the goals that run."""
+                for task in list(node.goals.get(slot.name, ())):
+                    task.cancel()
+
+            ctx.add_rule(cancel)
+
+
+def _looking(condition: Condition) -> Condition:
+    """Return a condition that is met as `condition` is, and consumes nothing (L19)."""
+    if isinstance(condition, Compound):
+        return type(condition)(tuple(_looking(part) for part in condition.parts))
+    if isinstance(condition, (Signal, Constraint)):
+        return condition.detached()  # pyright: ignore[reportUnknownMemberType,reportUnknownVariableType]
+    return condition
+
+
+def _channel(node: Node, slot: TopicSlot) -> Channel:
+    """Return the channel of a slot that publishes or calls; open it at the first call."""
+    channel = node.bound.get(slot.name)
+    if channel is None:
+        channel = node.bound[slot.name] = slot.binding.open(node)
+    return channel
+
+
+def _opened(ctx: rs.RuleContext, node: Node, slot: TopicSlot, take: Any) -> Channel | None:
+    binding = slot.binding
+    try:
+        return node.subscribe(binding.name, binding.type, take, **binding.options)
+    except PlatformError as error:
+        ctx.log.error("%s: %s", slot.name, error)
+        return None
+
+
+def _seconds(timeout: object, name: str) -> float:
+    if isinstance(timeout, bool) or not isinstance(timeout, (int, float)) or timeout <= 0:
+        raise DeclarationError(f"{name}: timeout={timeout!r} must be a number of seconds above 0")
+    return float(timeout)

@@ -1,0 +1,274 @@
+"""The types of messages: their classes, their wire forms, and messages from plain data."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any, Literal, cast
+
+from ravestate.errors import PlatformError, nearest
+
+from .definitions import PARTS, Definitions, full_name, messages
+
+BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4
+"""The kinds of fields, as the library `rosbags` counts them."""
+
+DUMMY = "structure_needs_at_least_one_member"
+"""The field that ROS 2 gives to a message without fields."""
+
+
+class Types:
+    """The types of ROS 1 or ROS 2 that an agent uses.
+
+    Args:
+        version: 1 or 2. The wire forms are those of ROS 1, or CDR.
+        definitions: The definition files to read types from that the library does not bring.
+    """
+
+    def __init__(self, version: Literal[1, 2], definitions: Definitions | None = None) -> None:
+        self.version = version
+        self.definitions = definitions or Definitions()
+        self.store = _store(version)
+        """The library's store of types."""
+
+    def require(self, name: str, kind: str = "msg") -> str:
+        """Make a type known, with all that it contains; return its full name.
+
+        Raises:
+            PlatformError: There is no definition of the type, or it is wrong. The message says what to do.
+        """
+        name = full_name(name, kind)
+        if name.split("/")[1] == "msg":
+            self._learn(name)
+        else:
+            for title in PARTS[name.split("/")[1]]:
+                if f"{name}_{title}" not in self.store.fielddefs:
+                    self._read(name)
+        return name
+
+    def _learn(self, name: str) -> None:
+        if name not in self.store.fielddefs:
+            self._read(name)
+
+    def _read(self, name: str) -> None:
+        text = self.definitions.text(name)
+        if text is None:
+            package, _, short = name.split("/")
+            akin = [
+                each for each in self.store.fielddefs if each.startswith(f"{package}/") or each.endswith(f"/{short}")
+            ]
+            raise PlatformError(
+                f"there is no definition of {name}: install its package, or name its file in ros{self.version}.definitions"
+                f"{nearest(name, akin)}"
+            )
+        from rosbags.typesys import get_types_from_msg
+
+        parsed: dict[str, Any] = {}
+        for full, part in messages(name, text):
+            package, _, short = full.split("/")
+            try:
+                for fields in get_types_from_msg(part, f"{package}/msg/{short}").values():
+                    parsed[full] = fields
+            except Exception as error:  # the library's parser raises many kinds
+                raise PlatformError(f"the definition of {full} is wrong: {error}") from error
+        if self.version == 2:
+            for _, fields in parsed.values():
+                if not fields:
+                    fields.append((DUMMY, (BASE, ("uint8", 0))))
+        for _, fields in parsed.values():
+            for _, what in fields:
+                while what[0] in (ARRAY, SEQUENCE):
+                    what = what[1][0]
+                if what[0] == NAME and what[1] != name:
+                    self._learn(what[1])
+        new = {full: fields for full, fields in parsed.items() if full not in self.store.fielddefs}
+        self.store.register(new)
+
+    # ------------------------------------------------------------------------------- wire forms
+
+    def encode(self, value: Any, name: str) -> memoryview:
+        """Return the wire form of a message.
+
+        Args:
+            value: A message, a mapping of fields (those left out are zero), or the value of the only field.
+            name: The type's full name.
+
+        Raises:
+            PlatformError: The value does not fit the type; the message names the field.
+        """
+        message = self.message(value, name)
+        try:
+            return (self.store.serialize_cdr if self.version == 2 else self.store.serialize_ros1)(message, name)
+        except Exception as error:  # wrong kinds of values fail in generated code, in many ways
+            raise PlatformError(
+                f"{value!r} does not fit {name}: {error}; its fields are {self.describe(name)}"
+            ) from error
+
+    def decode(self, data: memoryview | bytes, name: str) -> Any:
+        """Return the message with this wire form. Its arrays are views of `data`, not copies.
+
+        Raises:
+            PlatformError: The bytes are not a message of this type.
+        """
+        try:
+            return (self.store.deserialize_cdr if self.version == 2 else self.store.deserialize_ros1)(data, name)
+        except Exception as error:  # the library's reader raises many kinds
+            raise PlatformError(f"a message is not of the type {name}: {error}") from error
+
+    def message(self, value: Any, name: str) -> Any:
+        """Return a message of a type, from a message, a mapping of fields, or the value of the only field."""
+        return self._build(value, name, name)
+
+    def _build(self, value: Any, name: str, path: str) -> Any:
+        fields = self.store.fielddefs[name][1]
+        cls = self.store.types[name]
+        if getattr(cast("object", type(value)), "__msgtype__", None) == name:
+            return value
+        if value is None:
+            value = {}
+        if not isinstance(value, Mapping):
+            other = getattr(cast("object", type(value)), "__msgtype__", None)
+            if other is not None:
+                raise PlatformError(f"{path} takes {name}, not {other}")
+            own = [field for field, _ in fields if field != DUMMY]
+            if len(own) != 1:
+                raise PlatformError(f"{path} takes the fields {self.describe(name)}, not {value!r}")
+            value = {own[0]: value}
+        given = cast("Mapping[str, Any]", value)
+        if unknown := [str(key) for key in given if key not in dict(fields)]:
+            raise PlatformError(
+                f"{path} has no field {unknown[0]!r}{nearest(unknown[0], dict(fields))}: its fields are {self.describe(name)}"
+            )
+        return cls(**{field: self._field(given.get(field), what, f"{path}.{field}") for field, what in fields})
+
+    def _field(self, value: Any, what: Any, path: str) -> Any:
+        kind, of = what
+        if kind == NAME:
+            return self._build(value, of, path)
+        if kind == BASE:
+            return _checked(value, of[0], path)
+        (inner, inside), count = of
+        if kind == SEQUENCE:
+            count = 0
+        items: Any = [] if value is None else value
+        if isinstance(items, str) or not hasattr(items, "__len__"):
+            raise PlatformError(f"{path} takes a list, not {items!r}")
+        if count and value is not None and len(items) != count:
+            raise PlatformError(f"{path} takes {count} values, not {len(items)}")
+        if inner == BASE and inside[0] != "string":
+            import numpy
+
+            numbers = {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(inside[0], inside[0])
+            if isinstance(items, (bytes, bytearray, memoryview)):
+                items = cast("bytes", items)
+                return numpy.frombuffer(items, numpy.uint8)
+            try:
+                return numpy.asarray(items if value is not None else [0] * count, numbers)
+            except (ValueError, TypeError, OverflowError) as error:
+                raise PlatformError(f"{path} takes numbers ({inside[0]}): {error}") from error
+        if value is None:
+            items = [None] * count
+        return [self._field(item, (inner, inside), f"{path}[{n}]") for n, item in enumerate(items)]
+
+    # ------------------------------------------------------------------------------- looking in
+
+    def describe(self, name: str) -> str:
+        """Return the fields of a type as text, such as ``data: string``."""
+        fields = self.store.fielddefs[name][1]
+        return ", ".join(f"{field}: {_spelt(what)}" for field, what in fields if field != DUMMY) or "none"
+
+    def fields(self, name: str) -> dict[str, Any]:
+        """Return type → its fields as data for JSON, of a type and of all that it contains."""
+        found: dict[str, Any] = {}
+
+        def collect(type_: str) -> None:
+            if type_ not in found:
+                found[type_] = [(field, what) for field, what in self.store.fielddefs[type_][1]]
+                for _, what in found[type_]:
+                    while what[0] in (ARRAY, SEQUENCE):
+                        what = what[1][0]
+                    if what[0] == NAME:
+                        collect(what[1])
+
+        collect(name)
+        return found
+
+    def ros1_definition(self, name: str) -> tuple[str, str]:
+        """Return the text and the MD5 sum by which ROS 1 knows a message type or a service type."""
+        if name.split("/")[1] == "msg":
+            return self.store.generate_msgdef(name, ros_version=1)
+        text = "".join(self._hashed(f"{name}_{title}") for title in PARTS["srv"])
+        return "", hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
+
+    def _hashed(self, name: str) -> str:
+        """Return the text whose MD5 sum is that of a message: constants, then fields, messages by their own sums."""
+        subdefs: dict[str, tuple[str, str]] = {}
+        lines = [f"{type_} {field}={value}" for field, type_, value in self.store.fielddefs[name][0]]
+        for field, (kind, of) in self.store.fielddefs[name][1]:
+            if field == DUMMY:
+                continue
+            inner, suffix = (kind, of), ""
+            if kind in (ARRAY, SEQUENCE):
+                inner, suffix = of[0], f"[{of[1] or ''}]"
+            if inner[0] == NAME:
+                short = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}.get(
+                    inner[1]
+                )
+                lines.append(
+                    f"{short}{suffix} {field}" if short else f"{self.store.gendefhash(inner[1], subdefs)[1]} {field}"
+                )
+            else:
+                lines.append(f"{inner[1][0]}{suffix} {field}")
+        return "\n".join(lines)
+
+
+def plain(message: Any) -> Any:
+    """Return a message as plain data: mappings, lists, numbers and text."""
+    if hasattr(cast("object", type(message)), "__msgtype__"):
+        fields = cast("dict[str, Any]", vars(message))
+        return {key: plain(value) for key, value in fields.items() if key not in (DUMMY, "__msgtype__")}
+    if hasattr(message, "tolist"):
+        return message.tolist()
+    return [plain(item) for item in message] if isinstance(message, list) else message  # pyright: ignore[reportUnknownVariableType]
+
+
+def _checked(value: Any, base: str, path: str) -> Any:
+    wanted: Any = str if base == "string" else bool if base == "bool" else float if base.startswith("float") else int
+    if value is None:
+        return wanted()
+    if wanted is float and isinstance(value, int):
+        return float(value)
+    if hasattr(value, "item") and getattr(value, "ndim", 1) == 0:
+        value = value.item()
+    if not isinstance(value, wanted) or (wanted is not bool and isinstance(value, bool)):
+        raise PlatformError(f"{path} takes {base}, not {value!r}")
+    return value
+
+
+def _spelt(what: Any) -> str:
+    kind, of = what
+    if kind == BASE:
+        return of[0]
+    if kind == NAME:
+        return of.replace("/msg/", "/")
+    return f"{_spelt(of[0])}[{of[1] or ''}]"
+
+
+@lru_cache(2)
+def _base_store(version: int) -> Any:
+    try:
+        typesys = importlib.import_module("rosbags.typesys")
+    except ImportError as error:
+        raise PlatformError(f"ros{version} needs {error.name}: pip install 'ravestate[ros]'") from error
+    return typesys.get_typestore(typesys.Stores.ROS1_NOETIC if version == 1 else typesys.Stores.ROS2_KILTED)
+
+
+def _store(version: int) -> Any:
+    """Return a store of types to add to, which begins with the common types."""
+    base = _base_store(version)
+    store = type(base)()
+    store.fielddefs.update(base.fielddefs)
+    store.types.update(base.types)
+    return store

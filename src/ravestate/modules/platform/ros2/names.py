@@ -1,0 +1,44 @@
+"""The names of `ros2`: its settings, its module, its slot, and the functions that declare slots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import pydantic
+
+import ravestate as rs
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.ros import Declarations, Node, NodeSettings, connect, open_node
+from ravestate.modules.platform.ros.places import ros2_place
+
+
+class Settings(NodeSettings):
+    """The settings of the node of ROS 2."""
+
+    backend: Literal["auto", "rclpy", "dds", "bus"] = "auto"
+    """``rclpy``; ``dds``, which carries topics alone; the built-in ``bus``; or ``auto``: rclpy, else dds."""
+    domain: int | None = pydantic.Field(None, ge=0, le=232)
+    """The domain. Default: that of the environment (``ROS_DOMAIN_ID``), or else 0."""
+
+
+module = rs.Module("ros2", settings=Settings)
+
+
+def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None = None) -> Node:
+    """Return a node of ROS 2 with these settings; it connects at its first use."""
+    environment = {"ROS_DOMAIN_ID": "" if settings.domain is None else str(settings.domain)}
+    return open_node(
+        2, settings, lambda: ros2_place(settings.python, settings.backend), environment,
+        bus=settings.backend == "bus", failed=failed,
+    )  # fmt: skip
+
+
+node = connect(module, 2, make_node)
+"""The node of this context; None before it starts, and in virtual time."""
+
+declarations = Declarations(2, module, node)
+subscriber = declarations.subscriber
+publisher = declarations.publisher
+service = declarations.service
+action = declarations.action

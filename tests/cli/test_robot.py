@@ -1,0 +1,48 @@
+"""``ravestate robot``: the stand-in, alone or with an agent, and beside a page of webio."""
+
+import os
+import signal
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+from ravestate.cli import main
+
+PARROT = """
+import ravestate as rs
+from ravestate.modules import rawio
+
+module = rs.Module("parrot", requires=[rawio])
+
+@module.rule(when=rawio.input.changed, writes=rawio.output)
+async def answer(ctx):
+    ctx[rawio.output] = ctx.payload(rawio.input.changed)
+"""
+
+
+@pytest.mark.parametrize("beside", [[], ["webio"]], ids=["alone", "beside webio"])
+def test_it_opens_a_page_and_ends_in_order(tmp_path: Path, beside: list[str]) -> None:
+    (tmp_path / "parrot.py").write_text(PARROT)
+    line = [sys.executable, "-m", "ravestate", "robot", str(tmp_path / "parrot.py"), *beside, "--on", "bus"]
+    line += ["--bus", "127.0.0.1:0", "--port", "0"]
+    if beside:
+        line += ["--set", "webio.port=0"]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ})
+    assert process.stdout is not None
+    said = process.stdout.readline()
+    assert said.startswith("Roboy is at http://127.0.0.1:") and "its topics are on the built-in bus" in said
+    if beside:
+        assert process.stdout.readline().startswith("The agent is at http://127.0.0.1:")
+    with urllib.request.urlopen(said.split()[3].rstrip(",")) as page:
+        assert "assets/robot.js" in page.read().decode()
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=20)
+    assert (process.returncode, errors) == (0, "")
+
+
+def test_an_unknown_robot_is_refused_in_words(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["robot", "--robot", "robby", "--on", "bus", "--bus", "127.0.0.1:0"]) == 1
+    assert "did you mean 'roboy'" in capsys.readouterr().err

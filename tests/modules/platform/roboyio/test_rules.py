@@ -1,0 +1,132 @@
+"""An agent with a robot: the stand-in's topics and services on the built-in bus, and rules in virtual time."""
+
+import asyncio
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.platform.ros.networks import PATIENCE, Network, pause, until
+from ravestate.modules import emotion, interloc, rawio, roboyio, ros2
+from ravestate.modules.platform.roboyio.rules import speakable
+from ravestate.modules.platform.roboyio.stand_in import StandIn
+from ravestate.modules.platform.ros import Bus
+from ravestate.testing import simulate
+
+
+def parrot() -> rs.Module:
+    module = rs.Module("parrot", requires=[rawio])
+
+    @module.rule(when=rawio.input.changed, writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = f"You said: {ctx.payload(rawio.input.changed)} 😀"
+
+    return module
+
+
+async def quickly(seconds: float) -> None:
+    await pause(seconds / 50)
+
+
+@pytest.mark.parametrize("name", ["roboy", "turtlebot"])
+def test_text_in_and_words_expression_head_and_gesture_out(name: str) -> None:
+    seen: list[dict[str, Any]] = []
+
+    async def main() -> None:
+        async with Bus(0) as bus, asyncio.timeout(PATIENCE):
+            node = ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))
+            robot = StandIn(roboyio.load_robot(name), node, quickly)
+            robot.watch(seen.append)
+            settings = {"roboyio": {"bus": bus.address, "robot": name, "feeling": 0.2}}
+            async with rs.Context(roboyio, emotion, parrot(), settings=settings) as context:
+                await until(lambda: context.read(roboyio.body))
+                ready = roboyio.load_robot(name)
+                assert ready.hear is not None
+                await until(lambda: bus.find("subscriber", ready.hear.topic))  # type: ignore[union-attr]
+                robot.hear("hello", 0.6)
+                await until(lambda: any(looks["text"] == "You said: hello" for looks in seen))
+                await until(lambda: any(looks["yaw"] == pytest.approx(0.6, abs=0.12) for looks in seen))
+                await until(lambda: context.read(rawio.heard) == "You said: hello")
+                assert not context.read(roboyio.speaking)
+                context.emit(emotion.happy)
+                await until(lambda: any(looks["face"] == "happy" for looks in seen))
+                await until(lambda: seen[-1]["face"] == "neutral")
+                robot.see(["Ada"])
+                await until(lambda: "roboyio:Ada" in context.read(interloc.users))
+                if name == "roboy":
+                    await until(lambda: any(looks["gesture"][0] == "wave" for looks in seen))
+                robot.see([])
+                await until(lambda: not context.read(interloc.users))
+            await robot.close()
+            await node.close()
+
+    asyncio.run(main())
+
+
+def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
+    """The whole way over a roscore: text in on a topic; the answer, the expression and the head's movement out."""
+
+    async def main() -> None:
+        seen: list[dict[str, Any]] = []
+        async with ros1_network.lent() as node:
+            robot = StandIn(roboyio.load_robot("roboy"), node, quickly)
+            robot.watch(seen.append)
+            settings = {**ros1_network.settings, "roboyio": {"link": "ros1"}}
+            async with rs.Context(roboyio, emotion, parrot(), settings=settings) as context:
+                await until(
+                    lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
+                )
+                await until(lambda: any(looks["yaw"] == pytest.approx(0.4, abs=0.01) for looks in seen))
+                context.emit(emotion.surprised)
+                await until(lambda: any(looks["face"] == "surprised" for looks in seen))
+            await robot.close()
+
+    ros1_network.run(main)
+
+
+def test_turtlebot_on_real_ros_2(ros2_network: Network) -> None:
+    async def main() -> None:
+        seen: list[dict[str, Any]] = []
+        async with ros2_network.lent() as node:
+            robot = StandIn(roboyio.load_robot("turtlebot"), node, quickly)
+            robot.watch(seen.append)
+            settings = {**ros2_network.settings, "roboyio": {"link": "ros2", "robot": "turtlebot"}}
+            async with rs.Context(roboyio, parrot(), settings=settings):
+                await until(
+                    lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
+                )
+                await until(lambda: any(looks["yaw"] > 0.2 for looks in seen))
+            await robot.close()
+
+    ros2_network.run(main)
+
+
+def test_gaze_in_virtual_time() -> None:
+    slow = rs.Module("slow", requires=[rawio])
+
+    @slow.rule(when=rawio.input.changed, writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(4.0)
+        ctx[rawio.output] = "Done."
+
+    with simulate(roboyio, slow) as sim:
+        assert sim.read(roboyio.body) is None
+        sim.put(roboyio.direction, 0.5)
+        assert sim.read(roboyio.gaze).yaw == 0.5
+        sim.put(roboyio.words, "think, please")
+        sim.advance(2.0)
+        assert sim.read(roboyio.expression) == "thinking"
+        sim.advance(3.0)
+        assert sim.said == ["Done."]
+        assert sim.read(roboyio.expression) == "neutral"
+        assert sim.read(roboyio.gaze).yaw == 0.5
+        poses: set[Any] = set()
+        for _ in range(40):
+            sim.advance(1.0)
+            poses.add(sim.read(roboyio.gaze))
+        assert len(poses) > 2  # it looks around
+
+
+def test_emoji_are_not_spoken() -> None:
+    assert speakable("Hello 😀 you!") == "Hello you!"
+    assert speakable("😀 ❤️") == ""

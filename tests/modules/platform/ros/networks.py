@@ -1,0 +1,211 @@
+"""Real networks of ROS 1 and ROS 2 on the loopback interface, for tests."""
+
+from __future__ import annotations
+
+import asyncio
+import atexit
+import contextlib
+import functools
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any, TypeVar
+
+from ravestate.modules import ros1, ros2
+from ravestate.modules.platform.ros.definitions import Definitions
+from ravestate.modules.platform.ros.node import Node
+from ravestate.modules.platform.ros.types import Types
+from ravestate.runtime.clock import Clock
+
+HERE = Path(__file__).parent
+PATIENCE = 20.0
+"""Seconds after which a test gives up waiting."""
+ROS2_PYTHON = Path(sys.prefix).parent / ".venvs" / "ros2" / "bin" / "python"
+OWN = HERE / "definitions"
+"""A folder with a message package that is installed nowhere."""
+
+
+T = TypeVar("T")
+
+
+@functools.cache
+def the_loop() -> asyncio.Runner:
+    """Return the loop of all shared nodes."""
+    runner = asyncio.Runner()
+    atexit.register(runner.close)
+    return runner
+
+
+def free_port() -> int:
+    with socket.socket() as sock:
+        sock.bind(("127.0.0.1", 0))
+        return sock.getsockname()[1]
+
+
+class Network:
+    """A network with one other node. Its processes are stopped by their numbers.
+
+    Its nodes live on one loop, so that tests share a node instead of starting a bridge each.
+    """
+
+    version: int
+    module: ModuleType
+    settings: dict[str, Any]
+
+    def __init__(self) -> None:
+        self.peer: subprocess.Popen[str] | None = None
+        self._nodes: dict[str, Node] = {}
+
+    def run(self, main: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """Run a test on the loop of the nodes."""
+
+        async def in_time() -> T:
+            async with asyncio.timeout(PATIENCE):
+                return await main()
+
+        return the_loop().run(in_time())
+
+    def start_peer(self) -> None:
+        raise NotImplementedError
+
+    def _run_peer(self, python: str, file: str, *arguments: str) -> None:
+        self.peer = subprocess.Popen(
+            [python, str(HERE / file), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL, text=True, env={**os.environ, **self.environment},
+        )  # fmt: skip
+        assert self.peer.stdout is not None
+        line = self.peer.stdout.readline()
+        assert line == "ready\n", f"the other node of ROS {self.version} did not start: is `make ros` done?"
+
+    @property
+    def environment(self) -> dict[str, str]:
+        raise NotImplementedError
+
+    def node(self, **options: Any) -> Node:
+        """Return a node of ours, as an agent makes it; use it on a loop, and close it."""
+        settings = self.module.Settings(**self.settings[f"ros{self.version}"], definitions=(OWN,), **options)
+        return self.module.make_node(settings)
+
+    @contextlib.asynccontextmanager
+    async def lent(self, **options: Any) -> AsyncIterator[Node]:
+        """Lend the node that all tests share. The channels that a test opens are closed after it."""
+        key = repr(options)
+        if key not in self._nodes:
+            self._nodes[key] = self.node(**options)
+        node = self._nodes[key]
+        try:
+            yield node
+        finally:
+            for channel in list(node.channels.values()):
+                channel.close()
+
+    def stop_peer(self) -> None:
+        end(self.peer)
+        self.peer = None
+
+    def stop(self) -> None:
+        for node in self._nodes.values():
+            the_loop().run(node.close())
+        self.stop_peer()
+
+
+class Ros1(Network):
+    version, module = 1, ros1
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.port = free_port()
+        self.settings = {"ros1": {"master": f"http://127.0.0.1:{self.port}", "ip": "127.0.0.1"}}
+        self.master: subprocess.Popen[bytes] | None = None
+        self.start_master()
+
+    @property
+    def environment(self) -> dict[str, str]:
+        return {"ROS_MASTER_URI": self.settings["ros1"]["master"], "ROS_IP": "127.0.0.1"}
+
+    def start_master(self) -> None:
+        self.master = subprocess.Popen(
+            ["rosmaster", "--core", "-p", str(self.port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            env={**os.environ, **self.environment, "ROS_LOG_DIR": "/tmp/ros-log"},
+        )  # fmt: skip
+
+        for _ in range(200):
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0):
+                return
+            threading.Event().wait(0.02)
+        raise AssertionError("rosmaster did not start: is `make ros` done?")
+
+    def start_peer(self) -> None:
+        types = Types(1, Definitions((OWN,)))
+        _, md5 = types.ros1_definition(types.require("robot_msgs/Reading"))
+        self._run_peer("/usr/bin/python3", "peer1.py", md5)
+
+    def stop(self) -> None:
+        super().stop()
+        end(self.master)
+
+
+class Ros2(Network):
+    version, module = 2, ros2
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.domain = 1 + os.getpid() % 100
+        self.settings = {"ros2": {"domain": self.domain}}
+
+    @property
+    def environment(self) -> dict[str, str]:
+        return {"ROS_DOMAIN_ID": str(self.domain)}
+
+    def start_peer(self) -> None:
+        self._run_peer(str(ROS2_PYTHON), "peer2.py")
+
+
+def end(process: subprocess.Popen[Any] | None) -> None:
+    """Stop a process, and close its pipes."""
+    if process is None:
+        return
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    for pipe in (process.stdin, process.stdout):
+        if pipe is not None:
+            with contextlib.suppress(OSError):
+                pipe.close()
+
+
+@contextlib.contextmanager
+def network(version: int) -> Iterator[Network]:
+    made: Network = Ros1() if version == 1 else Ros2()
+    try:
+        made.start_peer()
+        yield made
+    finally:
+        made.stop()
+
+
+@contextlib.asynccontextmanager
+async def opened(node: Node) -> AsyncIterator[Node]:
+    try:
+        async with asyncio.timeout(PATIENCE):
+            yield node
+    finally:
+        await node.close()
+
+
+async def pause(seconds: float) -> None:
+    """Give the world outside some real time."""
+    await Clock(asyncio.get_running_loop()).sleep(seconds)
+
+
+async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
+    """Wait until something outside is reached; repeat an action meanwhile, because discovery takes its time."""
+    async with asyncio.timeout(PATIENCE):
+        while not reached():
+            again()
+            await pause(every)

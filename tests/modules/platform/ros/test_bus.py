@@ -1,0 +1,106 @@
+"""The built-in bus."""
+
+import asyncio
+import socket
+from typing import Any
+
+import pytest
+
+from modules.platform.ros.networks import PATIENCE, opened, until
+from ravestate.errors import PlatformError
+from ravestate.modules import ros1, ros2
+from ravestate.modules.platform.ros import Bus, Node, quality
+
+ALL = quality(None, depth=10, latch=False)
+LATCHED = quality("latched", depth=1, latch=True)
+
+
+def on(bus: Bus) -> Node:
+    return ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))
+
+
+def test_topics_and_services_work_as_on_ros() -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as robot, opened(on(bus)) as agent:
+            heard: list[str] = []
+            robot.subscribe("/chat", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
+
+            async def serve(request: Any) -> dict[str, Any]:
+                if not request.data:
+                    raise ValueError("the lamp is broken")
+                return {"success": True, "message": "on"}
+
+            robot.offer("/lamp", "std_srvs/SetBool", serve)
+            await until(lambda: bus.find("server", "/lamp"))
+            chat = agent.advertise("/chat", "std_msgs/String", qos=ALL)
+            chat.publish("hello")
+            lamp = agent.client("/lamp", "std_srvs/SetBool", timeout=5.0)
+            assert (await lamp.call(True)).message == "on"
+            with pytest.raises(PlatformError, match="the lamp is broken"):
+                await lamp.call(False)
+            with pytest.raises(PlatformError, match="nobody offers /other"):
+                await agent.client("/other", "std_srvs/SetBool", timeout=5.0).call(True)
+            assert heard == ["hello"]
+            graph = await agent.graph()
+            assert graph["topics"] == [
+                {"name": "/chat", "types": ["std_msgs/msg/String"], "publishers": 0, "subscribers": 1}
+            ]
+            assert graph["services"] == [{"name": "/lamp", "types": ["std_srvs/srv/SetBool"], "servers": 1}]
+
+    asyncio.run(main())
+
+
+def test_large_messages_pass_and_a_latched_one_waits_for_latecomers() -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
+            image = one.advertise("/image", "sensor_msgs/Image", latch=True, qos=LATCHED)
+            image.publish({"height": 2, "width": 500_000, "data": bytes(range(250)) * 4_000})
+            await until(lambda: bus.find("publisher", "/image"))
+            got: list[Any] = []
+            other.subscribe("/image", "sensor_msgs/Image", got.append, qos=LATCHED)
+            await until(lambda: got)
+            assert got[0].data.tobytes() == bytes(range(250)) * 4_000
+
+    asyncio.run(main())
+
+
+def test_a_node_waits_for_its_bus_and_finds_it_again() -> None:
+    async def main() -> None:
+        async with Bus(0) as bus:
+            port = int(bus.address.rpartition(":")[2])
+        node = ros2.make_node(ros2.Settings(backend="bus", bus=f"127.0.0.1:{port}"))
+        async with opened(node):
+            heard: list[str] = []
+            node.subscribe("/chat", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
+            for n in range(2):
+                async with Bus(port) as bus, opened(on(bus)) as other:
+                    await until(lambda: bus.find("subscriber", "/chat"))  # of this round
+                    other.advertise("/chat", "std_msgs/String", qos=ALL).publish(f"round {n}")
+                    await until(lambda: f"round {n}" in heard)  # noqa: B023
+            assert heard == ["round 0", "round 1"]
+
+    asyncio.run(main())
+
+
+def test_other_types_and_addresses_are_refused_in_words(caplog: pytest.LogCaptureFixture) -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
+            one.subscribe("/chat", "std_msgs/Int32", print, qos=ALL)
+            await until(lambda: bus.find("subscriber", "/chat"))
+            other.advertise("/chat", "std_msgs/String", qos=ALL).publish("hello")
+            await until(lambda: "/chat carries std_msgs/msg/String, not std_msgs/msg/Int32" in caplog.text)
+        node = ros1.make_node(ros1.Settings(backend="bus", bus="here"))
+        with pytest.raises(PlatformError, match="write HOST:PORT"):
+            node.start()
+        with (
+            socket.create_server(("127.0.0.1", 0)) as taken,
+            pytest.raises(PlatformError, match="does another stand-in robot run"),
+        ):
+            async with Bus(taken.getsockname()[1]):
+                pass
+
+    async def limited() -> None:
+        async with asyncio.timeout(PATIENCE):
+            await main()
+
+    asyncio.run(limited())

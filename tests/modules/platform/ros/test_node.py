@@ -1,0 +1,290 @@
+"""Nodes against real nodes of rospy and rclpy in other processes."""
+
+import asyncio
+import logging
+import os
+import signal
+from typing import Any
+
+import numpy
+import pytest
+
+from modules.platform.ros.networks import Network, Ros1, Ros2, opened, until
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.ros import Node, quality
+
+ALL = quality(None, depth=1000, latch=False)
+LATCHED = quality("latched", depth=1, latch=True)
+
+
+async def echo(node: Node) -> list[str]:
+    """Send texts to the other node's /chat, and return what came back on /back."""
+    heard: list[str] = []
+    node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), latest=False, qos=ALL)
+    chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
+    await until(lambda: heard, lambda: chat.publish("are you there?"))
+    for n in range(3):
+        chat.publish({"data": f"text {n}"})
+    await until(lambda: "echo text 2" in heard)
+    return [text for text in heard if text.startswith("echo text")]
+
+
+async def numbers(node: Node, got: list[int], count: int) -> list[int]:
+    """Let the other node publish numbers, 1,000 a second; return those that arrived in `got`, from 0 on."""
+    burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
+    await until(lambda: got, lambda: burst.publish("-1 1 0"))
+    burst.publish(f"0 {count} 1000")
+    await until(lambda: got[-1] == count - 1)
+    return [n for n in got if n >= 0]
+
+
+def test_messages_go_there_and_come_back(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            assert await echo(node) == [f"echo text {n}" for n in range(3)]
+
+    either.run(main)
+
+
+def test_all_of_a_fast_topic_arrives_in_order(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            got: list[int] = []
+            node.subscribe(
+                "/numbers", "std_msgs/Int32", lambda message: got.append(message.data), latest=False, qos=ALL
+            )
+            node.subscribe(
+                "/numbers", "std_msgs/Int32", lambda message: None, qos=ALL
+            )  # one that skips skips for itself alone
+            assert await numbers(node, got, 400) == list(range(400))
+
+    either.run(main)
+
+
+def test_the_latest_of_a_fast_topic_replaces_those_that_wait(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            got: list[int] = []
+            node.subscribe("/numbers", "std_msgs/Int32", lambda message: got.append(message.data), rate=10, qos=ALL)
+            some = await numbers(node, got, 300)
+            assert len(some) < 15
+            assert some == sorted(some)
+
+    either.run(main)
+
+
+def test_images_come_in_shared_memory_without_a_copy_of_ours(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            got: list[Any] = []
+            node.subscribe("/images", "sensor_msgs/Image", got.append, latest=False, qos=ALL)
+            show = node.advertise("/show", "std_msgs/Int32", qos=ALL)
+            await until(lambda: len(got) >= 5, lambda: show.publish(2), 0.2)
+            image = got[0]
+            assert (image.height, image.width, image.encoding) == (480, 640, "rgb8")
+            assert image.data.shape == (640 * 480 * 3,) and image.data.dtype == numpy.uint8
+            assert not image.data.flags.owndata  # a view of the shared memory
+
+    either.run(main)
+
+
+def test_a_service_answers_and_a_silent_one_times_out(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            lamp = node.client("/lamp", "std_srvs/SetBool", timeout=10.0)
+            answer = await lamp.call({"data": True})
+            assert (answer.success, answer.message) == (True, "on")
+            answers = await asyncio.gather(*(lamp.call(bool(n % 2)) for n in range(6)))
+            assert [each.message for each in answers] == ["off", "on"] * 3
+            silent = node.client("/silent", "std_srvs/SetBool", timeout=0.2)
+            with pytest.raises(PlatformError, match=r"/silent did not answer within 0.2 s"):
+                await silent.call(True)
+            nobody = node.client("/nobody", "std_srvs/SetBool", timeout=0.2)
+            with pytest.raises(PlatformError, match="/nobody"):
+                await nobody.call(True)
+            with pytest.raises(PlatformError, match="has no field 'date'; did you mean 'data'"):
+                await lamp.call({"date": True})
+
+    either.run(main)
+
+
+def test_our_own_service_is_called_over_the_network(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+
+            async def serve(request: Any) -> dict[str, Any]:
+                return {"success": not request.data, "message": "ours"}
+
+            node.offer("/ours", "std_srvs/SetBool", serve)
+            answer = await node.client("/ours", "std_srvs/SetBool", timeout=10.0).call(False)
+            assert (answer.success, answer.message) == (True, "ours")
+
+    either.run(main)
+
+
+def test_a_killed_bridge_comes_back_with_all_its_channels(either: Network, caplog: pytest.LogCaptureFixture) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            heard: list[str] = []
+            node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
+            chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
+            sign = node.advertise("/sign", "std_msgs/String", latch=True, qos=LATCHED)
+            sign.publish("open")
+            await until(lambda: heard, lambda: chat.publish("before"))
+            call = asyncio.ensure_future(node.client("/silent", "std_srvs/SetBool", timeout=30.0).call(True))
+            await asyncio.sleep(0)
+            assert node.pid is not None
+            before = node.restarts
+            os.kill(node.pid, signal.SIGKILL)
+            with pytest.raises(PlatformError, match="killed by signal 9"):
+                await call
+            await until(lambda: "echo after" in heard, lambda: chat.publish("after"))
+            assert node.restarts == before + 1
+            signs: list[str] = []
+            node.subscribe("/sign", "std_msgs/String", lambda message: signs.append(message.data), qos=LATCHED)
+            await until(lambda: signs)  # what was latched is so again
+            assert signs == ["open"]
+
+    with caplog.at_level(logging.CRITICAL, "ravestate"):
+        either.run(main)
+
+
+def test_a_message_of_the_wrong_type_is_named_and_dropped(
+    ros1_network: Network, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def main() -> None:
+        async with ros1_network.lent() as node:
+            got: list[Any] = []
+            node.subscribe("/wrong", "std_msgs/String", got.append, qos=ALL)
+            await until(lambda: "std_msgs/Float32" in caplog.text)
+            assert not got
+
+    ros1_network.run(main)
+    assert "/wrong: /peer" in caplog.text and "write type='std_msgs/Float32'" in caplog.text
+
+
+def test_a_message_of_an_own_package_is_read_from_its_file(ros1_network: Network) -> None:
+    async def main() -> None:
+        async with ros1_network.lent() as node:
+            got: list[Any] = []
+            node.subscribe("/own", "robot_msgs/Reading", got.append, qos=ALL)
+            await until(lambda: got)
+            assert (got[0].value, got[0].unit) == (7, "warm")
+
+    ros1_network.run(main)
+
+
+def test_two_nodes_without_ros_speak_dds_with_an_own_package(ros2_network: Network) -> None:
+    async def main() -> None:
+        async with ros2_network.lent(backend="dds") as one, opened(ros2_network.node(backend="dds")) as other:
+            got: list[Any] = []
+            other.subscribe("/own", "robot_msgs/Reading", got.append, qos=ALL)
+            own = one.advertise("/own", "robot_msgs/Reading", qos=ALL)
+            await until(lambda: got, lambda: own.publish({"value": 7, "unit": "warm"}))
+            assert (got[0].value, got[0].unit) == (7, "warm")
+            client = one.client("/lamp", "std_srvs/SetBool", timeout=5.0)
+            with pytest.raises(PlatformError, match=r"DDS alone .* carries topics"):
+                await client.call(True)
+
+    ros2_network.run(main)
+
+
+def test_dds_speaks_with_a_real_node(ros2_network: Network) -> None:
+    async def main() -> None:
+        async with ros2_network.lent(backend="dds") as node:
+            assert await echo(node) == [f"echo text {n}" for n in range(3)]
+
+    ros2_network.run(main)
+
+
+def test_a_quality_of_service_that_does_not_fit_is_named(
+    ros2_network: Network, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def main() -> None:
+        async with ros2_network.lent() as node:
+            node.subscribe("/sensor", "std_msgs/Int32", print, qos=ALL)
+            await until(lambda: "qos='sensor_data'" in caplog.text)
+            got: list[Any] = []
+            node.subscribe("/sensor", "std_msgs/Int32", got.append, qos=quality("sensor_data", depth=1, latch=False))
+            await until(lambda: got)
+
+    ros2_network.run(main)
+
+
+def test_an_action_gives_feedback_and_a_result_and_is_cancelled(ros2_network: Network) -> None:
+    async def main() -> None:
+        async with ros2_network.lent() as node:
+            action = node.action("/count", "test_msgs/Fibonacci", timeout=10.0)
+            feedback: list[Any] = []
+            result = await action.call({"order": 6}, feedback.append)
+            assert list(result.sequence) == [0, 1, 1, 2, 3, 5]
+            assert feedback
+            cancelled: list[str] = []
+            node.subscribe(
+                "/cancelled", "std_msgs/String", lambda message: cancelled.append(message.data),
+                qos=LATCHED,
+            )  # fmt: skip
+            feedback.clear()
+            goal = asyncio.ensure_future(action.call(1000, feedback.append))
+            await until(lambda: feedback)
+            goal.cancel()
+            await until(lambda: cancelled)
+
+    ros2_network.run(main)
+
+
+def test_the_graph_names_topics_services_and_types(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            own = node.advertise("/only_ours", "std_msgs/String", qos=ALL)
+            found: dict[str, Any] = {}
+
+            async def look() -> None:
+                graph = await node.graph()
+                found.update({row["name"]: row for kind in ("topics", "services") for row in graph[kind]})
+
+            while not found.get("/lamp", {}).get("servers") or not found.get("/back", {}).get("publishers"):
+                await look()
+            assert found["/back"]["publishers"] == 1
+            assert found["/back"]["types"] in (["std_msgs/String"], ["std_msgs/msg/String"])
+            assert found["/lamp"]["types"] in (["std_srvs/SetBool"], ["std_srvs/srv/SetBool"])
+            assert found["/lamp"]["servers"] == 1
+            assert found.get(own.name, {"publishers": 0})["publishers"] == 0  # others alone count
+
+    either.run(main)
+
+
+def test_a_killed_master_and_a_killed_peer_come_back(caplog: pytest.LogCaptureFixture) -> None:
+    network = Ros1()
+
+    async def main() -> None:
+        async with opened(network.node()) as node:
+            heard: list[str] = []
+            node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
+            chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
+            await asyncio.to_thread(network.start_peer)
+            await until(lambda: heard, lambda: chat.publish("one"))
+            network.stop()
+            await until(lambda: "master" in caplog.text and "is gone" in caplog.text)
+            network.start_master()
+            await asyncio.to_thread(network.start_peer)
+            heard.clear()
+            await until(lambda: heard, lambda: chat.publish("two"))
+            assert heard[0] == "echo two"
+
+    try:
+        asyncio.run(main())
+    finally:
+        network.stop()
+
+
+def test_without_ros_the_error_says_what_to_install() -> None:
+    async def main(network: type[Ros1] | type[Ros2]) -> None:
+        settings = network.module.Settings(python="/nowhere/python")
+        node = network.module.make_node(settings)
+        with pytest.raises(PlatformError, match="/nowhere/python"):
+            await node.graph()
+        await node.close()
+
+    for network in (Ros1, Ros2):
+        asyncio.run(main(network))

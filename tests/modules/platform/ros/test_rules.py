@@ -1,0 +1,93 @@
+"""The rule that connects a context, and the simulation's clock, on the built-in bus."""
+
+import asyncio
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.platform.ros.networks import PATIENCE, pause, until
+from ravestate.modules import ros2
+from ravestate.modules.platform.ros import Bus, quality
+
+ALL = quality(None, depth=10, latch=False)
+
+
+def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_halted() -> None:
+    agent = rs.Module("agent", requires=[ros2])
+    go = agent.signal("go", input=True)
+    waited: list[float] = []
+
+    @agent.rule(when=go.min_age(30.0).max_age(60.0))
+    async def late(ctx: rs.RuleContext) -> None:
+        waited.append(ctx.now)
+
+    async def main() -> None:
+        async with Bus(0) as bus, asyncio.timeout(PATIENCE):
+            settings = {"backend": "bus", "bus": bus.address}
+            world = ros2.make_node(ros2.Settings(**settings))
+            clock = world.advertise("/clock", "rosgraph_msgs/Clock", qos=ALL)
+            async with rs.Context(agent, settings={"ros2": {**settings, "use_sim_time": True}}) as context:
+
+                def at(seconds: int) -> None:
+                    clock.publish({"clock": {"sec": seconds, "nanosec": 500_000_000}})
+
+                await until(lambda: context.read(ros2.node))
+                await until(lambda: bus.find("subscriber", "/clock"))
+                at(100)
+                start = context.now
+                await pause(0.05)
+                begun = context.now
+                assert begun >= start
+                await pause(0.05)
+                assert context.now == begun  # halted: no message, no time
+                context.emit(go)
+                at(129)
+                await until(lambda: context.now == pytest.approx(begun + 29))
+                assert not waited
+                at(131)  # a minute in an instant: any speed
+                await until(lambda: waited)
+                assert waited == [pytest.approx(begun + 31)]
+                at(3)
+                at(5)
+                await until(lambda: context.now == pytest.approx(begun + 33))
+            await world.close()
+
+    asyncio.run(main())
+
+
+def test_an_agent_without_ros_ends_with_what_to_install() -> None:
+    agent = rs.Module("agent", requires=[ros2])
+    ros2.publisher(agent, "chat", topic="/chat", type="std_msgs/String")
+
+    async def main() -> None:
+        settings = {"ros2": {"python": "/nowhere/python", "backend": "rclpy"}}
+        async with rs.Context(agent, settings=settings) as context, asyncio.timeout(PATIENCE):
+            with pytest.raises(rs.PlatformError, match="/nowhere/python"):
+                await context.until_stopped()
+
+    asyncio.run(main())
+
+
+def test_the_last_words_of_an_agent_still_leave() -> None:
+    agent = rs.Module("agent", requires=[ros2])
+    chat = ros2.publisher(agent, "chat", topic="/chat", type="std_msgs/String")
+
+    @agent.rule(when=rs.shutdown, writes=chat)
+    async def leave(ctx: rs.RuleContext) -> None:
+        ctx[chat] = {"data": "goodbye"}
+
+    async def main() -> None:
+        async with Bus(0) as bus, asyncio.timeout(PATIENCE):
+            settings = {"backend": "bus", "bus": bus.address}
+            world = ros2.make_node(ros2.Settings(**settings))
+            heard: list[Any] = []
+            world.subscribe("/chat", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
+            await until(lambda: bus.find("subscriber", "/chat"))
+            async with rs.Context(agent, settings={"ros2": settings}):
+                await until(lambda: bus.find("publisher", "/chat"))
+            await until(lambda: heard)
+            assert heard == ["goodbye"]
+            await world.close()
+
+    asyncio.run(main())

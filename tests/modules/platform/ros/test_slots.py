@@ -1,0 +1,216 @@
+"""Slots that are topics, services and actions, in whole agents on real networks."""
+
+import asyncio
+import logging
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.platform.ros.networks import Network, the_loop, until
+from ravestate.modules import ros1, ros2
+from ravestate.testing import simulate
+
+
+class Everything:
+    """One agent that is on ROS 1 and ROS 2 at once. The tests of this file share it."""
+
+    def __init__(self) -> None:
+        agent = self.module = rs.Module("agent")
+        self.heard: dict[int, list[str]] = {1: [], 2: []}
+        self.lit: dict[int, list[str]] = {1: [], 2: []}
+        self.fed: list[Any] = []
+        self.failures: list[str] = []
+        self.ended: list[str] = []
+        self.results: list[list[int]] = []
+        self.interrupted: list[bool] = []
+        self.ticked: list[float] = []
+        self.back: dict[int, rs.Slot[Any]] = {}
+        self.chat: dict[int, rs.Slot[Any]] = {}
+        self.silent: dict[int, Any] = {}
+        for version, ros in ((1, ros1), (2, ros2)):
+            self._talk(version, ros)
+        self.tick = agent.signal("tick", input=True)
+        self.go = {way: agent.signal(f"go_{n}", input=True) for n, way in enumerate((*WAYS, "to the end"))}
+        self.stop = agent.signal("stop", input=True)
+        options = {"action": "/count", "type": "test_msgs/Fibonacci", "timeout": 15}
+        self.count: Any = ros2.action(agent, "count", **options)
+        self.guarded: Any = ros2.action(agent, "guarded", **options, until=self.stop)
+
+        cancelled = ros2.subscriber(agent, "cancelled", topic="/cancelled", type="std_msgs/String", latch=True)
+
+        @agent.rule(when=cancelled.changed)
+        async def end(ctx: rs.RuleContext) -> None:
+            self.ended.append(ctx.payload(cancelled.changed).data)
+
+        @agent.rule(when=self.tick)
+        async def note(ctx: rs.RuleContext) -> None:
+            self.ticked.append(ctx.now)
+
+        @agent.rule(when=self.go["the writer's until"], writes=self.count, until=self.stop)
+        async def start(ctx: rs.RuleContext) -> None:
+            ctx[self.count] = {"order": 1000}
+
+        @agent.rule(when=self.go["the slot's until"], writes=self.guarded)
+        async def start_guarded(ctx: rs.RuleContext) -> None:
+            ctx[self.guarded] = {"order": 1000}
+
+        @agent.rule(when=self.go["perform"], writes=self.count, until=self.stop)
+        async def perform(ctx: rs.RuleContext) -> None:
+            try:
+                await ros2.perform(ctx, self.count, {"order": 1000})
+            except asyncio.CancelledError:
+                self.interrupted.append(True)
+                raise
+
+        @agent.rule(when=self.go["to the end"], writes=self.count)
+        async def finish(ctx: rs.RuleContext) -> None:
+            result = await ros2.perform(ctx, self.count, {"order": 5})
+            self.results.append(list(result.sequence))
+
+        @agent.rule(when=self.count.feedback | self.guarded.feedback)
+        async def follow(ctx: rs.RuleContext) -> None:
+            self.fed.append(ctx.now)
+
+        @agent.rule(when=self.count.failed)
+        async def fail(ctx: rs.RuleContext) -> None:
+            self.failures.append(ctx.payload(self.count.failed))
+
+    def _talk(self, version: int, ros: Any) -> None:
+        agent = self.module
+        # The settings make /back and /chat of these names.
+        back = self.back[version] = ros.subscriber(
+            agent, f"back{version}", topic="answers", type="std_msgs/String", keep="all"
+        )
+        self.chat[version] = ros.publisher(agent, f"chat{version}", topic="~ask", type="std_msgs/String")
+        lamp = ros.service(agent, f"lamp{version}", service="/lamp", type="std_srvs/SetBool", timeout=10)
+        self.silent[version] = ros.service(
+            agent, f"silent{version}", service="/silent", type="std_srvs/SetBool", timeout=0.3
+        )
+
+        @agent.rule(when=back.changed, writes=lamp, name=f"switch{version}")
+        async def switch(ctx: rs.RuleContext) -> None:
+            self.heard[version].append(ctx.payload(back.changed).data)
+            ctx[lamp] = {"data": True}
+
+        @agent.rule(when=lamp.changed, name=f"light{version}")
+        async def light(ctx: rs.RuleContext) -> None:
+            self.lit[version].append(ctx.payload(lamp.changed).message)
+
+
+WAYS = ["the writer's until", "the slot's until", "perform"]
+NAMES = {"namespace": "/robot", "remap": {"answers": "/back", "~ask": "/chat"}}
+
+
+@pytest.fixture(scope="module")
+def running(ros1_network: Network, ros2_network: Network) -> Iterator[tuple[Everything, rs.Context]]:
+    agent = Everything()
+    settings = {
+        "ros1": {**ros1_network.settings["ros1"], **NAMES}, "ros2": {**ros2_network.settings["ros2"], **NAMES},
+    }  # fmt: skip
+    context = rs.Context(agent.module, settings=settings)
+    the_loop().run(context.start())
+    yield agent, context
+    the_loop().run(context.stop())
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_text_in_on_a_topic_answers_on_another_and_calls_a_service(
+    running: tuple[Everything, rs.Context], ros1_network: Network, version: int
+) -> None:
+    agent, context = running
+
+    async def main() -> None:
+        await until(lambda: agent.heard[version], lambda: context.put(agent.chat[version], {"data": "hello"}), 0.3)
+        await until(lambda: agent.lit[version])
+        assert (agent.heard[version][0], agent.lit[version][0]) == ("echo hello", "on")
+        assert context.read(agent.back[version]).data == "echo hello"
+
+    ros1_network.run(main)
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_a_silent_service_fails_and_holds_nothing_up(
+    running: tuple[Everything, rs.Context], ros1_network: Network, version: int, caplog: pytest.LogCaptureFixture
+) -> None:
+    agent, context = running
+    silent = agent.silent[version]
+
+    async def main() -> None:
+        failure = asyncio.ensure_future(context.next(silent.failed))
+        await asyncio.sleep(0)
+        agent.ticked.clear()
+        context.put(silent, True)
+        await until(failure.done, lambda: context.emit(agent.tick))
+        assert "did not answer within 0.3 s" in await failure
+        assert len(agent.ticked) > 3
+
+    with caplog.at_level(logging.CRITICAL, "ravestate"):
+        ros1_network.run(main)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_until_cancels_the_goal_of_an_action(
+    running: tuple[Everything, rs.Context], ros2_network: Network, way: str
+) -> None:
+    agent, context = running
+
+    async def main() -> None:
+        for told in (agent.fed, agent.failures, agent.interrupted, agent.ended):
+            told.clear()
+        context.emit(agent.go[way])
+        await until(lambda: agent.fed)
+        context.emit(agent.stop)
+        await until(lambda: agent.ended)  # the server was asked to stop, and did
+        if way == "the writer's until":
+            await until(lambda: agent.failures)
+            assert agent.failures == ["the goal was cancelled"]
+        assert agent.interrupted == ([True] if way == "perform" else [])
+
+    ros2_network.run(main)
+
+
+def test_the_result_of_an_action_is_a_change(running: tuple[Everything, rs.Context], ros2_network: Network) -> None:
+    agent, context = running
+
+    async def main() -> None:
+        changed = asyncio.ensure_future(context.next(agent.count.changed))
+        await asyncio.sleep(0)
+        context.emit(agent.go["to the end"])
+        assert list((await changed).sequence) == [0, 1, 1, 2, 3]
+        await until(lambda: agent.results)
+        assert agent.results == [[0, 1, 1, 2, 3]]
+
+    ros2_network.run(main)
+
+
+def test_in_virtual_time_slots_are_written_by_the_test_and_nothing_connects() -> None:
+    agent = rs.Module("agent", requires=[ros2])
+    chat = ros2.subscriber(agent, "chat", topic="/chat", type="std_msgs/String")
+    answer = ros2.publisher(agent, "answer", topic="/answer", type="std_msgs/String")
+
+    @agent.rule(when=chat.changed, writes=answer)
+    async def reply(ctx: rs.RuleContext) -> None:
+        ctx[answer] = {"data": ctx.payload(chat.changed)["data"].upper()}
+
+    with simulate(agent) as sim:
+        sim.put(chat, {"data": "hello"})
+        assert sim.read(answer) == {"data": "HELLO"}
+        assert sim.read(ros2.node) is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"type": "String"}, "write PACKAGE/NAME"),
+        ({"keep": "newest"}, "keep='latest' or keep='all'"),
+        ({"rate": 0}, "rate=0 must be a number"),
+        ({"qos": "sensor"}, "qos='sensor' is no profile"),
+        ({"qos": {"dept": 3}}, "did you mean 'depth'"),
+        ({"qos": {"reliability": "good"}}, "'reliable' or 'best_effort'"),
+    ],
+)
+def test_a_wrong_argument_is_refused_where_it_is_declared(wrong: dict[str, Any], words: str) -> None:
+    with pytest.raises(rs.DeclarationError, match=words):
+        ros2.subscriber(rs.Module("agent"), "chat", **{"topic": "/chat", "type": "std_msgs/String", **wrong})
