@@ -10,7 +10,7 @@ from asyncio.tasks import _enter_task, _leave_task  # pyright: ignore[reportPriv
 from collections.abc import Callable, Mapping
 from threading import get_ident
 from time import perf_counter
-from typing import Any
+from typing import Any, Final
 
 from ravestate.declare.rule import Rule
 from ravestate.declare.wording import said, short
@@ -31,12 +31,12 @@ from ravestate.runtime.waits import Waits
 
 ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
 
-BATCH = 512
+BATCH: Final = 512
 """The number of rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
 
-TURN = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
+TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
-SETTLES = 64
+SETTLES: Final = 64
 """How often a task may wait for a signal without a turn of the loop (`Runner.settle`), until the loop gets a turn."""
 
 ENDED = "the context has ended"
