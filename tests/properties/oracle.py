@@ -278,6 +278,8 @@ def empty(play: Play) -> None:
         "free",
     ):
         assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
+    assert not engine.agenda.queue
+    assert not engine.agenda.places
     assert engine.next_deadline() is None
     assert len(engine.state.deadlines) == 0
     assert engine.state.busy == 0

@@ -12,6 +12,7 @@ in this instant.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Iterable
 
 from ravestate.engine.activation import READY, WAITING, Activation
 from ravestate.engine.consent import Consent
@@ -31,7 +32,7 @@ Turn = tuple[int, float, int, int, Activation]
 class Agenda:
     """The part of the engine that decides which ready activations start."""
 
-    __slots__ = ("breakers", "consent", "queue", "runs", "slots", "state")
+    __slots__ = ("breakers", "consent", "places", "queue", "recovering", "runs", "slots", "state", "time")
 
     def __init__(self, state: State, runs: Runs, slots: Slots, consent: Consent) -> None:
         self.state = state
@@ -40,6 +41,12 @@ class Agenda:
         self.consent = consent
         self.queue: list[Turn] = []
         """The activations that ask in this instant, the best first."""
+        self.places: dict[Activation, Turn] = {}
+        """Activation in the queue → its place there; its other places do not count."""
+        self.recovering = False
+        """Whether time changes the order of the queue, because rules with a cooldown are in it."""
+        self.time = 0.0
+        """The time of the order (seconds)."""
         self.breakers: list[tuple[tuple[float, int, int], Activation]] = []
         """The activations that wait for nothing but each other, the best first."""
 
@@ -67,49 +74,45 @@ class Agenda:
         If a rule has just started, an activation that reads one of its slots asks in the next round instead. So the
         activation sees the values that this rule writes before it suspends.
         """
-        state, queue = self.state, self.queue
+        state, queue, places = self.state, self.queue, self.places
         state.standing.now = state.now
         asking = self.consent.holdings.waits.wake()
-        for entry in queue:  # the places of those left may have changed since the last round
-            if entry[4].state in (READY, WAITING):
-                asking[entry[4]] = None
-        queue.clear()
-        if len(asking) == 1:
-            queue += [(0, 0.0, 0, 0, activation) for activation in asking]
+        if not queue and len(asking) == 1:
+            for activation in asking:
+                if self._may_ask(activation) and self._has_consent(activation):
+                    self.runs.start(activation)
         else:
-            queue += [self._turn(activation) for activation in asking]
-            heapq.heapify(queue)
+            self._line_up(asking)
         written: set[int] = set()
         later: list[Turn] = []
         while queue:
-            entry = heapq.heappop(queue)
-            activation = entry[4]
-            clause = activation.clause
-            if activation.state not in (READY, WAITING) or (clause.guards and not self._is_open(activation)):
+            turn = heapq.heappop(queue)
+            activation = turn[4]
+            if places.get(activation) is not turn:
+                continue  # it has another place by now
+            del places[activation]
+            if not self._may_ask(activation):
                 continue
-            if state.loops.runs > MANY and activation.state is READY and state.loops.defer(activation):
-                continue
-            rule = clause.rule
+            rule = activation.clause.rule
             if written and not rule.readable.isdisjoint(written):
                 if _is_taken(activation):
-                    later.append(entry)  # by the next round it waits, or has lost its spike
+                    later.append(turn)  # by the next round it waits, or has lost its spike
                 elif self._has_consent(activation):
-                    later.append(entry)
+                    later.append(turn)
                     break
             elif self._has_consent(activation):
                 self.runs.start(activation)
                 written.update(rule.slots)
-        for entry in later:
-            heapq.heappush(queue, entry)
+        for turn in later:
+            heapq.heappush(queue, turn)
+            places[turn[4]] = turn
         if not (queue or state.asking or state.dirty or state.stirred or state.acts or state.free):
             self._break_stalemate()
 
     def settle_flags(self) -> bool:
         """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
         state = self.state
-        pressure = False
-        if state.alternatives or state.waiting:
-            pressure = any([not a.clause.reflexive for a in (*state.alternatives, *state.waiting)])
+        pressure = _presses(state.waiting) or _presses(state.alternatives)
         if pressure != state.values.get(state.pressure.index, False):
             self.slots.set_flag(state.pressure, pressure)
             return True
@@ -118,6 +121,33 @@ class Agenda:
             self.slots.set_flag(state.activity, activity)
             return True
         return False
+
+    def _line_up(self, asking: dict[Activation, None]) -> None:
+        """Give activations their places in the queue. If the order has changed, all get new places."""
+        state, queue, places = self.state, self.queue, self.places
+        if state.reordered or (self.recovering and state.now != self.time):
+            asking.update(dict.fromkeys(places))
+            queue.clear()
+            places.clear()
+        state.reordered = False
+        self.time = state.now
+        self.recovering = self.recovering and bool(queue)
+        for activation in asking:
+            if activation.state in (READY, WAITING):
+                turn = self._turn(activation)
+                if places.get(activation) != turn:
+                    places[activation] = turn
+                    heapq.heappush(queue, turn)
+                    self.recovering = self.recovering or activation.clause.rule.cooldown > 0
+
+    def _may_ask(self, activation: Activation) -> bool:
+        """Return whether an activation asks: it is ready, and its turn in a loop is not one too many (L23)."""
+        if activation.state not in (READY, WAITING):
+            return False
+        if activation.clause.guards and not self._is_open(activation):
+            return False
+        loops = self.state.loops
+        return not (loops.runs > MANY and activation.state is READY and loops.defer(activation))
 
     def _has_consent(self, activation: Activation) -> bool:
         """Return whether an activation has consent; if it has not, it waits."""
@@ -171,3 +201,11 @@ def _is_taken(activation: Activation) -> bool:
     """Return whether one of the activation's slots is taken in each of its groups."""
     slots = activation.clause.rule.slotset
     return all([not group.taken.keys().isdisjoint(slots) for group in activation.firm_groups()])
+
+
+def _presses(activations: Iterable[Activation]) -> bool:
+    """Return whether an activation counts for ``core:pressure``: one that hears a built-in flag does not."""
+    for activation in activations:
+        if not activation.clause.reflexive:
+            return True
+    return False

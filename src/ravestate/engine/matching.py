@@ -75,6 +75,7 @@ class Matching:
         self._offer_again(root)
         state.dirty.pop(merged, None)
         state.dirty[root] = None
+        state.reordered = True
         return root
 
     def _offer_again(self, group: Group) -> None:

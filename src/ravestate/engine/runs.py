@@ -169,6 +169,7 @@ class Runs:
         """Note that a rule with a cooldown has run: the activations whose order this changes ask again (L9, L15)."""
         state = self.state
         state.ran[rule.index] = state.now
+        state.reordered = True
         for waiter in state.waiting:
             if waiter.clause.rule is rule or (waiter.refusal is not None and rule.name in waiter.refusal.names):
                 state.asking[waiter] = None

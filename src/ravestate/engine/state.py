@@ -74,6 +74,7 @@ class State:
         "pressure",
         "ran",
         "refused",
+        "reordered",
         "retired",
         "running",
         "spikes",
@@ -116,6 +117,8 @@ class State:
         """The ready activations that need no consent."""
         self.asking: dict[Activation, None] = {}
         """The ready or waiting activations that are about to ask for consent."""
+        self.reordered = False
+        """Whether the order of those that ask has changed: groups have merged, or a rule must recover."""
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
