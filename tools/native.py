@@ -11,7 +11,9 @@ import contextlib
 import importlib.util
 import os
 import shutil
+import subprocess
 import sys
+import sysconfig
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -67,7 +69,11 @@ def compile_modules() -> Path:
         with tempfile.TemporaryDirectory() as temporary:
             os.environ["CFLAGS"] = f"{os.environ.get('CFLAGS', '')} -O2 -g0 -w"
             extensions = mypycify(
-                ["--config-file=pyproject.toml", f"--cache-dir={temporary}/cache", *(f"src/ravestate/{m}" for m in MODULES)],
+                [
+                    "--config-file=pyproject.toml",
+                    f"--cache-dir={temporary}/cache",
+                    *(f"src/ravestate/{m}" for m in MODULES),
+                ],
                 opt_level="2",
                 debug_level="0",
                 target_dir=f"{temporary}/c",
@@ -101,16 +107,48 @@ class Hook(BuildHookInterface):
             }
 
 
+def can_compile() -> bool:
+    """Return whether there is a C compiler and Python's headers; on Debian, install them first."""
+    command = (os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc").split()[0]
+    headers = Path(sysconfig.get_path("include"), "Python.h")
+    if not (shutil.which(command) and headers.exists()):
+        packages = ["gcc", "libc6-dev"] + ["python3-dev"] * sysconfig.get_path("include").startswith("/usr/include")
+        subprocess.run([ROOT / "tools" / "debian", "Compiling the engine", *packages], check=False)
+    return bool(shutil.which(command)) and headers.exists()
+
+
+def try_to_compile() -> None:
+    """Compile the modules in place if that is possible; if not, say why the sources run as pure Python."""
+    if is_fresh(load_compiled()):
+        return
+    why = "there is no C compiler, or Python's headers are missing"
+    if can_compile():
+        print("Compiling the engine (about a minute) ...", flush=True)
+        log = ROOT / ".venv" / "native.log"
+        with log.open("w", encoding="utf-8") as file:
+            done = subprocess.run([sys.executable, __file__], stdout=file, stderr=file, check=False)
+        if not done.returncode:
+            return
+        why = f"compiling failed, see {log.relative_to(ROOT)}"
+    print(f"The engine runs as pure Python, which is slower: {why}.")
+
+
 def main() -> int:
     """Compile the modules in place; exit code 1 if that fails."""
-    parser = argparse.ArgumentParser(description="Compile the modules on the path of an event, unless they are compiled.")
+    parser = argparse.ArgumentParser(
+        description="Compile the modules on the path of an event, unless they are compiled."
+    )
     parser.add_argument("--check", action="store_true", help="only say, by exit code 0 or 1, whether they are compiled")
+    parser.add_argument("--try", action="store_true", dest="soft", help="if it is impossible, say so, with exit code 0")
     parser.add_argument("--remove", action="store_true", help="remove the compiled modules, for all interpreters")
     options = parser.parse_args()
     if options.check:
         return not is_fresh(load_compiled())
     if options.remove:
         shutil.rmtree(SOURCE / "native", ignore_errors=True)
+        return 0
+    if options.soft:
+        try_to_compile()
         return 0
     compile_modules()
     return 0

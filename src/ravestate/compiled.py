@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import sys
 import zlib
+from collections.abc import Iterable, MutableSequence
 from functools import cache
 from importlib.machinery import EXTENSION_SUFFIXES
 
@@ -24,7 +25,7 @@ PURE = "pure Python"
 STALE = "pure Python: the sources have changed since they were compiled"
 
 
-def checksum(names: list[str]) -> str:
+def checksum(names: Iterable[str]) -> str:
     """Return a checksum of source files; their names are relative to the package's folder."""
     found = 0
     for name in names:
@@ -50,7 +51,7 @@ def build() -> str:
     return COMPILED
 
 
-def prefer(path: list[str]) -> None:
+def prefer(path: MutableSequence[str]) -> None:
     """Put the compiled modules of a package before its sources; `path` is the package's ``__path__``."""
     if build() == COMPILED:
         path.insert(0, os.path.join(PLACE, os.path.basename(path[0])))

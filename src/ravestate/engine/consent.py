@@ -216,7 +216,7 @@ class Consent:
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                 found.setdefault(theirs, []).append(member)
         for rule in rules:
-            for theirs in self.state.policy.causes.downstream(rule):
+            for theirs in self.state.causes.downstream(rule):
                 if theirs.base < worth:
                     break  # the best clauses come first, and a cooldown only lowers a utility
                 if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):

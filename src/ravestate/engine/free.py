@@ -30,7 +30,7 @@ class Free:
         new, line, between = self.new, self.line, self._between
         if len(new) == 1 and not line:
             activation = new.pop()
-            return activation if activation.state is READY else None
+            return activation if activation.state == READY else None
         for activation in new:
             self._join(activation)
         new.clear()
@@ -42,7 +42,7 @@ class Free:
             activation = place[3]
             if activation.place is place:  # else it was added again since
                 activation.place = None
-                if activation.state is READY:
+                if activation.state == READY:
                     return activation
         return None
 

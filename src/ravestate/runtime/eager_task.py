@@ -34,7 +34,19 @@ class EagerTask:
         abandoned: Whether the task is to end although its coroutine does not end.
     """
 
-    __slots__ = ("_clean", "_context", "_loop", "_send", "abandoned", "driver", "first", "rule", "task", "timer", "wake")
+    __slots__ = (
+        "_clean",
+        "_context",
+        "_loop",
+        "_send",
+        "abandoned",
+        "driver",
+        "first",
+        "rule",
+        "task",
+        "timer",
+        "wake",
+    )
 
     def __init__(self, loop: asyncio.AbstractEventLoop, timer: StepTimer, variables: contextvars.Context) -> None:
         self._loop = loop

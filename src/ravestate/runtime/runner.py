@@ -89,7 +89,7 @@ class Runner:
         self._closing = False
         self._instant = -1.0
         self._rounds = 0  # how many rounds of effects there were in the current instant
-        self._last_run = ""
+        self._last_run: Rule[Any, Any] | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
 
@@ -114,11 +114,28 @@ class Runner:
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
         """Raise a signal for a run, or for code outside (None). Any thread may call this."""
-        self.receive(Emit(signal, payload, run))
+        if self._takes_the_short_way():
+            self._engine.emit(signal, payload, run)
+        else:
+            self.receive(Emit(signal, payload, run))
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
         """Write a slot for a run, or for code outside (None). Any thread may call this."""
-        self.receive(Write(slot, value, run))
+        if self._takes_the_short_way():
+            self._engine.write(slot, value, run)
+        else:
+            self.receive(Write(slot, value, run))
+
+    def _takes_the_short_way(self) -> bool:
+        """Prepare the engine for an event without a record, and return True; or return False, for `receive`."""
+        if self._journal is not None or self.closed or get_ident() != self._home:
+            return False
+        if self._pumping:
+            self._engine.pass_time(self._instant)
+        else:
+            self._engine.pass_time(self.clock.now())
+            self._schedule()
+        return True
 
     def receive(self, event: Event) -> None:
         """Give the engine an event. Any thread may call this."""
@@ -212,7 +229,7 @@ class Runner:
         self._instant = began
         if self._hooks.on_endless is not None and (self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20):
             self.closed = True
-            self._hooks.on_endless(self._last_run)
+            self._hooks.on_endless("" if self._last_run is None else self._last_run.name)
             return False
         some = False
         self._pumping = True
@@ -371,7 +388,7 @@ class Runner:
         if self._closing:
             return
         rule = effect.rule
-        self._last_run = rule.name
+        self._last_run = rule
         ctx = self._contexts[effect.run] = RuleContext(self, effect)
         if rule.is_async:
             self._async.start(ctx)
@@ -385,10 +402,13 @@ class Runner:
         known = self._contexts.pop(ctx.run, None)
         if known is not None and not self.closed:
             ctx.ended = "the function has returned"
-            outcome = result if exception is None else exception
-            if ctx.cancelled and isinstance(outcome, asyncio.CancelledError):
-                outcome = None
-            self.receive(ending(ctx.run, ctx.rule, outcome, exception is not None))
+            if result is None and exception is None and self._takes_the_short_way():
+                self._engine.done(ctx.run)
+            else:
+                outcome = result if exception is None else exception
+                if ctx.cancelled and isinstance(outcome, asyncio.CancelledError):
+                    outcome = None
+                self.receive(ending(ctx.run, ctx.rule, outcome, exception is not None))
         if self._is_virtual and not ctx.rule.is_async:
             self._schedule()
 
