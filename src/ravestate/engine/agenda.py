@@ -89,7 +89,7 @@ class Agenda:
         while queue:
             turn = heapq.heappop(queue)
             activation = turn[4]
-            if places.get(activation) is not turn:
+            if places.get(activation) != turn:
                 continue  # it has another place by now
             del places[activation]
             if not self._may_ask(activation):

@@ -40,7 +40,7 @@ class Free:
                 line.extend(sorted(between))
                 between.clear()
             activation = place[3]
-            if activation.place is place:  # else it was added again since
+            if activation.place == place:  # else it was added again since
                 activation.place = None
                 if activation.state == READY:
                     return activation
