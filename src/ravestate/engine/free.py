@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import heapq
 from collections import deque
+from typing import Final
 
 from ravestate.engine.activation import READY, Activation
 
 Place = tuple[int, int, int, Activation]
+
+
+EMPTY: Final[deque[Place]] = deque()
+"""The line of a queue that has needed none. Nothing writes into it."""
 
 
 class Free:
@@ -22,7 +27,7 @@ class Free:
 
     def __init__(self) -> None:
         self.new: list[Activation] = []
-        self.line: deque[Place] = deque()
+        self.line: deque[Place] = EMPTY
         self._between: list[Place] = []  # a heap
 
     def pop(self) -> Activation | None:
@@ -31,6 +36,10 @@ class Free:
         if len(new) == 1 and not line:
             activation = new.pop()
             return activation if activation.state == READY else None
+        if not (new or line):
+            return None
+        if line is EMPTY:
+            line = self.line = deque()
         for activation in new:
             self._join(activation)
         new.clear()

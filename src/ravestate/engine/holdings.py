@@ -292,12 +292,12 @@ class Holdings:
             count = group.members.get(activation, 0)
             if count > 1:
                 group.members[activation] = count - 1
-            else:
-                group.members.pop(activation, None)
+            elif count:
+                del group.members[activation]
             if group.interested:
                 state.dirty[group] = None
         if spike not in activation.spikes:
-            spike.holders.pop(activation, None)
+            del spike.holders[activation]
             if not (spike.holders or spike.entries):
                 self.entries.forget(spike)
         if reason and state.tracer is not None:

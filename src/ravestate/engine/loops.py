@@ -67,7 +67,7 @@ class Loops:
     def __init__(self) -> None:
         self.runs = self.late = self._turns = 0
         self._next: Activation | None = None
-        self.deferred: deque[Activation] = deque()
+        self.deferred: deque[Activation] | None = None
         self._instant = 0
         self._named: set[int] = set()
 
@@ -89,6 +89,8 @@ class Loops:
         rule = activation.clause.rule.index
         over = any(rule in line.rules for line in self._lines(activation))
         if over:
+            if self.deferred is None:
+                self.deferred = deque()
             self.deferred.append(activation)
         return over
 

@@ -12,12 +12,17 @@ import asyncio
 import contextvars
 from asyncio.tasks import _enter_task, _leave_task  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
 from collections.abc import Callable, Generator
-from typing import Any
+from typing import Any, Final
 
 from ravestate.declare.rule import Rule
 from ravestate.runtime.blocking import StepTimer
 from ravestate.runtime.coroutines import DONE, Done, drive, host, main
 from ravestate.runtime.rule_context import RuleContext
+
+ENTER: Final = _enter_task  # the compiled build finds a constant at once, and looks an import up each time
+LEAVE: Final = _leave_task
+END: Final = DONE
+KIND: Final = Done
 
 
 class EagerTask:
@@ -79,7 +84,7 @@ class EagerTask:
             BaseException: The function has failed with this exception. The spare task is free, as above.
         """
         rule = ctx.rule
-        _enter_task(self._loop, self.task)
+        ENTER(self._loop, self.task)
         began = self.timer.begin()
         try:
             first = self._context.run(self._send, ctx)
@@ -87,11 +92,9 @@ class EagerTask:
             self._renew()
             raise
         finally:
-            _leave_task(self._loop, self.task)
+            LEAVE(self._loop, self.task)
             self.timer.end(rule, began)
-        if first is DONE:
-            return DONE
-        if type(first) is Done:
+        if first is END or type(first) is KIND:
             return first
         self.first = first
         self.rule = rule

@@ -41,6 +41,8 @@ SETTLES: Final = 64
 
 ENDED = "the context has ended"
 
+THREAD: Final = get_ident  # the compiled build finds a constant at once, and looks an import up each time
+
 log = logging.getLogger("ravestate")
 
 
@@ -78,7 +80,7 @@ class Runner:
         self._home = get_ident()  # the number of the loop's thread
         self._seed = seed
         self._random: random.Random | None = None
-        self._contexts: dict[int, RuleContext] = {}
+        self._contexts: dict[int, RuleContext] = {}  # the runs that did not end at once
         self._async = AsyncRules(loop, self._finish, self._drop, self._pump)
         self._plain: PlainRules | None = None  # made for the first plain function
         self._todo: list[Effect] = []  # the effects that are still to be performed, the next one last
@@ -128,7 +130,7 @@ class Runner:
 
     def _takes_the_short_way(self) -> bool:
         """Prepare the engine for an event without a record, and return True; or return False, for `receive`."""
-        if self._journal is not None or self.closed or get_ident() != self._home:
+        if self._journal is not None or self.closed or THREAD() != self._home:
             return False
         if self._pumping:
             self._engine.pass_time(self._instant)
@@ -387,20 +389,23 @@ class Runner:
     def _run(self, effect: Run) -> None:
         if self._closing:
             return
-        rule = effect.rule
-        self._last_run = rule
-        ctx = self._contexts[effect.run] = RuleContext(self, effect)
+        rule = self._last_run = effect.rule
+        ctx = RuleContext(self, effect)
         if rule.is_async:
             self._async.start(ctx)
+            if not ctx.ended:
+                self._contexts[effect.run] = ctx
         else:
+            self._contexts[effect.run] = ctx
             if self._plain is None:
                 self._plain = PlainRules(self.loop, self._finish)
             self._plain.start(ctx)
 
     def _finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
         """Report to the engine how a run has ended (L18)."""
-        known = self._contexts.pop(ctx.run, None)
-        if known is not None and not self.closed:
+        if ctx.run in self._contexts:
+            del self._contexts[ctx.run]
+        if not (ctx.ended or self.closed):
             ctx.ended = "the function has returned"
             if result is None and exception is None and self._takes_the_short_way():
                 self._engine.done(ctx.run)
