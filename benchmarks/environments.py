@@ -20,7 +20,7 @@ REFERENCE = ["--no-deps", "ravestate==0.7.0.post1", "reggol==0.2.0", "pyyaml==6.
 CLIPS = ["clipspy==1.0.6"]
 # experta asks for a frozendict that does not run on the Pythons of today.
 PEERS = ["--no-deps", "durable_rules==2.0.28", "experta==1.9.4", "frozendict==2.4.6", "py_trees==2.6.0", "pydot==4.0.1",
-         "pyparsing==3.3.1", "schema==0.7.7"]  # fmt: skip
+         "pyparsing==3.3.3", "schema==0.7.7"]  # fmt: skip
 
 
 def reference(progress: Callable[[str], None]) -> Path:

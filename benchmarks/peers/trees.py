@@ -5,6 +5,7 @@ the blackboard, then the answer follows; the fallback is the second child of a s
 contestants: it does not find out which steps the input concerns.
 """
 
+import itertools
 import time
 
 import py_trees
@@ -48,7 +49,7 @@ def answer(k: int, inputs: int) -> list[Seconds]:
     said: list[str] = []
     names = ["input", *(f"signal{i}" for i in range(1, k + 1))]
     chain = py_trees.composites.Sequence("chain", memory=False)
-    chain.add_children([Hop(here, there) for here, there in zip(names, names[1:], strict=False)])
+    chain.add_children([Hop(here, there) for here, there in itertools.pairwise(names)])
     chain.add_child(Speak("answer", names[-1], said))
     root = py_trees.composites.Selector("root", memory=False, children=[chain, Speak("fallback", "input", said)])
     outside = py_trees.blackboard.Client(name="outside")

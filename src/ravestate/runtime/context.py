@@ -246,8 +246,8 @@ class Context:
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """Wait for the next spike of a signal, and return its payload.
 
-        What is due happens at once, inside this call: if the spike comes of it, other tasks get no turn meanwhile. After 64
-        such calls the event loop gets its turn.
+        The call first performs the effects that are due. If the spike comes from these, other tasks get no turn meanwhile.
+        After 64 such calls the event loop gets its turn.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.
