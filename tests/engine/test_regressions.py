@@ -596,3 +596,62 @@ def test_a_clause_that_recovers_faster_from_nothing_goes_at_once_though_another_
     play = Play(world).play()
     starts = [line.split(" s <")[0] for line in play.heard if "< Run(" in line]
     assert (runs(play), starts) == (["r0", "r1", "r2", "r2"], ["0.5"] * 4)
+
+
+def test_a_spike_in_a_half_that_an_older_activation_holds_as_well_is_under_no_pressure() -> None:
+    # L15, L16: r1's older activation holds the same input and a taken spike, and will run. So r0 surely waits, and the
+    # younger activation has no need to hurry: it gets the s1 of 2.5 s.
+    rules = (
+        RuleOf(when=on("s0"), writes=("v0",)),
+        RuleOf(when=on("s0", "s1"), writes=("v0",), acts=(Act(seconds=2.0),)),
+    )
+    inputs = (
+        (1.1, ("emit", "s0", 3)),
+        (0.0, ("emit", "s1", 1)),
+        (0.3, ("emit", "s0", 1)),
+        (1.1, ("emit", "s1", 3)),
+    )
+    play = Play(World((SignalOf(), SignalOf()), (SlotOf(), SlotOf()), rules, inputs)).play()
+    assert runs(play) == ["r1", "r1"]
+
+
+def test_a_rival_that_overtakes_a_waiting_rule_comes_under_pressure_at_that_moment() -> None:
+    # L15, L16: r0 waits for a taken slot when r1, which recovers, overtakes it. From then on r1 keeps r0 waiting, so r1
+    # has its patience, none, and gives its spike up.
+    rules = (
+        RuleOf(when=on("s0", "s1"), writes=("v0",), acts=(Act(seconds=2.0),)),
+        RuleOf(when=((Want("s0"), Want("s3", where="odd")),), writes=("v0",), cooldown=3.0, patience=0.0),
+    )
+    inputs = (
+        (1.1, ("emit", "s0", 2)),
+        (0.0, ("emit", "s0", 2)),
+        (0.0, ("emit", "s0", 2)),
+        (0.0, ("emit", "s3", 3)),
+        (0.0, ("emit", "s1", 3)),
+        (2.1, ("emit", "s3", 3)),
+    )
+    play = Play(World((*S3, SignalOf()), V1, rules, inputs)).play()
+    assert runs(play) == ["r1", "r0"]
+
+
+def test_a_burst_for_rules_of_one_slot_is_answered_in_order() -> None:
+    # L15: older causes first. The rules read what each other write, so each round of consent lets one of them start.
+    world = World(S3, V1, (RuleOf(when=on("s0"), writes=("v0",)),), ((0.0, ("emit", "s0", 0)),) * 50, together=True)
+    play = Play(world, budget=50).play()
+    assert runs(play) == ["r0"] * 50
+    assert not play.engine.agenda.places
+
+
+def test_an_alternative_that_waits_behind_a_rival_puts_it_under_pressure_from_the_first_moment() -> None:
+    # L15, L16: r0 keeps the best rule r2 waiting, and r1 keeps r3 waiting. The patience of both ends at 1 s. Then r2 runs
+    # and resigns, and r3 may answer at once.
+    rules = (
+        RuleOf(when=on("s0", "s1"), writes=("v0",), weight=10.0),
+        RuleOf(when=on("s0", "s2"), writes=("v0",)),
+        RuleOf(when=on("s0"), writes=("v0",), weight=20.0, acts=(Act(end="resigned"),)),
+        RuleOf(when=on("s0"), writes=("v0",), weight=0.1),
+        RuleOf(when=on("s3")),
+    )
+    play = Play(World((*S3, SignalOf()), V1, rules, ((0.0, ("emit", "s0", 0)),))).play()
+    starts = [line.split(" s <")[0] for line in play.heard if "< Run(" in line]
+    assert (runs(play), starts) == (["r2", "r3"], ["1", "1"])

@@ -264,6 +264,8 @@ class Model:
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))
         derivation = Derivation(self, still)
+        soon: list[tuple[Any, Group]] = []
+        ended = False
         for group in act.groups():
             if any(slot in group.taken for slot in act.rule.slots):
                 reasons.add("taken")
@@ -273,36 +275,51 @@ class Model:
                     rival is act.clause
                     or rival.rule.index in self.retired
                     or rival.rule.slotset.isdisjoint(act.rule.slotset)
-                    or not self.refuses(rival, act.clause)
                 ):
                     continue
-                sure: list[Act] = []
-                for member in [*(a for a in self.acts if a.clause is rival and a.state < RUNS), None]:
-                    if member is not None:
-                        if member not in self.acts or member in still:
-                            continue
-                        if any(set(member.firm()) <= set(older.firm()) for older in sure):
-                            continue  # an older activation, still to run, holds all that this one holds
-                    strength = derivation.rival(rival, member, group)
-                    if strength == SURE:
-                        reasons.add("surely")
-                        if member is not None:
-                            sure.append(member)
-                    elif strength == PERHAPS:
-                        table: dict[Any, float] = group.pressed if member is None else member.pressed
-                        key: Any = rival.index if member is None else group
-                        patience = self.patience if rival.rule.patience is None else rival.rule.patience
-                        if commit:
-                            table.setdefault(key, self.now + patience)
-                        if table.get(key, -inf) > self.now:
-                            reasons.add("perhaps")
-                        elif commit and member is not None:
-                            for spike in member.firm():
-                                spike.refused.add(rival.rule.index)
-                            self.end(member)
-                            self.settle()
-                            derivation = Derivation(self, still)
+                first, next_ = self.goes_before(rival, act.clause)
+                if first and next_:
+                    if self.judge_rival(rival, group, derivation, reasons, commit=commit):
+                        derivation, ended = Derivation(self, still), True
+                elif next_:
+                    soon.append((rival, group))
+        for rival, group in soon if reasons else ():  # it waits on, and these are ahead from this moment on
+            if self.judge_rival(rival, group, derivation, reasons, commit=commit):
+                derivation, ended = Derivation(self, still), True
+        if ended and reasons:
+            return self.refusals(act, without)  # a reason may have hung on those that gave up
         return reasons
+
+    def judge_rival(self, rival: Any, group: Group, derivation: Derivation, reasons: set[str], *, commit: bool) -> bool:
+        """Add the reasons that a rival gives a group to refuse; return whether an activation of it gave up."""
+        sure: list[Act] = []
+        ended = False
+        for member in [*(a for a in self.acts if a.clause is rival and a.state < RUNS), None]:
+            if member is not None:
+                if member not in self.acts or member in derivation.still:
+                    continue
+                if any(set(member.firm()) <= set(older.firm()) for older in sure):
+                    continue  # an older activation, still to run, holds all that this one holds
+            strength = derivation.rival(rival, member, group)
+            if strength == SURE:
+                reasons.add("surely")
+                if member is not None:
+                    sure.append(member)
+            elif strength == PERHAPS:
+                table: dict[Any, float] = group.pressed if member is None else member.pressed
+                key: Any = rival.index if member is None else group
+                patience = self.patience if rival.rule.patience is None else rival.rule.patience
+                if commit:
+                    table.setdefault(key, self.now + patience)
+                if table.get(key, -inf) > self.now:
+                    reasons.add("perhaps")
+                elif commit and member is not None:
+                    for spike in member.firm():
+                        spike.refused.add(rival.rule.index)
+                    self.end(member)
+                    self.settle()
+                    derivation, ended = Derivation(self, derivation.still), True
+        return ended
 
     def kept_by(self, act: Act) -> list[Act]:
         """Return the activations that wait, or would wait, because of this one (L16)."""

@@ -265,6 +265,7 @@ def empty(play: Play) -> None:
         "waiting",
         "alternatives",
         "halves",
+        "pressed",
         "asking",
         "dirty",
         "hoping",

@@ -44,7 +44,9 @@ def _low(found: Iterable[Sequence[str]]) -> Triples:
 
 
 def _measured_triples(name: str) -> Result:
-    result = measure_triples(lambda text: _low(modules.triples(text)), triple_cases(name))
+    cases = triple_cases(name)
+    modules.prepare(text for text, _ in cases)
+    result = measure_triples(lambda text: _low(modules.triples(text)), cases)
     return Result(f"triples, {name}", result.cases, result.shares, result.misses)
 
 
@@ -66,6 +68,7 @@ def about_agent(text: str) -> str:
 
 
 def _labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) -> Result:
+    modules.prepare(text for text, _ in cases)
     return measure_labels(name, see, cases)
 
 
@@ -166,6 +169,7 @@ def _plain(words: str) -> str:
 def measured_facts(name: str = "facts") -> list[Result]:
     """Measure what is stored: all right, and nothing wrong in tricky sentences. `name` may be a development set."""
     cases, tricky = facts((), name), facts(TRICKY, name)
+    skills.prepare(text for text, _ in cases)
     seen = {text: stored(text) for text, _ in cases}
     right = [text for text, label in cases if _same(label, seen[text])]
     clean = [text for text, label in tricky if _harmless(label, seen[text])]
@@ -190,6 +194,7 @@ def measured_feelings() -> list[Result]:
 def measured_smalltalk() -> list[Result]:
     """Measure how often the listener takes up what was said, by its word or by a pronoun for it."""
     cases = [row for row in rows("smalltalk") if row[2] != NONE]
+    modules.prepare(text for text, _, _ in cases)
     taken = 0
     for text, _, about in cases:
         words = set(re.findall(r"[\w']+", skills.smalltalk(text).lower()))

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
+from typing import Any
 
 from quality import measure, modules
 from quality.modules import _seen
@@ -42,11 +43,17 @@ FLOORS = {
 _SITUATION = re.compile(r"(?:\[(asked|told|knows) ([^]=]+)(?:=([^]]*))?\] )?(.*)")
 
 
-def meaning_of(sentence: str) -> Meaning:
-    """Return what the user tells or asks about themselves, in the situation in brackets."""
+def situation_in(sentence: str) -> tuple[tuple[Any, Any, Any], str]:
+    """Return the parts of the situation in brackets, None if they are missing, and the sentence after it."""
     situation = _SITUATION.fullmatch(sentence)
     assert situation is not None
     what, topic, value, text = situation.groups()
+    return (what, topic, value), text
+
+
+def meaning_of(sentence: str) -> Meaning:
+    """Return what the user tells or asks about themselves, in the situation in brackets."""
+    (what, topic, value), text = situation_in(sentence)
     talk, known = Talk(), dict[str, tuple[str, ...]]()
     if what == "asked":
         talk = talk.asking(topic, 0.0).speaking()
@@ -110,7 +117,7 @@ def _label(fact: Fact) -> str:
 @cache
 def agentqa_asks(sentence: str) -> str:
     """Return the topic about the agent that a sentence asks for."""
-    found = router_of(read_life()).route(sentence, question=_seen(sentence).question is not None)
+    found = router_of(read_life()).route(sentence, question=modules.question(sentence) is not None)
     return found.topic if isinstance(found, Match) else "-"
 
 
@@ -149,7 +156,15 @@ SETS: dict[str, Callable[[str], str]] = {
 
 def result(name: str) -> measure.Result:
     """Measure the set `name`."""
-    return measure.measure_labels(name, SETS[name], measure.labelled(name))
+    cases = measure.labelled(name)
+    if name not in ("wildtalk_facts", "hibye_words"):  # these two need no tree
+        prepare(text for text, _ in cases)
+    return measure.measure_labels(name, SETS[name], cases)
+
+
+def prepare(sentences: Iterable[str]) -> None:
+    """Parse sentences at once, without their situations."""
+    modules.prepare(situation_in(sentence)[1] for sentence in sentences)
 
 
 def results() -> list[measure.Result]:

@@ -6,6 +6,7 @@ from collections import Counter
 
 import pytest
 
+from quality import modules
 from quality.language import LABELLED, SETS, measured, triples_of, typed
 from quality.measure import labelled
 from ravestate.language.examples import bundled
@@ -36,6 +37,13 @@ def test_known_sentences_are_understood(name: str) -> None:
     share = result.shares["right" if name in LABELLED else "exact"]
     print(f"{name}: {share:.1%} of {result.cases}", *result.misses, sep="\n  ")
     assert share >= FLOORS.get(name, FLOOR), "\n".join(result.misses)
+
+
+def test_a_set_sees_what_the_whole_analysis_has() -> None:
+    for text, _ in (*labelled("triples_rows")[::30], *labelled("questions_rows")[::20]):
+        whole = modules._seen(text)
+        assert [tuple(map(modules._text, triple)) for triple in whole.triples] == modules.triples(text)
+        assert whole.question == modules.question(text)
 
 
 @pytest.mark.parametrize("name", SETS)

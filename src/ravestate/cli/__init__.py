@@ -49,10 +49,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("-v", "--verbose", action="count", default=0, help="log more; repeat it to log everything")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)
-    if any(":=" in argument for argument in arguments):
+    if "--ros-args" in arguments or any(":=" in argument for argument in arguments):
         from ravestate.cli.ros_args import translate
 
-        arguments = translate(arguments)
+        try:
+            arguments = translate(arguments)
+        except RavestateError as error:
+            parser.error(str(error))
     if not {"-h", "--help"}.isdisjoint(arguments):
         from ravestate.cli.agent import listing
 

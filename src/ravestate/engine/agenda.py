@@ -155,6 +155,8 @@ class Agenda:
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
+            if activation in self.state.alternatives and not refusal.taken and self.consent.is_contested(activation):
+                self.consent.halves.sets.unfold(activation)
             return False
         return True
 

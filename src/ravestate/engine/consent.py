@@ -9,6 +9,7 @@ A rival that may never become ready is under pressure: it has its patience, once
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Collection, Sequence
 from typing import Any
 
@@ -50,6 +51,7 @@ class Consent:
         for group in groups:
             refusal.interests[group] = None
         horizon: Horizon | None = None
+        soon: list[tuple[Clause, list[Activation], Group]] = []  # the rivals that are ahead from this moment on
         eliminated = False
         for group in groups:
             if group.taken and _note_taken(refusal, group, clause.rule):
@@ -59,7 +61,8 @@ class Consent:
                     self.halves.unfold(spike, half)
                 elif (best := self._best(half, spike, clause)) is not None:
                     horizon = horizon or self._horizon(activation, without)
-                    self._judge_half(refusal, horizon, best, spike)
+                    if self._judge_half(refusal, horizon, best, spike, clause, commit=commit):
+                        eliminated = True
             for rival, members in self._rivals(activation, group):
                 if clause.rule.cooldown or rival.rule.cooldown:
                     refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
@@ -67,6 +70,12 @@ class Consent:
                     horizon = horizon or self._horizon(activation, without)
                     if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                         eliminated = True
+                elif rival.rule.cooldown and standing.overtakes(rival, clause):
+                    soon.append((rival, members, group))
+        for rival, members, group in soon if refusal.names else ():
+            horizon = horizon or self._horizon(activation, without)
+            if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
+                eliminated = True
         if eliminated and refusal.names:
             return self.ask(activation, without)  # rivals judged before may have hung on the eliminated one
         if horizon is not None:
@@ -117,21 +126,65 @@ class Consent:
             refusal.names[rival.rule.name] = None
         return eliminated
 
-    def _judge_half(self, refusal: Refusal, horizon: Horizon, best: Need, spike: Spike) -> None:
-        """Judge a half that holds a spike by its best clause, which stands for all. If it cannot, unfold the half."""
-        rival, group = best.clause, spike.group.root()
+    def _judge_half(
+        self, refusal: Refusal, horizon: Horizon, best: Need, spike: Spike, clause: Clause, *, commit: bool
+    ) -> bool:
+        """Judge a half that holds a spike by its best clause, which stands for all; or unfold it, to judge each clause.
+
+        Return whether clauses were eliminated.
+        """
+        rival, half, group = best.clause, best.half, spike.group.root()
+        assert half is not None
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
             horizon.judge(rival, None, group)[0] != NO
             or horizon.open_bits(rival, group)
-            or (strength != NO and (strength != FIRM or rival.rule.index in self.state.active))
+            or (strength == FIRM and rival.rule.index in self.state.active)
+            or (strength != NO and self._is_held_beside(half, spike))
+            or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)
         ):
-            assert best.half is not None
-            self.halves.unfold(spike, best.half)  # its rivals must be pressed, or compared, one by one
+            self.halves.unfold(spike, half)
             horizon.renew()
         elif strength == FIRM:
             _note_firm(refusal, roots)
             refusal.names[rival.rule.name] = None
+        elif strength != NO:
+            return self._press_half(refusal, half, spike, clause, commit=commit)
+        return False
+
+    def _is_held_beside(self, half: Half, spike: Spike) -> bool:
+        """Return whether a clause for which a half holds a spike has an activation with the same spike."""
+        for holder in spike.holders:
+            rank = half.rank.get(holder.clause.index)
+            if rank is not None and self.state.keeps(half.best[rank], spike):
+                return True
+        return False
+
+    def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
+        """Put the clauses of a half that go before `clause` under pressure; eliminate those whose patience is over.
+
+        The first entry of a half's pressure is for its best clauses, the next one for those that follow, and so on.
+        Return whether clauses were eliminated.
+        """
+        state = self.state
+        pressed = state.pressed.get(spike, {}).get(half, [])
+        ahead = bisect_left(half.ranks, (-clause.base, clause.index))
+        if commit and (not pressed or pressed[-1][0] < ahead):
+            until = state.now + (state.patience if half.patience is None else half.patience)
+            state.pressed.setdefault(spike, {}).setdefault(half, pressed).append((ahead, until))
+            if until > state.now:
+                state.deadlines.add(until, PATIENCE, (spike.group.root(), half.best[0].clause.index))
+        begin, eliminated = 0, False
+        for count, until in list(pressed):
+            end = min(count, ahead)
+            if until > state.now:
+                kept = [n.clause.rule.name for n in half.best[begin:end] if state.keeps(n, spike)]
+                refusal.names.update(dict.fromkeys(kept))
+                refusal.pressed = refusal.pressed or bool(kept)
+            elif commit and begin < end and self.holdings.entries.refuse_best(spike, half, begin, end):
+                eliminated = True
+            begin = count
+        return eliminated
 
     def _best(self, half: Half, spike: Spike, clause: Clause) -> Need | None:
         """Return the need of the best other clause for which a half holds a spike, if it goes before `clause`."""
@@ -139,6 +192,37 @@ class Consent:
             if need.clause is not clause and self.state.keeps(need, spike):
                 return need if self.state.standing.refuses(need.clause, clause) else None
         return None
+
+    def is_contested(self, best: Activation) -> bool:
+        """Return whether a rival may come between the best of a conflict set and one of its alternatives.
+
+        Such a rival waits for the best, but the alternative waits for the rival, and puts it under pressure.
+        """
+        state = self.state
+        clauses = state.alternatives[best][0]
+        first, last = best.clause, clauses[-1]
+        slots = first.rule.slotset
+        limit = (-last.base, last.index)
+        for group in best.firm_groups():
+            for half, _ in self._rival_halves(first, group) if group.entries else ():
+                if bisect_left(half.ranks, (-first.base, first.index)) < bisect_left(half.ranks, limit):
+                    return True
+            rivals: dict[Clause, None] = {}
+            for member in group.members:
+                rivals[member.clause] = None
+                for theirs in state.policy.causes.downstream(member.clause.rule):
+                    if theirs.base < last.base:
+                        break  # the best clauses come first
+                    rivals[theirs] = None
+            for theirs in rivals:
+                if (
+                    theirs is not first
+                    and (-theirs.base, theirs.index) < limit
+                    and not theirs.rule.slotset.isdisjoint(slots)
+                    and not state.standing.refuses(theirs, first)
+                ):
+                    return True
+        return False
 
     def press(
         self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True

@@ -53,6 +53,11 @@ class Entries:
             del state.halves[half]
         spike.entries -= 1
         state.busy -= half.busy
+        if state.pressed:
+            pressed = state.pressed.get(spike, {})
+            pressed.pop(half, None)
+            if not pressed:
+                state.pressed.pop(spike, None)
         group = spike.group.root()
         if not spike.entries:
             group.leave(spike)
@@ -68,6 +73,20 @@ class Entries:
             for need in rule.clauses[0].needs:
                 if need.signal is spike.signal:
                     self.part(spike, need)
+
+    def refuse_best(self, spike: Spike, half: Half, begin: int, end: int) -> bool:
+        """Make the rules of a half's clauses from `begin` to `end`, the best first, give a spike up for good.
+
+        Return whether the half held the spike for one of them.
+        """
+        parted, refused = spike.parted or set(), spike.refused or set()
+        needs = [need for need in half.best[begin:end] if need.clause.index not in parted]
+        refused.update([need.clause.rule.index for need in needs])
+        parted.update([need.clause.index for need in needs])
+        spike.parted, spike.refused = parted, refused
+        if parted.issuperset(half.rank):
+            self.drop(spike, half)
+        return bool(needs)
 
     def let_expire(self, spike: Spike, due: float) -> None:
         """Set the time (seconds) at which holders that are still incomplete give the spike up (L14)."""

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import heapq
 from collections import deque
-from typing import Final
 
 from ravestate.engine.activation import READY, Activation
 
 Place = tuple[int, int, int, Activation]
-
-
-EMPTY: Final[deque[Place]] = deque()
-"""The line of a queue that has needed none. Nothing writes into it."""
 
 
 class Free:
@@ -27,7 +22,7 @@ class Free:
 
     def __init__(self) -> None:
         self.new: list[Activation] = []
-        self.line: deque[Place] = EMPTY
+        self.line: deque[Place] | None = None  # made on first use: an empty one takes 600 bytes
         self._between: list[Place] = []  # a heap
 
     def pop(self) -> Activation | None:
@@ -38,10 +33,10 @@ class Free:
             return activation if activation.state == READY else None
         if not (new or line):
             return None
-        if line is EMPTY:
-            line = self.line = deque()
+        if line is None:
+            line = self.line = deque[Place]()
         for activation in new:
-            self._join(activation)
+            self._join(activation, line)
         new.clear()
         while line:
             place = heapq.heappop(between) if between and between[0] < line[0] else line.popleft()
@@ -55,12 +50,12 @@ class Free:
                     return activation
         return None
 
-    def _join(self, activation: Activation) -> None:
+    def _join(self, activation: Activation, line: deque[Place]) -> None:
         """Give an activation its place: first in the order of its newest spike, then of declaration."""
         newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
         place = activation.place = (newest, activation.clause.index, activation.id, activation)
-        if not self.line or self.line[-1] < place:
-            self.line.append(place)
+        if not line or line[-1] < place:
+            line.append(place)
         else:
             heapq.heappush(self._between, place)
 

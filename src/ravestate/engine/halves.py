@@ -102,15 +102,21 @@ class Halves:
         """Put a clause's activation under the pressure that its stand-by had in a group, if it had any (L16)."""
         until = (group.pressed or {}).get(activation.clause.index)
         if until is not None:
-            activation.pressed = {group: until}
-            if until > self.state.now:
-                self.state.deadlines.add(until, PATIENCE, (group, activation))
+            self._press(activation, group, until)
+
+    def _press(self, activation: Activation, group: Group, until: float) -> None:
+        activation.pressed = {group: until}
+        if until > self.state.now:
+            self.state.deadlines.add(until, PATIENCE, (group, activation))
 
     def _make(self, need: Need, spike: Spike) -> Activation:
         """Create the activation of a clause for which a half holds a spike."""
         clause = need.clause
         activation = self.holdings.new_activation(clause, self.state.entry_number(need, spike))
         self.holdings.acquire(activation, need, spike)
+        until = self.state.entry_patience(need, spike)
+        if until is not None:
+            self._press(activation, spike.group.root(), until)
         self.entries.part(spike, need)
         self.state.lacking.setdefault(clause.needs[1 - need.index], {})[activation] = None
         return activation

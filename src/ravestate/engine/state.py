@@ -72,6 +72,7 @@ class State:
         "out",
         "patience",
         "policy",
+        "pressed",
         "pressure",
         "ran",
         "refused",
@@ -117,6 +118,8 @@ class State:
         self.halves: dict[Half, OrderedDict[Spike, int]] = {}
         """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
         before theirs (``halves.py``)."""
+        self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = {}
+        """Spike → half that holds it under pressure → how many of its best clauses, and until when (seconds; L16)."""
         self.gated: dict[Activation, None] = {}
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.free = Free()
@@ -248,7 +251,21 @@ class State:
         activation = Activation(self.entry_number(need, spike), need.clause)
         activation.spikes[need.index] = spike
         activation.missing &= ~need.bit
+        until = self.entry_patience(need, spike)
+        if until is not None:
+            activation.pressed = {spike.group.root(): until}
         return activation
+
+    def entry_patience(self, need: Need, spike: Spike) -> float | None:
+        """Return when the patience ends of a clause for which a half holds a spike (seconds); None without pressure."""
+        half = need.half
+        if half is None or spike not in self.pressed:
+            return None
+        rank = half.rank[need.clause.index]
+        for count, until in self.pressed[spike].get(half, ()):
+            if rank < count:
+                return until
+        return None
 
     # ------------------------------------------------------------------------------------ slots and predicates
 

@@ -115,4 +115,7 @@ def patience_of_rivals(state: State, activation: Activation) -> float | None:
     for group in activation.firm_groups():
         times += [m.pressed[group] for m in group.members if m.clause.rule.name in names and group in m.pressed]
         times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names and t > state.now]
+        for spike in group.entries if state.pressed else ():
+            for half, pressed in state.pressed.get(spike, {}).items():
+                times += [t for _, t in pressed if t > state.now and half.best[0].clause.rule.name in names]
     return max(times, default=None)

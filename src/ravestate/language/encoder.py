@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .cache import cached
 from .model import SentenceModel, model_in
+from .recent import keep_latest
 from .vectors import built_in
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ class Encoder:
             with self._lock:
                 for text in new:
                     del self._running[text]
-                self._remember(known)
+                keep_latest(self._latest, known, REMEMBERED)
             mine.set()
         for other in others:  # another thread encodes the same utterance
             other.wait()
@@ -84,11 +85,6 @@ class Encoder:
         lost = [text for text in dict.fromkeys(texts) if text not in known]
         known.update(zip(lost, self._encode(lost), strict=True) if lost else ())
         return np.stack([known[text] for text in texts]) if texts else np.zeros((0, model.width), dtype=np.float32)
-
-    def _remember(self, known: Mapping[str, NDArray[np.float32]]) -> None:
-        """Keep these vectors; drop the oldest ones."""
-        others = {text: vector for text, vector in self._latest.items() if text not in known}
-        self._latest = dict([*others.items(), *known.items()][-REMEMBERED:])
 
     def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the vectors of texts that stay the same each time the program starts, such as examples.

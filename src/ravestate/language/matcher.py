@@ -21,6 +21,7 @@ from .entity import Entity
 from .examples import bundled
 from .loading import LOADING
 from .normal import plain
+from .recent import keep_latest
 from .shape import likeness, shape
 from .spelling import BUCKETS, Spelling
 
@@ -162,7 +163,7 @@ class Matcher:
                 known = {sentence: self._latest.get(sentence) or self.match_exactly(sentence) for sentence in sentences}
                 new = [sentence for sentence, match in known.items() if match is None]
                 known.update(zip(new, (ranked[0] for ranked in self.ranked_all(new, most=1)), strict=True))
-                self._latest = dict([*{**self._latest, **known}.items()][-REMEMBERED:])
+                keep_latest(self._latest, known, REMEMBERED)
             found = [known[sentence] for sentence in sentences]
         return [best if best and best.name != NONE and best.score >= self.least else None for best in found]
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import takewhile
 
 from .contractions import CONTRACTIONS, WRITTEN, word_set
@@ -174,6 +175,7 @@ def _once(text: str, known: dict[str, str], punctuated: bool) -> Normal:
     return _joined(pieces, text)
 
 
+@lru_cache(maxsize=256)  # all matchers ask for the same sentences
 def plain(text: str) -> str:
     """Return a text in its plain form, for comparisons: lower case, no punctuation, short forms written out.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,12 +12,14 @@ if TYPE_CHECKING:
 
 BUCKETS = 2048
 """The number of buckets into which groups of letters are hashed. A few groups collide; that does little harm."""
+REMEMBERED = 256
+"""The number of texts whose groups are kept, because all matchers ask for the same texts."""
 _HASH, _SHIFT = 2654435761, 21
 """Knuth's multiplicative hash: the upper 11 of 32 bits."""
 
 
 class Spelling:
-    """Examples as vectors of their letter groups; rare groups weigh more."""
+    """Examples as vectors of their letter groups; rare groups weigh more. Each bucket lists the examples in it."""
 
     def __init__(self, examples: Sequence[str]) -> None:
         import numpy as np
@@ -25,23 +28,37 @@ class Spelling:
         spread = (counts > 0).sum(axis=0)
         # Groups of letters that are missing in all examples count 0.
         self._rarity = np.where(spread > 0, 1 + np.log(len(examples) / (1 + spread)), 0).astype(np.float32)
-        self._examples = np.ascontiguousarray(self._vectors(counts).T).astype(np.float16)
+        vectors = self._vectors(counts)
+        buckets, self._examples = np.nonzero(vectors.T)
+        self._weights = vectors[self._examples, buckets].astype(np.float16)
+        self._examples = self._examples.astype(np.int32)
+        self._starts = np.searchsorted(buckets, np.arange(BUCKETS + 1)).tolist()
+        self._size = len(examples)
 
     def among(self) -> NDArray[np.float32]:
         """Return the cosine of each pair of examples."""
         import numpy as np
 
-        examples = self._examples.astype(np.float32)
-        return examples.T @ examples
+        vectors = np.zeros((self._size, BUCKETS), dtype=np.float32)
+        vectors[self._examples, np.repeat(np.arange(BUCKETS), np.diff(self._starts))] = self._weights
+        return vectors @ vectors.T
 
     def likeness(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return the cosine of each text (rows) with each example (columns); 0 for a text without a known group."""
         import numpy as np
 
-        likeness = np.zeros((len(texts), self._examples.shape[1]), dtype=np.float32)
-        for row, vector in zip(likeness, self._vectors(_counts(texts)), strict=True):
-            places = np.flatnonzero(vector)
-            row[:] = vector[places] @ self._examples[places].astype(np.float32)
+        likeness = np.zeros((len(texts), self._size), dtype=np.float32)
+        for row, text in zip(likeness, texts, strict=True):
+            buckets, counts = _groups(text)
+            weights = counts * self._rarity[buckets]
+            weights /= max(float(np.linalg.norm(weights)), 1e-9)
+            listed = [slice(self._starts[bucket], self._starts[bucket + 1]) for bucket in buckets.tolist()]
+            if not listed:
+                continue
+            examples = np.concatenate([self._examples[part] for part in listed])
+            products = np.concatenate([self._weights[part] for part in listed]).astype(np.float32)
+            products *= np.repeat(weights, [part.stop - part.start for part in listed])
+            row[:] = np.bincount(examples, products, minlength=self._size)
         return likeness
 
     def _vectors(self, counts: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -49,6 +66,16 @@ class Spelling:
 
         weighted = counts * self._rarity
         return weighted / np.maximum(np.linalg.norm(weighted, axis=1, keepdims=True), np.float32(1e-9))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _groups(text: str) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
+    """Return the buckets of a text, and how many of its groups are in each."""
+    import numpy as np
+
+    [counts] = _counts([text])
+    buckets = np.flatnonzero(counts)
+    return buckets, counts[buckets]
 
 
 def _counts(texts: Sequence[str]) -> NDArray[np.float32]:

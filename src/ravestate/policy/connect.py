@@ -120,6 +120,7 @@ def _likeness(need: Need, causes: Causes) -> Any:
         need.kin == need.bit,
         rule.slotset,
         rule.background,
+        rule.patience,
         other.input,
         tuple(cause.index for cause in causes.causes[other.index]),
         tuple(cause.index for cause in causes.all_causes[other.index]),

@@ -201,6 +201,9 @@ class Half:
     Attributes:
         needs: The needs, in declaration order.
         best: The same needs; the need of the best clause comes first.
+        ranks: The order of the clauses in `best`: for each, its utility (negative) and its number.
+        rank: Number of a clause → its place in `best`.
+        patience: The patience of the rules in seconds, or None for the context's (L16).
         kin: Whether both spikes of a clause must belong to one causal group (L12).
         max_age: The age at which the needs give a spike up (seconds).
         slotset: The numbers of the slots that each of the rules writes.
@@ -210,6 +213,9 @@ class Half:
 
     needs: tuple[Need, ...]
     best: tuple[Need, ...] = field(init=False)
+    ranks: list[tuple[float, int]] = field(init=False)
+    rank: dict[int, int] = field(init=False)
+    patience: float | None = field(init=False)
     kin: bool = field(init=False)
     max_age: float = field(init=False)
     slotset: frozenset[int] = field(init=False)
@@ -219,6 +225,9 @@ class Half:
     def __post_init__(self) -> None:
         first = self.needs[0]
         self.best = tuple(sorted(self.needs, key=lambda need: (-need.clause.base, need.clause.index)))
+        self.ranks = [(-need.clause.base, need.clause.index) for need in self.best]
+        self.rank = {need.clause.index: place for place, need in enumerate(self.best)}
+        self.patience = first.clause.rule.patience
         self.kin = first.kin != first.bit
         self.max_age = first.max_age
         self.slotset = first.clause.rule.slotset

@@ -3,8 +3,11 @@
 import sys
 import threading
 
+import actionlib
 import genpy
 import rospy
+from actionlib.msg import TestAction, TestFeedback, TestResult
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float32, Int32, String
 
 
@@ -101,6 +104,39 @@ def main():
     rospy.Subscriber(
         "/show", Int32, lambda message: threading.Thread(target=show, args=(message,), daemon=True).start()
     )
+    clock = rospy.Publisher("/clock", Clock, queue_size=10)
+    speed = [0.0]
+
+    def simulate():
+        now = 1000.0
+        while True:
+            clock.publish(Clock(rospy.Time.from_sec(now)))
+            pause(0.01)
+            now += 0.01 * speed[0]
+
+    def run(message):
+        if not speed[0]:
+            threading.Thread(target=simulate, daemon=True).start()
+        speed[0] = message.data or 1e-9
+
+    rospy.Subscriber("/speed", Float32, run)
+    cancelled = rospy.Publisher("/cancelled", String, latch=True, queue_size=10)
+
+    def count(goal):
+        if goal.goal < 0:
+            server.set_aborted(TestResult())
+            return
+        for n in range(goal.goal):
+            if server.is_preempt_requested():
+                server.set_preempted()
+                cancelled.publish("cancelled")
+                return
+            server.publish_feedback(TestFeedback(n))
+            pause(0.01)
+        server.set_succeeded(TestResult(goal.goal))
+
+    server = actionlib.SimpleActionServer("/steps", TestAction, count, auto_start=False)
+    server.start()
     print("ready", flush=True)
     sys.stdin.read()  # until the test ends
 

@@ -9,6 +9,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image
 from std_msgs.msg import Float32, Int32, String
 from std_srvs.srv import SetBool
@@ -84,6 +85,24 @@ def main():
     ActionServer(
         node, Fibonacci, "/count", count, callback_group=group, cancel_callback=lambda goal: CancelResponse.ACCEPT
     )
+
+    clock = node.create_publisher(Clock, "/clock", quick)
+    speed = [0.0]
+
+    def simulate():
+        now, message = 1000.0, Clock()
+        while True:
+            message.clock.sec, message.clock.nanosec = int(now), int(now % 1 * 1e9)
+            clock.publish(message)
+            pause(0.01)
+            now += 0.01 * speed[0]
+
+    def run(message):
+        if not speed[0]:
+            threading.Thread(target=simulate, daemon=True).start()
+        speed[0] = message.data or 1e-9
+
+    node.create_subscription(Float32, "/speed", run, 10)
 
     def tick():
         sensor.publish(Int32(data=3))

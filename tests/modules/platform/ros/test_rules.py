@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import PATIENCE, pause, until
+from modules.platform.ros.networks import PATIENCE, Network, pause, until
 from ravestate.modules import ros2
 from ravestate.modules.platform.ros import Bus, quality
 
@@ -54,6 +54,49 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
             await world.close()
 
     asyncio.run(main())
+
+
+def test_the_clock_of_a_real_simulation_at_ten_times_the_speed_and_halted(either: Network) -> None:
+    ros = either.module
+    agent = rs.Module("agent", requires=[ros])
+    go = agent.signal("go", input=True)
+    waited: list[float] = []
+    simulated: list[float] = []
+
+    @agent.rule(when=go.min_age(5.0).max_age(60.0))
+    async def late(ctx: rs.RuleContext) -> None:
+        waited.append(ctx.now)
+
+    def look(message: Any) -> None:
+        simulated.append(message.clock.sec + message.clock.nanosec / 1e9)
+
+    async def main() -> None:
+        settings = {f"ros{either.version}": {**either.settings[f"ros{either.version}"], "use_sim_time": True}}
+        async with either.lent() as world, rs.Context(agent, settings=settings) as context:
+            clock = asyncio.get_running_loop().time
+            world.subscribe("/clock", "rosgraph_msgs/Clock", look, qos=quality("sensor_data", depth=5, latch=False))
+            speed = world.advertise("/speed", "std_msgs/Float32", qos=ALL)
+            last = context.now
+            await until(lambda: context.read(ros.node))
+            made = context.read(ros.node)
+            assert made is not None
+            await until(lambda: simulated, lambda: speed.publish(10.0))
+            await until(lambda: context.now > last + 5.0)
+            begun, real = context.now, clock()
+            context.emit(go)
+            await until(lambda: waited)
+            assert waited[0] >= begun + 5.0
+            assert context.now - begun > 2 * (clock() - real)  # the simulation is ahead of this machine's clock
+            speed.publish(0.0)
+            halted = len(simulated)
+            await until(lambda: len(simulated) > halted + 20 and simulated[-20] == pytest.approx(simulated[-1]))
+            stood = context.now
+            await until(lambda: len(simulated) > halted + 30)
+            assert context.now == pytest.approx(stood)
+            speed.publish(10.0)
+            await until(lambda: context.now > stood + 1.0)
+
+    either.run(main)
 
 
 def test_an_agent_without_ros_ends_with_what_to_install() -> None:

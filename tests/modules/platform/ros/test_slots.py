@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import Network, the_loop, until
+from modules.platform.ros.networks import OWN, Network, the_loop, until
 from ravestate.modules import ros1, ros2
 from ravestate.testing import simulate
 
@@ -38,11 +38,15 @@ class Everything:
         self.count: Any = ros2.action(agent, "count", **options)
         self.guarded: Any = ros2.action(agent, "guarded", **options, until=self.stop)
 
-        cancelled = ros2.subscriber(agent, "cancelled", topic="/cancelled", type="std_msgs/String", latch=True)
+        self.steps: Any = ros1.action(
+            agent, "steps", action="/steps", type="actionlib/Test", timeout=15, until=self.stop
+        )
+        for version, ros in ((1, ros1), (2, ros2)):
+            self._note_the_end(version, ros)
 
-        @agent.rule(when=cancelled.changed)
-        async def end(ctx: rs.RuleContext) -> None:
-            self.ended.append(ctx.payload(cancelled.changed).data)
+        @agent.rule(when=self.go["ROS 1"], writes=self.steps)
+        async def start_steps(ctx: rs.RuleContext) -> None:
+            ctx[self.steps] = {"goal": 1000}
 
         @agent.rule(when=self.tick)
         async def note(ctx: rs.RuleContext) -> None:
@@ -69,13 +73,22 @@ class Everything:
             result = await ros2.perform(ctx, self.count, {"order": 5})
             self.results.append(list(result.sequence))
 
-        @agent.rule(when=self.count.feedback | self.guarded.feedback)
+        @agent.rule(when=self.count.feedback | self.guarded.feedback | self.steps.feedback)
         async def follow(ctx: rs.RuleContext) -> None:
             self.fed.append(ctx.now)
 
         @agent.rule(when=self.count.failed)
         async def fail(ctx: rs.RuleContext) -> None:
             self.failures.append(ctx.payload(self.count.failed))
+
+    def _note_the_end(self, version: int, ros: Any) -> None:
+        cancelled = ros.subscriber(
+            self.module, f"cancelled{version}", topic="/cancelled", type="std_msgs/String", latch=True
+        )
+
+        @self.module.rule(when=cancelled.changed, name=f"end{version}")
+        async def end(ctx: rs.RuleContext) -> None:
+            self.ended.append(ctx.payload(cancelled.changed).data)
 
     def _talk(self, version: int, ros: Any) -> None:
         agent = self.module
@@ -99,7 +112,7 @@ class Everything:
             self.lit[version].append(ctx.payload(lamp.changed).message)
 
 
-WAYS = ["the writer's until", "the slot's until", "perform"]
+WAYS = ["the writer's until", "the slot's until", "perform", "ROS 1"]
 NAMES = {"namespace": "/robot", "remap": {"answers": "/back", "~ask": "/chat"}}
 
 
@@ -107,7 +120,7 @@ NAMES = {"namespace": "/robot", "remap": {"answers": "/back", "~ask": "/chat"}}
 def running(ros1_network: Network, ros2_network: Network) -> Iterator[tuple[Everything, rs.Context]]:
     agent = Everything()
     settings = {
-        "ros1": {**ros1_network.settings["ros1"], **NAMES}, "ros2": {**ros2_network.settings["ros2"], **NAMES},
+        "ros1": {**ros1_network.settings["ros1"], **NAMES, "definitions": [str(OWN)]}, "ros2": {**ros2_network.settings["ros2"], **NAMES},
     }  # fmt: skip
     context = rs.Context(agent.module, settings=settings)
     the_loop().run(context.start())

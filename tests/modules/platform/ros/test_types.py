@@ -68,6 +68,14 @@ def test_ros_1_knows_types_by_their_sums() -> None:
     }
     for name, md5 in known.items():
         assert types.ros1_definition(types.require(name, "srv"))[1] == md5
+    types.definitions.add(OWN)
+    types.require("actionlib/Test", "action")
+    for name, md5 in {
+        "actionlib/msg/TestActionGoal": "348369c5b403676156094e8c159720bf",
+        "actionlib/msg/TestActionResult": "3d669e3a63aa986c667ea7b0f46ce85e",
+        "actionlib/msg/TestActionFeedback": "6d3d0bf7fb3dda24779c010a9f3eb7cb",
+    }.items():
+        assert types.ros1_definition(name)[1] == md5
     assert types.ros1_definition("sensor_msgs/msg/Image")[1] == "060021388200f6f0f447d0fcd9c64743"
 
 

@@ -209,7 +209,7 @@ def test_deep_nesting_is_no_way_to_break_it(tmp_path: Path) -> None:
     assert passages(write(tmp_path / "a.html", "<div>" * 5_000 + "There is a bottom.")) == {"a": ["There is a bottom."]}
 
 
-@pytest.mark.parametrize("text", ["**a " * 20_000, "[" * 20_000, "<!-- " * 20_000, "```\n" * 20_001, "# a\n" * 5_000])
+@pytest.mark.parametrize("text", ["**a " * 20_000, "[" * 20_000, "<!-- " * 10_000, "```\n" * 20_001, "# a\n" * 5_000])
 def test_a_file_of_opening_marks_does_not_take_for_ever(tmp_path: Path, text: str) -> None:
     assert sum(map(len, passages(write(tmp_path / "a.md", text)).values())) < 1000
 

@@ -88,31 +88,39 @@ def copy_database(source: Any, target: Any) -> None:
         RuntimeError: Ladybug failed.
     """
     tables = _rows(source, "CALL show_tables() RETURN name, type")
+    copied: dict[tuple[int, int], tuple[str, str, Any]] = {}  # ladybug's own number → type, name of the key, key
     _rows(target, "BEGIN TRANSACTION")
     for name in (name for name, kind in tables if kind == "NODE"):
         columns = {row[1]: (row[2], row[4]) for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
         listed = [f"`{key}` {kind}" + (" PRIMARY KEY" if primary else "") for key, (kind, primary) in columns.items()]
         _rows(target, f"CREATE NODE TABLE `{name}` ({', '.join(listed)})")
+        primary_key = next(key for key, (_, primary) in columns.items() if primary)
         for [node] in _rows(source, f"MATCH (n:`{name}`) RETURN n"):
             pattern, values = _pattern(node, columns)
             _rows(target, f"CREATE (:`{name}` {pattern})", values)
+            copied[_number(node["_ID"])] = name, primary_key, node[primary_key]
     for name in (name for name, kind in tables if kind == "REL"):
         columns = {row[1]: row[2] for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
         pairs = _rows(source, f"CALL show_connection('{name}') RETURN *")
         listed = [f"FROM `{one}` TO `{other}`" for one, other, *_ in pairs]
         listed += [f"`{key}` {kind}" for key, kind in columns.items()]
         _rows(target, f"CREATE REL TABLE `{name}` ({', '.join(listed)})")
-        for one, other, one_key, other_key in pairs:
-            found = f"MATCH (a:`{one}`)-[r:`{name}`]->(b:`{other}`) RETURN a.`{one_key}`, b.`{other_key}`, r"
+        # One query for all pairs of types: most of the hundreds of pairs have no relation.
+        for [relation] in _rows(source, f"MATCH ()-[r:`{name}`]->() RETURN r"):
+            one, one_key, a = copied[_number(relation["_SRC"])]
+            other, other_key, b = copied[_number(relation["_DST"])]
             ends = f"MATCH (a:`{one}` {{`{one_key}`: $a}}), (b:`{other}` {{`{other_key}`: $b}})"
-            for a, b, relation in _rows(source, found):
-                pattern, values = _pattern(relation, columns)
-                _rows(target, f"{ends} CREATE (a)-[:`{name}` {pattern}]->(b)", {"a": a, "b": b, **values})
+            pattern, values = _pattern(relation, columns)
+            _rows(target, f"{ends} CREATE (a)-[:`{name}` {pattern}]->(b)", {"a": a, "b": b, **values})
     _rows(target, "COMMIT")
 
 
 def _rows(connection: Any, statement: str, parameters: Mapping[str, Any] | None = None) -> list[list[Any]]:
     return connection.execute(statement, dict(parameters or {})).get_all()
+
+
+def _number(found: Mapping[str, int]) -> tuple[int, int]:
+    return found["table"], found["offset"]
 
 
 def _pattern(found: Mapping[str, Any], columns: Mapping[str, object]) -> tuple[str, dict[str, Any]]:

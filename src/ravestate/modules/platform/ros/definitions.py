@@ -88,8 +88,26 @@ class Definitions:
             yield folder / package / kind / file
 
 
-def messages(name: str, text: str) -> Iterator[tuple[str, str]]:
+GOAL_TOPICS = {
+    "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{}Goal goal",
+    "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Result result",
+    "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Feedback feedback",
+}
+"""The messages of an action's topics in ROS 1: the end of their names → their text."""
+
+
+def part_names(name: str, version: int) -> list[str]:
+    """Return the full names of the messages that a definition of a service or an action consists of, in its order."""
+    package, kind, short = name.split("/")
+    if kind == "action" and version == 1:
+        return [f"{package}/msg/{short}{title}" for title in PARTS[kind]]
+    return [f"{name}_{title}" for title in PARTS[kind]]
+
+
+def messages(name: str, text: str, version: int) -> Iterator[tuple[str, str]]:
     """Yield the full name and the text of each message that a definition consists of.
+
+    An action of ROS 1 has the messages of its topics as well.
 
     Raises:
         PlatformError: A service or an action has too few or too many parts.
@@ -109,5 +127,9 @@ def messages(name: str, text: str) -> Iterator[tuple[str, str]]:
         raise PlatformError(
             f"the definition of {name} has {len(parts)} parts instead of {len(titles)} ({', '.join(titles)})"
         )
-    for title, lines in zip(titles, parts, strict=True):
-        yield f"{name}_{title}", "\n".join(lines)
+    for full, lines in zip(part_names(name, version), parts, strict=True):
+        yield full, "\n".join(lines)
+    if kind == "action" and version == 1:
+        package, _, short = name.split("/")
+        for title, topic in GOAL_TOPICS.items():
+            yield f"{package}/msg/{short}{title}", topic.format(short)

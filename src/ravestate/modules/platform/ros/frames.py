@@ -22,7 +22,8 @@ SHARED = 1
 """A flag of a frame: its body is in shared memory."""
 LARGE = 1 << 16
 """The number of bytes from which on a body travels in shared memory."""
-BLOCK = 1 << 18
+BLOCK = 1 << 16
+"""The number of bytes to read at once. To make room for more takes longer than to read a short message."""
 TURN = 64
 """The maximum number of frames for which the loop is kept busy at a time."""
 

@@ -16,6 +16,7 @@ from typing import Any, Literal, Protocol
 from ravestate.errors import PlatformError
 
 from .frames import Frames, Handle, Kind
+from .goals import GoalTopics
 from .naming import resolve
 from .types import Types
 
@@ -128,7 +129,7 @@ class Node:
         self.title = title
         self.types = types
         self.channels: dict[int, Channel] = {}
-        self.bound: dict[str, Channel] = {}
+        self.bound: dict[str, Channel | GoalTopics] = {}
         """Slot's name → its channel, for the slots that publish or call."""
         self.goals: dict[str, set[asyncio.Future[Any]]] = {}
         """Slot's name → its goals under way."""
@@ -203,8 +204,10 @@ class Node:
         """Offer a service: `serve` gets the request, and returns the response."""
         return self._open("server", service, type, {}, "srv", serve=serve)
 
-    def action(self, name: str, type: str, *, timeout: float) -> Channel:
+    def action(self, name: str, type: str, *, timeout: float) -> Channel | GoalTopics:
         """Return a channel to send goals; the server has `timeout` seconds to appear."""
+        if self.types.version == 1:
+            return GoalTopics(self, name, self.types.require(type, "action"), timeout)
         return self._open("action", name, type, {"timeout": timeout}, "action")
 
     def _open(

@@ -103,7 +103,7 @@ def connect(
         """Open the topics, services and actions of all slots; follow the simulation's clock if the settings say so."""
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
-        made = make_node(ctx.settings, ctx.stop)
+        made = await asyncio.to_thread(make_node, ctx.settings, ctx.stop)  # the types take a while
         try:
             bind_all(ctx, made, version)
             if ctx.settings.use_sim_time:

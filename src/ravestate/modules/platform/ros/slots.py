@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import ravestate as rs
 from ravestate.declare.arguments import check_name
@@ -20,6 +20,7 @@ from .definitions import full_name
 from .naming import quality
 
 if TYPE_CHECKING:
+    from .goals import GoalTopics
     from .node import Channel, Node
 
 DEEP = 1000
@@ -44,7 +45,7 @@ class Binding:
     type: str
     options: Mapping[str, Any] = field(default_factory=dict[str, Any])
 
-    def open(self, node: Node) -> Channel:
+    def open(self, node: Node) -> Channel | GoalTopics:
         """Open the channel of a publisher, a service or an action."""
         if self.kind == "publisher":
             return node.advertise(self.name, self.type, **self.options)
@@ -76,7 +77,7 @@ class ServiceSlot(TopicSlot):
 
 
 class ActionSlot(ServiceSlot):
-    """A slot that is an action of ROS 2.
+    """A slot that is an action.
 
     A write is a goal, and raises ``requested``. Feedback raises ``feedback``, the result raises ``changed``, and a failure
     (refused, aborted, cancelled) raises ``failed`` with the reason as text.
@@ -214,7 +215,7 @@ class Declarations:
             """Publish each value of the slot."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
-            _channel(here, slot).publish(ctx.payload(slot.changed))
+            cast("Channel", _channel(here, slot)).publish(ctx.payload(slot.changed))
             return None
 
         return slot
@@ -271,7 +272,7 @@ class Declarations:
         Args:
             module, name: As for `subscriber`.
             action: The action's name.
-            type: Its type, such as ``nav2_msgs/NavigateToPose``.
+            type: Its type, such as ``nav2_msgs/NavigateToPose`` or, in ROS 1, ``move_base_msgs/MoveBase``.
             timeout: Seconds within which the action's server must be there.
             until: A condition that cancels the goal.
 
@@ -406,7 +407,7 @@ def _looking(condition: Condition) -> Condition:
     return condition
 
 
-def _channel(node: Node, slot: TopicSlot) -> Channel:
+def _channel(node: Node, slot: TopicSlot) -> Channel | GoalTopics:
     """Return the channel of a slot that publishes or calls; open it at the first call."""
     channel = node.bound.get(slot.name)
     if channel is None:

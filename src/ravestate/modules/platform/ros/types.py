@@ -10,7 +10,7 @@ from typing import Any, Literal, cast
 
 from ravestate.errors import PlatformError, nearest
 
-from .definitions import PARTS, Definitions, full_name, messages
+from .definitions import PARTS, Definitions, full_name, messages, part_names
 
 BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4
 """The kinds of fields, as the library `rosbags` counts them."""
@@ -43,9 +43,8 @@ class Types:
         if name.split("/")[1] == "msg":
             self._learn(name)
         else:
-            for title in PARTS[name.split("/")[1]]:
-                if f"{name}_{title}" not in self.store.fielddefs:
-                    self._read(name)
+            if any(part not in self.store.fielddefs for part in part_names(name, self.version)):
+                self._read(name)
         return name
 
     def _learn(self, name: str) -> None:
@@ -66,7 +65,7 @@ class Types:
         from rosbags.typesys import get_types_from_msg
 
         parsed: dict[str, Any] = {}
-        for full, part in messages(name, text):
+        for full, part in messages(name, text, self.version):
             package, _, short = full.split("/")
             try:
                 for fields in get_types_from_msg(part, f"{package}/msg/{short}").values():
@@ -81,7 +80,7 @@ class Types:
             for _, what in fields:
                 while what[0] in (ARRAY, SEQUENCE):
                     what = what[1][0]
-                if what[0] == NAME and what[1] != name:
+                if what[0] == NAME and what[1] not in parsed:
                     self._learn(what[1])
         new = {full: fields for full, fields in parsed.items() if full not in self.store.fielddefs}
         self.store.register(new)
@@ -260,6 +259,7 @@ def _spelt(what: Any) -> str:
 def _base_store(version: int) -> Any:
     try:
         typesys = importlib.import_module("rosbags.typesys")
+        importlib.import_module("numpy")  # else the first message waits for it
     except ImportError as error:
         raise PlatformError(f"ros{version} needs {error.name}: pip install 'ravestate[ros]'") from error
     return typesys.get_typestore(typesys.Stores.ROS1_NOETIC if version == 1 else typesys.Stores.ROS2_KILTED)

@@ -1,9 +1,9 @@
-"""ROS 1: slots that are topics and services."""
+"""ROS 1: slots that are topics, services and actions."""
 
 from __future__ import annotations
 
-from ravestate.modules.platform.ros import play
+from ravestate.modules.platform.ros import perform, play
 
-from .names import Settings, make_node, module, node, publisher, service, subscriber
+from .names import Settings, action, make_node, module, node, publisher, service, subscriber
 
-__all__ = ["Settings", "make_node", "module", "node", "play", "publisher", "service", "subscriber"]
+__all__ = ["Settings", "action", "make_node", "module", "node", "perform", "play", "publisher", "service", "subscriber"]

@@ -40,3 +40,4 @@ declarations = Declarations(1, module, node)
 subscriber = declarations.subscriber
 publisher = declarations.publisher
 service = declarations.service
+action = declarations.action

@@ -85,7 +85,7 @@ class Pipe:
     def _take(self, size):
         while len(self._rest) < size:
             fds = array.array("i")
-            block, ancillary, _, _ = self._sock.recvmsg(1 << 18, socket.CMSG_LEN(16 * fds.itemsize))
+            block, ancillary, _, _ = self._sock.recvmsg(1 << 16, socket.CMSG_LEN(16 * fds.itemsize))
             for level, type_, data in ancillary:
                 if level == socket.SOL_SOCKET and type_ == socket.SCM_RIGHTS:
                     fds.frombytes(data[: len(data) - len(data) % fds.itemsize])

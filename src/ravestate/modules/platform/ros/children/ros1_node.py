@@ -207,7 +207,14 @@ class Ros1Node:
             listed.append(
                 {"name": name, "types": [type_] if type_ else [], "servers": len([n for n in nodes if n != own])}
             )
-        return {"topics": list(found.values()), "services": listed, "actions": []}
+        actions = []
+        for name, row in found.items():  # an action is a group of topics
+            action, _, end = name.rpartition("/")
+            goal = found.get(action + "/goal", {"types": []})["types"]
+            if end == "status" and row["types"] == ["actionlib_msgs/GoalStatusArray"] and goal:
+                type_ = goal[0][: -len("ActionGoal")]
+                actions.append({"name": action, "types": [type_], "servers": row["publishers"]})
+        return {"topics": list(found.values()), "services": listed, "actions": actions}
 
     def close(self):
         time.sleep(0.05)  # the last messages leave in threads of rospy

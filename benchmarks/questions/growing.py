@@ -1,0 +1,191 @@
+"""What does ten times as much work cost?
+
+Each workload runs on the bare engine, whose rules do nothing. It runs at one size and at ten times that size:
+
+- Pairs: n spikes of each of two signals, for a rule `a & b`. The same for a rule that writes a slot.
+- Halves: n spikes wait for a counterpart that comes for the last one alone.
+- Topics: an input among n rules `input & topic_i`. The topics are inputs, or a classifier raises them.
+- Fallbacks: an input among n rules `input & topic_i` and n rules on the input alone.
+- Stalemates: n inputs, each of which makes two pairs of rules wait for each other.
+- Burst: n spikes at once, for a rule that writes a slot and one that writes none.
+
+The first two and the last two have ten times as many spikes, so ten times the time is linear. The others have one input
+among ten times as many rules.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping, Sequence
+
+import ravestate as rs
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, compare
+from benchmarks.peers.wire import serve
+from ravestate.engine.effects import Run
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Emit, Event, Finish
+
+SPIKES, RULES = 50, 100
+FACTOR = 10
+LINEAR = 13.0
+"""The most that ten times as many spikes may cost."""
+LIMIT = 1_000_000
+
+
+def declare(module: rs.Module, name: str, **options: object) -> None:
+    """Declare a rule whose function nobody calls."""
+
+    async def function(ctx: rs.RuleContext) -> None:
+        """Do nothing."""
+
+    module.rule(name=name, **options)(function)  # type: ignore[arg-type]
+
+
+def play(engine: Engine, given: Sequence[Event], emits: Mapping[str, str] | None = None, now: float = 0.0) -> int:
+    """Receive events and run rules until nothing is left to do; return the number of runs.
+
+    `emits` is the name of a rule → the signal that it raises.
+    """
+    runs = 0
+    for event in given:
+        engine.receive(event, now)
+    while effects := engine.effects():
+        for effect in effects:
+            if isinstance(effect, Run):
+                runs += 1
+                if emits and effect.rule.name in emits:
+                    engine.receive(Emit(emits[effect.rule.name], None, effect.run), now)
+                engine.receive(Finish(effect.run, "done"), now)
+    return runs
+
+
+def pairs(size: int, *, writes: bool) -> float:
+    m = rs.Module("m")
+    a, b, out = m.signal("a", limit=LIMIT), m.signal("b", limit=LIMIT), m.slot("out", "")
+    declare(m, "both", when=a & b, writes=out if writes else ())
+    engine = Engine(rs.compile(m))
+    given = [*(Emit("m:a", n) for n in range(size)), *(Emit("m:b", n) for n in range(size))]
+    begin = time.process_time()
+    assert play(engine, given) == size
+    return time.process_time() - begin
+
+
+def halves(size: int) -> float:
+    m = rs.Module("m")
+    a, b = m.signal("a", limit=LIMIT), m.signal("b")
+    declare(m, "both", when=a & b)
+    engine = Engine(rs.compile(m))
+    begin = time.process_time()
+    assert play(engine, [Emit("m:a", n) for n in range(size)]) == 0
+    assert play(engine, [Emit("m:b")]) == 1
+    return time.process_time() - begin
+
+
+def topics(size: int, *, raised: bool, fallbacks: int = 1) -> float:
+    m = rs.Module("m")
+    heard, out = m.signal("heard"), m.slot("out", "")
+    about = [m.signal(f"topic{n}") for n in range(size)]
+    if raised:
+        declare(m, "classifier", when=heard, emits=about)
+    for n, topic in enumerate(about):
+        declare(m, f"about{n}", when=heard & topic, writes=out)
+    for n in range(fallbacks):
+        declare(m, f"fallback{n}", when=heard, writes=out)
+    engine = Engine(rs.compile(m))
+    topic = about[size // 2].name
+    times: list[float] = []
+    for n in range(5):
+        now = 10.0 * n
+        given: list[Event] = [Emit("m:heard")] if raised else [Emit("m:heard"), Emit(topic)]
+        begin = time.process_time()
+        runs = play(engine, given, {"m:classifier": topic} if raised else None, now)
+        while (due := engine.next_deadline()) is not None:
+            engine.advance(due)
+            runs += play(engine, (), None, due)
+        times.append(time.process_time() - begin)
+        assert runs == 1 + raised, runs
+    return min(times)
+
+
+def stalemates(size: int) -> float:
+    m = rs.Module("m")
+    go, x, y = m.signal("go", limit=LIMIT), m.signal("x"), m.signal("y")
+    one, other = m.slot("one", ""), m.slot("other", "")
+    declare(m, "raises_x", when=go, writes=one, emits=x)
+    declare(m, "raises_y", when=go, writes=other, emits=y)
+    declare(m, "wants_y", when=go & y, writes=one)
+    declare(m, "wants_x", when=go & x, writes=other)
+    engine = Engine(rs.compile(m))
+    begin = time.process_time()
+    assert play(engine, [Emit("m:go", n) for n in range(size)]) == 2 * size
+    return time.process_time() - begin
+
+
+def burst(size: int, *, writes: bool) -> float:
+    m = rs.Module("m")
+    ping, out = m.signal("ping", limit=LIMIT), m.slot("out", "")
+    declare(m, "handle", when=ping, writes=out if writes else ())
+    engine = Engine(rs.compile(m))
+    begin = time.process_time()
+    assert play(engine, [Emit("m:ping", n) for n in range(size)]) == size
+    return time.process_time() - begin
+
+
+def grow(workload: str, size: int) -> float:
+    """Return the seconds of processor time of a workload at a size."""
+    match workload:
+        case "pairs":
+            return pairs(size, writes=False)
+        case "pairs that write":
+            return pairs(size, writes=True)
+        case "halves":
+            return halves(size)
+        case "stalemates":
+            return stalemates(size)
+        case "burst":
+            return burst(size, writes=False)
+        case "burst that writes":
+            return burst(size, writes=True)
+        case "topics, inputs":
+            return topics(size, raised=False)
+        case "topics, raised":
+            return topics(size, raised=True)
+        case "fallbacks":
+            return topics(size, raised=True, fallbacks=size)
+        case _:
+            raise ValueError(workload)
+
+
+SIZES = {
+    "pairs": SPIKES,
+    "pairs that write": SPIKES,
+    "halves": SPIKES,
+    "stalemates": SPIKES,
+    "burst": 1_000,
+    "burst that writes": 1_000,
+    "topics, inputs": RULES,
+    "topics, raised": RULES,
+    "fallbacks": RULES,
+}
+"""Workload → the size of the smaller run."""
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """Compare each workload with itself at a tenth of the size."""
+    ours = bench.ours("benchmarks.questions.growing")
+    few: dict[str, list[float]] = {name: [] for name in SIZES}
+    many: dict[str, list[float]] = {name: [] for name in SIZES}
+    for _ in bench.rounds(5, 2):
+        for name, size in SIZES.items():
+            few[name].append(min(ours.ask("grow", workload=name, size=size) for _ in range(5)))
+            many[name].append(ours.ask("grow", workload=name, size=FACTOR * size))
+    for name, size in SIZES.items():
+        title = f"{name}: {FACTOR * size:,}"
+        yield compare(
+            "growing", title, many[name], f"{size:,}", few[name], target="<= 13", reach=lambda ratio: ratio <= LINEAR
+        )
+
+
+if __name__ == "__main__":
+    serve(grow)

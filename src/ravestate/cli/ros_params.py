@@ -1,0 +1,83 @@
+"""Parameters of ROS as settings: those of a parameter file of ROS 2, and those of the parameter server of ROS 1."""
+
+from __future__ import annotations
+
+import os
+import xmlrpc.client
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, cast
+
+from ravestate.errors import UsageError
+from ravestate.yaml_text import load_yaml
+
+PARAMETERS = "ros__parameters"
+SIMULATED = "use_sim_time"
+"""The parameter of every node that says whether time is simulated; a setting of `ros1` and `ros2`."""
+OTHERS = ("qos_overrides", "start_type_description_service")
+"""The beginnings of parameters that ROS 2 gives to every node."""
+
+Found = list[tuple[str, Any]]
+
+
+def from_file(path: Path, node: str, namespace: str) -> Found:
+    """Return settings and their values from a parameter file of ROS 2.
+
+    Args:
+        path: The file. A launch file passes one with ``--params-file``.
+        node: The node's name.
+        namespace: Its namespace, such as ``/robot``.
+
+    Raises:
+        UsageError: The file is missing, or no parameter file.
+    """
+    try:
+        document = load_yaml(path.read_text("utf-8"), str(path))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"cannot read the parameter file {path}: {error}") from error
+    if not isinstance(document, Mapping):
+        raise UsageError(f"{path} is no parameter file: it begins with a node's name, or with /**")
+    own = "/" + f"{namespace}/{node}".strip("/")
+    found: Found = []
+    for name, content in cast("Mapping[str, Any]", document).items():
+        if name in ("/**", "/*") or "/" + name.strip("/") in (own, f"/{node}"):
+            inside = cast("dict[str, Any]", content) if isinstance(content, dict) else {}
+            parameters = inside.get(PARAMETERS)
+            if not isinstance(parameters, dict):
+                raise UsageError(f"{path}: {name} has no {PARAMETERS}")
+            found += _settings("ros2", parameters)
+    return found
+
+
+def from_server(node: str, namespace: str) -> Found:
+    """Return settings and their values from the parameter server of ROS 1: the private parameters of a node.
+
+    ``roslaunch`` puts them there. Without a master, there are none.
+    """
+    uri = os.environ.get("ROS_MASTER_URI") or "http://localhost:11311"
+    own = "/" + f"{namespace}/{node}".strip("/")
+    try:
+        with xmlrpc.client.ServerProxy(uri) as server:
+            code, _, content = cast("Any", server.getParam("/ravestate", own))
+            found = list(_settings("ros1", content)) if code == 1 and isinstance(content, dict) else []
+            code, _, simulated = cast("Any", server.getParam("/ravestate", f"/{SIMULATED}"))
+    except (OSError, xmlrpc.client.Error):
+        return []
+    return [*found, *([(f"ros1.{SIMULATED}", simulated)] if code == 1 else [])]
+
+
+def setting(version: str, name: str) -> str | None:
+    """Return the setting that a parameter is: ``module.key``; None for one that concerns no module."""
+    if name == SIMULATED:
+        return f"{version}.{SIMULATED}"
+    return name if "." in name and not name.startswith(OTHERS) else None
+
+
+def _settings(version: str, parameters: Any, above: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield settings and values. ``idle: {bored_after: 9}`` and ``idle.bored_after: 9`` are the same."""
+    for key, value in parameters.items():
+        name = f"{above}{key}"
+        if "." not in name and isinstance(value, Mapping):
+            yield from _settings(version, value, f"{name}.")
+        elif (known := setting(version, name)) is not None:
+            yield known, value

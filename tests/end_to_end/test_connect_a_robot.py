@@ -1,0 +1,160 @@
+"""The how-to "Connect a robot": a reader types its commands, from an empty folder on."""
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from websockets.sync.client import connect
+
+from modules.platform.ros.networks import Ros1, end
+from repo.snippets import blocks_in, save
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "how-to" / "connect-a-robot.md"
+STAYS = ("ravestate robot", "ravestate run")
+"""The beginnings of commands that run until Ctrl-C."""
+
+PIP = """#!/bin/sh
+# `pip install`, of this folder: does it have these extras, and can it be built?
+exec {python} -m pip --disable-pip-version-check install --no-index --no-deps --no-build-isolation --dry-run \
+    "$(echo "$2" | sed 's#^ravestate#{root}#')" 2>&1
+"""
+
+
+class Reader:
+    """Types the commands of a page into a shell, and reads the output."""
+
+    def __init__(self, folder: Path, environment: dict[str, str], start_master: Callable[[], None]) -> None:
+        self.folder = folder
+        self._start_master = start_master
+        self._environment = environment
+        self._running: list[subprocess.Popen[str]] = []
+
+    def type(self, command: str, shown: list[str]) -> str:
+        """Run a command; assert that it shows these lines; return its output."""
+        if command.startswith("ravestate robot"):
+            command += " --port 0"
+        if command == "ravestate ros check":
+            self._start_master()
+        if command.startswith(STAYS):
+            return self._start(command, shown)
+        place = self.folder / ".place"
+        done = subprocess.run(
+            ["bash", "-c", f"{command} && pwd > {place}"], cwd=self.folder, env=self._environment, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False,
+        )  # fmt: skip
+        if place.exists():
+            self.folder = Path(place.read_text().strip())
+        faults = any(line.startswith("FAULT") for line in shown)
+        assert done.returncode == int(faults), f"{command}\n{done.stdout}"
+        for line in shown:
+            assert line in done.stdout.splitlines(), f"{command}\n{done.stdout}"
+        return done.stdout
+
+    def _start(self, command: str, shown: list[str]) -> str:
+        process = subprocess.Popen(
+            ["bash", "-c", f"exec {command}"], cwd=self.folder, env=self._environment, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        )  # fmt: skip
+        self._running.append(process)
+        assert process.stdout is not None
+        said = ""
+        for line in shown:
+            said += process.stdout.readline()
+            assert re.sub(r":\d+/", ":8421/", said.splitlines()[-1]) == line
+        return said
+
+    def end(self) -> None:
+        """Press Ctrl-C: everything ends in order."""
+        while self._running:
+            process = self._running.pop()
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=60)
+            assert (process.returncode, errors) == (0, "")
+
+    def kill(self) -> None:
+        for process in self._running:
+            process.kill()
+            process.communicate()
+
+
+@pytest.fixture
+def reader(tmp_path: Path) -> Iterator[Reader]:
+    network = Ros1()
+    end(network.master)  # only `ros check` is to find one
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name, text in {
+        "pip": PIP.format(python=sys.executable, root=ROOT),
+        "ravestate": f'#!/bin/sh\nexec {sys.executable} -m ravestate "$@"\n',
+    }.items():
+        (programs / name).write_text(text)
+        (programs / name).chmod(0o755)
+    (tmp_path / "empty").mkdir()
+    environment = {
+        **os.environ, **network.environment, "PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "src"),
+        "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100), "RAVESTATE_ROBOYIO_BUS": "127.0.0.1:0",
+    }  # fmt: skip
+    made = Reader(tmp_path / "empty", environment, network.start_master)
+    yield made
+    made.kill()
+    network.stop()
+
+
+@contextlib.contextmanager
+def speaking(address: str) -> Iterator[threading.Event]:
+    """Stand to the left of the robot and speak, again and again; the event is set once it has turned and answered."""
+    answered, enough = threading.Event(), threading.Event()
+
+    def speak() -> None:
+        turned = said = False
+        with connect(address.replace("http", "ws") + "ws") as page:
+            while not enough.is_set():
+                page.send(json.dumps({"say": "Where is the lab?", "direction": 0.5}))
+                with contextlib.suppress(TimeoutError):
+                    while True:
+                        looks = json.loads(page.recv(timeout=0.5))
+                        turned, said = turned or looks["yaw"] > 0.2, said or looks["text"] == "Follow me, please."
+                        if turned and said:
+                            answered.set()
+
+    thread = threading.Thread(target=speak)
+    thread.start()
+    try:
+        yield answered
+    finally:
+        enough.set()
+        thread.join()
+
+
+def test_each_command_of_the_page_works(reader: Reader) -> None:
+    typed: list[str] = []
+    with contextlib.ExitStack() as conversation:
+        answered = threading.Event()
+        for block in blocks_in(PAGE):
+            if block.title is not None:
+                save(block, reader.folder)
+            if block.language != "console":
+                continue
+            commands = [part.splitlines() for part in re.split(r"^\$ ", block.code, flags=re.MULTILINE) if part]
+            for command, *shown in commands:
+                if command.startswith("ravestate robot"):
+                    conversation.close()
+                    reader.end()
+                said = reader.type(command, shown)
+                if command.startswith("ravestate robot"):
+                    answered = conversation.enter_context(speaking(said.split()[3].rstrip(",")))
+                if command.startswith(("ravestate robot guide.py", "ravestate run")):
+                    assert answered.wait(60), f"{command}: the robot did not turn and answer"
+                typed.append(command)
+        conversation.close()
+        reader.end()
+    assert len(typed) >= 8

@@ -1,0 +1,21 @@
+"""Only the latest results are kept."""
+
+from ravestate.language.recent import keep_latest
+
+
+def test_the_oldest_entries_are_dropped() -> None:
+    kept = {"a": 1, "b": 2, "c": 3}
+    keep_latest(kept, {"d": 4}, 3)
+    assert list(kept.items()) == [("b", 2), ("c", 3), ("d", 4)]
+
+
+def test_an_entry_that_comes_again_counts_as_new() -> None:
+    kept = {"a": 1, "b": 2, "c": 3}
+    keep_latest(kept, {"a": 5, "d": 4}, 3)
+    assert list(kept.items()) == [("c", 3), ("a", 5), ("d", 4)]
+
+
+def test_more_new_entries_than_may_be_kept() -> None:
+    kept = {"a": 1}
+    keep_latest(kept, {"b": 2, "c": 3, "d": 4}, 2)
+    assert kept == {"c": 3, "d": 4}
