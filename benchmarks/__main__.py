@@ -12,7 +12,7 @@ from benchmarks.bench import Bench
 from benchmarks.figures import Figure
 from benchmarks.machine import describe
 from benchmarks.questions import QUESTIONS
-from benchmarks.table import as_table, write_json
+from benchmarks.table import as_table, write_json, write_page
 
 
 def main() -> int:
@@ -27,6 +27,8 @@ def main() -> int:
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     if options.json:
         write_json(options.json, machine, figures)
+    if options.page:
+        write_page(options.page, machine, figures)
     print(as_table(figures))
     print(f"\n{machine}. {time.monotonic() - begin:.0f} s{' (--quick)' if options.quick else ''}.")
     print("Medians over repetitions in which all contestants take turns; ratio = ours / theirs (quartiles).")
@@ -59,6 +61,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("question", nargs="*", help="which to ask; all by default")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions: a first look in about a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures to a file as well")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="put the table into a page that has a place for it")
     options = parser.parse_args()
     for name in options.question:
         if name not in QUESTIONS:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from benchmarks.figures import Figure, Spread
 
-__all__ = ["as_table", "write_json"]
+__all__ = ["as_table", "write_json", "write_page"]
 
 HEAD = ("question", "measured", "ours", "against", "theirs", "ratio", "target", "reached")
 
@@ -26,6 +26,25 @@ def write_json(path: Path, machine: str, figures: Iterable[Figure]) -> None:
     """Write all figures as JSON, unrounded: seconds, bytes, shares of a core."""
     document = {"machine": machine, "figures": [asdict(figure) for figure in figures]}
     path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+
+
+def write_page(path: Path, machine: str, figures: Sequence[Figure]) -> None:
+    """Put the table of each question into a Markdown page that has the comment ``<!-- figures of QUESTION -->``.
+
+    Raises:
+        ValueError: The page has no place for any of the questions.
+    """
+    page = path.read_text(encoding="utf-8")
+    found = False
+    for question in dict.fromkeys(figure.question for figure in figures):
+        before, begin, rest = page.partition(f"<!-- figures of {question} -->\n")
+        _, end, after = rest.partition("<!-- end of the figures -->\n")
+        if end:
+            table = as_table(figure for figure in figures if figure.question == question)
+            page, found = f"{before}{begin}\n{table}\n\n{machine}.\n\n{end}{after}", True
+    if not found:
+        raise ValueError(f"{path} has no comment <!-- figures of QUESTION --> for these questions")
+    path.write_text(page, encoding="utf-8")
 
 
 def _row(figure: Figure) -> tuple[str, ...]:

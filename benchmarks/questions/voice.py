@@ -111,6 +111,7 @@ class LiveLine:
     """A line on the clock of this machine: a track is the microphone, and the first sound of each answer is timed."""
 
     cancels_echo = True
+    ended = False
 
     def __init__(self, pcm: bytes) -> None:
         self._pcm = pcm

@@ -61,9 +61,19 @@ def test_ctrl_c_ends_it_in_order(folder: Path) -> None:
     assert (process.returncode, out, complaints(errors)) == (0, "farewell\n", "")
 
 
-def test_an_unfit_setting_is_a_fault_of_the_agent(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unfit_setting_is_wrong_use(capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = call(capsys, "run", "idle", "--set", "idle.bored_after=abc")
-    assert code == 1 and "setting idle.bored_after = 'abc': " in errors
+    assert code == 2 and "setting idle.bored_after = 'abc': " in errors
+
+
+def test_a_spoken_conversation_has_a_transcript_unless_a_platform_shows_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ran: list[list[str]] = []
+    monkeypatch.setattr("ravestate.runtime.run.run", lambda *modules, **_: ran.append([each.name for each in modules]))
+    for modules in (["voiceio"], ["voiceio", "conio"], ["voiceio", "webio"], ["idle"]):
+        assert call(capsys, "run", *modules) == (0, "", "")
+    assert ["transcript" in modules for modules in ran] == [True, False, False, False]
 
 
 def test_a_platform_without_a_user_is_told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -99,6 +99,8 @@ def test_talk_holds_a_conversation(folder: Path, capsys: pytest.CaptureFixture[s
 def test_wrong_use_is_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = call(capsys, "voice", "talk", "none.wav", "-o", "out.wav", "rawio")
     assert code == 2 and "there is no file none.wav" in errors
+    code, _, errors = call(capsys, "voice", "check", "--set", "voiceio.pause=abc")
+    assert code == 2 and "voiceio.pause" in errors
     code, _, errors = call(capsys, "voice", "check", "--set", "voiceio.half=1")
     assert code == 2 and "half_duplex" in errors
 

@@ -45,7 +45,7 @@ def test_the_readme_is_a_page_long() -> None:
 def test_every_extra_is_told() -> None:
     extras = set(tomllib.loads(text_of("pyproject.toml"))["project"]["optional-dependencies"])
     page = text_of("docs/how-to/install-it-in-a-project.md")
-    assert set(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE)) == extras - {"dev", "docs"}
+    assert set(re.findall(r"^\| `([\w-]+)` \|", page, re.MULTILINE)) == extras - {"dev", "docs"}
 
 
 def test_the_models_are_those_that_make_installs() -> None:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
 
-from ravestate.errors import UsageError
+from ravestate.errors import DeclarationErrors, UsageError
 from ravestate.loading.spec import AgentSpec, with_required
 from ravestate.modules import BUILT_IN
 
@@ -61,9 +61,25 @@ def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announ
     for text in options.sets:
         agent.set(text)
     agent.check()
+    if options.sets:
+        check_values(agent)
     if options.seed is not None:
         agent.seed = options.seed
     return agent
+
+
+def check_values(agent: AgentSpec) -> None:
+    """Check the values of the settings.
+
+    Raises:
+        UsageError: A value is wrong. The message lists all wrong values.
+    """
+    from ravestate.settings import load_settings
+
+    try:
+        load_settings(with_required(agent.modules), agent.settings)
+    except DeclarationErrors as error:
+        raise UsageError("\n  - ".join(["wrong settings:", *map(str, error.exceptions)])) from None
 
 
 def announce_platforms(agent: AgentSpec, command: str) -> None:

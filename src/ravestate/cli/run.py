@@ -6,6 +6,8 @@ import argparse
 
 from ravestate.cli import agent
 from ravestate.cli.agent import listing
+from ravestate.declare.module import Module
+from ravestate.loading.spec import AgentSpec, with_required
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,5 +21,17 @@ def run(options: argparse.Namespace) -> int:
 
     chosen = agent.load_agent(options)
     agent.announce_platforms(chosen, options.command)
-    run_modules(*chosen.modules, **chosen.options())
+    run_modules(*chosen.modules, *_transcript(chosen), **chosen.options())
     return 0
+
+
+def _transcript(chosen: AgentSpec) -> list[Module]:
+    """Return a module that prints a spoken conversation, if no other platform shows it."""
+    modules = with_required(chosen.modules)
+    names = {module.name for module in modules}
+    if "voiceio" not in names or "conio" in names or any(module.serve is not None for module in modules):
+        return []
+    from ravestate.cli.voice import show
+    from ravestate.testing.talking import transcript
+
+    return [transcript(show)]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.cli import complete
-from ravestate.cli.agent import load_agent
+from ravestate.cli.agent import check_values, load_agent
 from ravestate.errors import PlatformError, UsageError
 from ravestate.loading.spec import AgentSpec
 from ravestate.modules import BUILT_IN
@@ -80,6 +80,7 @@ def settings_of(options: argparse.Namespace) -> Settings:
     for text in options.sets:
         agent.set(text)
     agent.check()
+    check_values(agent)
     return load_settings([voiceio.module], {"voiceio": agent.settings.get("voiceio", {})})["voiceio"]
 
 
@@ -148,11 +149,12 @@ def _talk(options: argparse.Namespace) -> int:
         complete.leave_out_absent(agent, "voice")
         complete.choose_small_talk(agent, "voice")
     _leave_out_platforms(agent)
-    talk(options.recording, options.output, *agent.modules, settings=agent.settings, seed=agent.seed, show=_show)
+    talk(options.recording, options.output, *agent.modules, settings=agent.settings, seed=agent.seed, show=show)
     return 0
 
 
-def _show(one: Said) -> None:
+def show(one: Said) -> None:
+    """Print a line of a transcript: begin, end, speaker, words."""
     mark = " …" if one.cut else ""
     print(f"{one.start:8.2f} {one.end:8.2f}  {one.speaker + ':':<6} {one.text}{mark}", flush=True)
 

@@ -88,7 +88,7 @@ def talk(
         check_target(Path(output))
     files = {"source": str(Path(recording).absolute()), "sink": str(Path(output).absolute()) if output else ""}
     given["voiceio"] = {**given.get("voiceio", {}), **files}
-    context = Context(*modules, voiceio, _witness(note), settings=given, seed=seed, trace=record or False)
+    context = Context(*modules, voiceio, transcript(note), settings=given, seed=seed, trace=record or False)
 
     async def hold() -> None:
         loop = asyncio.get_running_loop()
@@ -102,8 +102,8 @@ def talk(
     return said
 
 
-def _witness(note: Callable[[Said], None]) -> Module:
-    """Return a module that notes the utterances of both sides."""
+def transcript(note: Callable[[Said], None]) -> Module:
+    """Return a module that calls `note` with each utterance of both sides as soon as it is over."""
     from ravestate.modules import rawio, voiceio
 
     witness = Module("transcript", requires=[voiceio])

@@ -78,6 +78,16 @@ async def remember(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = f"You heard {ctx[rawio.heard]!r}"
 
 
+counter = rs.Module("counter", requires=[rawio])
+
+
+@counter.rule(when=rawio.input.changed, reads=rawio.heard, writes=rawio.output)
+async def count(ctx: rs.RuleContext) -> None:
+    """Count in sentences, or say what the user has heard."""
+    asked = ctx.payload(rawio.input.changed) == "what did I hear?"
+    ctx[rawio.output] = f"You heard {ctx[rawio.heard]}" if asked else "One. Two. Three."
+
+
 two_part = rs.Module("two_part", requires=[rawio])
 
 

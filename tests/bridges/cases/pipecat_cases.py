@@ -37,6 +37,7 @@ from pipecat.tests import utils
 from pipecat.turns.user_start import ExternalUserTurnStartStrategy
 from pipecat.turns.user_stop import ExternalUserTurnStopStrategy
 from pipecat.turns.user_turn_strategies import UserTurnStrategies
+from pipecat_sound import Loudspeaker, Voice
 
 import ravestate as rs
 from ravestate.bridges.pipecat import RavestateProcessor
@@ -180,10 +181,19 @@ async def test_several_utterances_that_wait_are_dropped_by_an_interruption() -> 
 # ------------------------------------------------------------------------------------------- with aggregators
 
 
-async def converse(agent: AnyAgent, *turns: list[Frame], barge_in: str = "") -> list[tuple[str, str]]:
+async def converse(
+    agent: AnyAgent, *turns: list[Frame], barge_in: str = "", voice: Sequence[FrameProcessor] = ()
+) -> list[tuple[str, str]]:
     """Hold a conversation in a pipeline with aggregators; return each speaker and what was said, as Pipecat keeps it.
 
-    The user's next turn comes when the agent's turn is over. It begins before, if the agent says the piece `barge_in`.
+    The user's next turn comes when the agent's turn is over. It begins before, if the agent says the piece `barge_in`, or
+    if the loudspeaker stops.
+
+    Args:
+        agent: The agent.
+        turns: The frames of each turn of the user.
+        barge_in: The piece of text at which the user begins to speak.
+        voice: A voice and a loudspeaker; none for a conversation in text.
     """
     context = LLMContext()
     strategies = UserTurnStrategies(
@@ -191,6 +201,7 @@ async def converse(agent: AnyAgent, *turns: list[Frame], barge_in: str = "") -> 
     )
     pair = LLMContextAggregatorPair(context, user_params=LLMUserAggregatorParams(user_turn_strategies=strategies))
     rest = [*turns[1:], [EndWorkerFrame()]]
+    processor = RavestateProcessor(agent)
 
     class Turns(BaseObserver):
         async def on_process_frame(self, data: FrameProcessed) -> None:
@@ -202,13 +213,21 @@ async def converse(agent: AnyAgent, *turns: list[Frame], barge_in: str = "") -> 
                 await send(pair.user(), rest[0].pop(0))  # the user begins to speak
 
         async def on_push_frame(self, data: FramePushed) -> None:
-            over = data.source is pair.assistant() and isinstance(data.frame, LLMContextAssistantTurnFrame)
-            if over and data.direction is FrameDirection.UPSTREAM:  # the processor hears of the agent's turn first
+            over = data.source is processor and isinstance(data.frame, LLMContextAssistantTurnFrame)
+            if over and data.direction is FrameDirection.UPSTREAM:  # the processor has heard of the agent's turn
                 for frame in rest.pop(0):
                     await send(pair.user(), frame)
 
-    pipeline = Pipeline([pair.user(), RavestateProcessor(agent), pair.assistant()])
+    async def interrupt() -> None:
+        for each in voice:
+            if isinstance(each, Loudspeaker):
+                await each.stopped.wait()
+                await send(pair.user(), rest[0].pop(0))
+
+    interrupting = asyncio.create_task(interrupt())
+    pipeline = Pipeline([pair.user(), processor, *voice, pair.assistant()])
     await run_pipeline(pipeline, frames_to_send=turns[0], send_end_frame=False, observers=[Turns()])
+    interrupting.cancel()
     return [(str(message["role"]), str(message["content"])) for message in context.get_messages()]
 
 
@@ -238,6 +257,23 @@ async def test_the_agent_knows_what_was_heard_of_an_interrupted_utterance() -> N
         ("user", "what did I hear?"),
         ("assistant", "You heard 'One, two,'"),
     ]
+
+
+async def test_a_voice_speaks_the_answers() -> None:
+    loudspeaker = Loudspeaker()
+    talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
+    assert (
+        loudspeaker.played == "One.Two.Three.You heard One.Two.Three."
+    )  # a voice gets each sentence without spaces around it
+    assert talk[1] == ("assistant", "One. Two. Three.")
+
+
+async def test_an_interruption_stops_the_voice_and_the_agent_knows_what_was_heard() -> None:
+    loudspeaker = Loudspeaker()
+    loudspeaker.most = len("One.Tw")
+    talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
+    assert loudspeaker.played == "One.TwYou heard One."
+    assert talk[1:] == [("assistant", "One."), ("user", "what did I hear?"), ("assistant", "You heard One.")]
 
 
 async def test_the_user_who_speaks_is_noticed() -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ravestate.modules.platform.chats.addressing import command_in, for_another, is_emoji, mentions, without_mention
+from ravestate.modules.platform.chats.addressing import addressed, command_in, is_emoji, mentions, without_mention
 
 
 @pytest.mark.parametrize(
@@ -14,11 +14,18 @@ def test_a_command_is_the_whole_message(text: str, name: str | None) -> None:
     assert command_in(text) == name
 
 
-def test_a_command_may_be_for_another_bot() -> None:
-    assert for_another("/help@other_bot", "robin_bot")
-    assert not for_another("/help@Robin_Bot", "robin_bot")
-    assert not for_another("/help", "robin_bot")
-    assert not for_another("Ask other_bot", "robin_bot")
+@pytest.mark.parametrize(
+    ("text", "group", "called", "found"),
+    [("/help@other_bot", False, False, None), ("/help@Robin_Bot", True, False, ("help", "/help@Robin_Bot")),
+     ("/help", True, False, ("help", "/help")), ("Ask other_bot", False, False, (None, "Ask other_bot")),
+     ("How are you?", True, False, None), ("How are you?", True, True, (None, "How are you?")),
+     ("Robin, how are you?", True, False, (None, "Robin, how are you?")),
+     ("@robin_bot: how are you?", True, False, (None, "how are you?"))],
+)  # fmt: skip
+def test_in_a_group_a_message_is_for_the_agent_if_it_is_addressed(
+    text: str, group: bool, called: bool, found: object
+) -> None:
+    assert addressed(text, ("@robin_bot",), ("Robin",), group=group, called=called) == found
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from modules.platform.matrixio.conftest import Account, Homeserver, register
-from modules.platform.matrixio.test_restart import Robin
+from modules.platform.matrixio.test_restart import robin
 from ravestate.testing import CHECKS, Driver
 
 
@@ -23,7 +23,7 @@ class Users:
     async def __aenter__(self) -> None:
         self._http = httpx.AsyncClient(timeout=60.0, trust_env=False)
         self._robin = await register(self._server, self._http, "Robin")
-        self._process = Robin(self._robin, self._folder)
+        self._process = robin(self._robin, self._folder)
         await self.restart()
 
     async def __aexit__(self, *_: object) -> None:

@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import logging
-import sqlite3
 from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
@@ -11,12 +10,12 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from modules.platform.chats.faults import fill_disk
 from modules.platform.matrixio.conftest import Account, Homeserver, accounts
 from modules.platform.matrixio.proxy import Proxy
 from modules.platform.telegramio.test_serving import host, parrot
 from ravestate.errors import PlatformError
 from ravestate.modules import matrixio, rawio
-from ravestate.modules.platform.chats import Incoming, Store
 from ravestate.modules.platform.matrixio.account import JOINS
 from ravestate.runtime.agent import Agent
 
@@ -71,7 +70,7 @@ def _short_pages(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def _short_waits(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("FIRST_WAIT", "LONGEST_WAIT"):
-        monkeypatch.setattr(f"ravestate.modules.platform.chats.sender.{name}", 0.01)
+        monkeypatch.setattr(f"ravestate.modules.platform.chats.attempts.{name}", 0.01)
 
 
 @pytest.mark.usefixtures("_short_pages")
@@ -236,7 +235,7 @@ FAULTS = [
 def test_nothing_is_lost_or_doubled_after_failed_requests(
     homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, faults: list[tuple[str, str]]
 ) -> None:
-    for place in ("chats.sender.FIRST_WAIT", "chats.sender.LONGEST_WAIT"):
+    for place in ("chats.attempts.FIRST_WAIT", "chats.attempts.LONGEST_WAIT"):
         monkeypatch.setattr(f"ravestate.modules.platform.{place}", 0.01)
     for name, seconds in {"account.ANSWER": 1.0, "account.POLL": 100, "carrier.FILE": 1.0}.items():
         monkeypatch.setattr(f"ravestate.modules.platform.matrixio.{name}", seconds)
@@ -267,14 +266,7 @@ def test_nothing_is_lost_or_doubled_after_failed_requests(
 def test_events_that_cannot_be_kept_come_again(
     homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    take, failures = Store.take, [sqlite3.OperationalError("database or disk is full")] * 2
-
-    def take_if_there_is_space(store: Store, message: Incoming) -> Any:
-        if failures:
-            raise failures.pop()
-        return take(store, message)
-
-    monkeypatch.setattr(Store, "take", take_if_there_is_space)
+    failures = fill_disk(monkeypatch)
 
     @live("Robin", "Ada")
     async def test(folder: Path, robin: Account, ada: Account) -> None:
@@ -328,8 +320,8 @@ async def test_a_picture_is_sent_as_what_it_is(tmp_path: Path, robin: Account, a
 def test_an_invitation_outlives_a_failure_and_a_restart(
     homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ravestate.modules.platform.chats.sender.FIRST_WAIT", 1000.0)
-    monkeypatch.setattr("ravestate.modules.platform.chats.sender.LONGEST_WAIT", 1000.0)
+    monkeypatch.setattr("ravestate.modules.platform.chats.attempts.FIRST_WAIT", 1000.0)
+    monkeypatch.setattr("ravestate.modules.platform.chats.attempts.LONGEST_WAIT", 1000.0)
 
     @live("Robin", "Ada")
     async def test(folder: Path, robin: Account, ada: Account) -> None:

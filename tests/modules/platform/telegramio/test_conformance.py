@@ -7,19 +7,29 @@ from pathlib import Path
 import pytest
 
 from modules.platform.telegramio.conftest import Bot
-from modules.platform.telegramio.test_restart import Robin
+from modules.platform.telegramio.test_restart import robin
 from ravestate.testing import CHECKS, Driver
 
 
-class Users(Robin):
+class Users:
     """The users of a bot whose agent runs in a process of its own."""
 
     def __init__(self, bot: Bot, folder: Path) -> None:
-        super().__init__(bot, folder, "ravestate.testing.platforms:echo")
+        self._bot = bot
+        self._agent = robin(bot, folder, "ravestate.testing.platforms:echo")
         self._chats: dict[str, int] = {}
 
+    async def __aenter__(self) -> None:
+        await self.restart()
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.kill()
+
     async def restart(self) -> None:
-        await self.start()
+        await self._agent.start()
+
+    async def kill(self) -> None:
+        await self._agent.kill()
 
     async def say(self, user: str, text: str) -> None:
         await self._bot.say(self._chats.setdefault(user, len(self._chats) + 1), text)
@@ -36,4 +46,4 @@ class Users(Robin):
 
 @pytest.mark.parametrize("check", CHECKS)
 def test_telegram_conforms(check: Callable[[Driver], Awaitable[None]], bot: Bot, tmp_path: Path) -> None:
-    asyncio.run(check(Users(bot, tmp_path)))  # type: ignore[arg-type]
+    asyncio.run(check(Users(bot, tmp_path)))

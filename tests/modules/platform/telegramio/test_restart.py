@@ -1,14 +1,12 @@
 """The agent or the server dies in the middle of 200 conversations: no message is lost, and none is answered twice."""
 
 import asyncio
-import contextlib
-import os
 import random
 import signal
-import sys
 from collections import defaultdict
 from pathlib import Path
 
+from modules.platform.chats.process import AgentProcess
 from modules.platform.telegramio.conftest import Bot, Telegram
 
 CHATS = range(1, 201)
@@ -26,48 +24,16 @@ async def repeat(ctx):
 """
 
 
-class Robin:
-    """An agent with a module, in a process of its own: ``async with`` starts it, and kills it at the end."""
-
-    def __init__(self, bot: Bot, folder: Path, module: str) -> None:
-        self._bot = bot
-        self._folder = folder
-        self._module = module
-        self.process: asyncio.subprocess.Process | None = None
-
-    async def __aenter__(self) -> "Robin":
-        await self.start()
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.kill()
-
-    async def start(self) -> None:
-        environment = {
-            **os.environ,
-            "RAVESTATE_TELEGRAMIO_TOKEN": self._bot.token,
-            "RAVESTATE_TELEGRAMIO_BASE_URL": f"{self._bot.telegram.root}/bot",
-            "RAVESTATE_TELEGRAMIO_PATH": str(self._folder / "chats.sqlite"),
-            "RAVESTATE_TELEGRAMIO_RATE": "1000",
-        }
-        self.process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "ravestate", "run", "telegramio", self._module, env=environment
-        )
-
-    async def kill(self) -> None:
-        await self.end(signal.SIGKILL)
-
-    async def end(self, signal: signal.Signals) -> int:
-        assert self.process is not None
-        with contextlib.suppress(ProcessLookupError):
-            self.process.send_signal(signal)
-        return await self.process.wait()
+def robin(bot: Bot, folder: Path, module: str) -> AgentProcess:
+    """Return an agent with a module, in a process of its own."""
+    address, path = f"{bot.telegram.root}/bot", folder / "chats.sqlite"
+    return AgentProcess("telegramio", module, token=bot.token, base_url=address, path=path, rate=1000)
 
 
-def parrot(bot: Bot, folder: Path) -> Robin:
+def parrot(bot: Bot, folder: Path) -> AgentProcess:
     file = folder / "parrot.py"
     file.write_text(PARROT)
-    return Robin(bot, folder, str(file))
+    return robin(bot, folder, str(file))
 
 
 async def crowd(bot: Bot, n: int) -> None:
@@ -88,20 +54,20 @@ def test_two_hundred_chats_outlive_kills_of_the_agent_and_of_the_server(own_tele
     chance = random.Random(7)
 
     async def test() -> None:
-        async with asyncio.timeout(120), parrot(bot, tmp_path) as robin:
+        async with asyncio.timeout(120), parrot(bot, tmp_path) as agent:
             await crowd(bot, 0)
             await bot.said(chance.randrange(20, 180))
-            await robin.kill()
+            await agent.kill()
             await crowd(bot, 1)  # while the agent is down
-            await robin.start()
+            await agent.start()
             await bot.said(chance.randrange(220, 280))
             own_telegram.kill()
             own_telegram.start()
             await bot.said(chance.randrange(300, 380))
-            await robin.kill()
+            await agent.kill()
             own_telegram.kill()
             own_telegram.start()
-            await robin.start()
+            await agent.start()
             await bot.said(400)
             await bot.say(999, "the last")
             said = await bot.said(401)
@@ -115,10 +81,10 @@ def test_an_agent_that_ends_in_order_leaves_nothing_behind(own_telegram: Telegra
 
     async def test() -> None:
         async with asyncio.timeout(120):
-            async with parrot(bot, tmp_path) as robin:
+            async with parrot(bot, tmp_path) as agent:
                 await crowd(bot, 0)
                 await bot.said(10)
-                assert await robin.end(signal.SIGINT) == 0
+                assert await agent.end(signal.SIGINT) == 0
             async with parrot(bot, tmp_path):
                 assert by_chat(await bot.said(200)) == {chat: [f"0 of {chat}"] for chat in CHATS}
 

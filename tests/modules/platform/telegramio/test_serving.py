@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import logging
-import sqlite3
 from collections.abc import AsyncGenerator, Callable, Coroutine
 from pathlib import Path
 from typing import Any
@@ -11,10 +10,10 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from modules.platform.chats.faults import fill_disk
 from modules.platform.telegramio.conftest import Bot, free_port
 from ravestate.errors import PlatformError
 from ravestate.modules import interloc, rawio, telegramio
-from ravestate.modules.platform.chats import Incoming, Store
 from ravestate.modules.platform.chats.voice import spoken
 from ravestate.runtime.agent import Agent
 
@@ -67,7 +66,7 @@ async def running(bot: Bot, folder: Path, *modules: Any, **settings: Any) -> Asy
 
 @pytest.fixture(autouse=True)
 def _short_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ravestate.modules.platform.chats.sender.FIRST_WAIT", 0.01)
+    monkeypatch.setattr("ravestate.modules.platform.chats.attempts.FIRST_WAIT", 0.01)
     monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.CONFLICT_WAIT", 0.01)
 
 
@@ -404,14 +403,7 @@ def test_a_server_that_does_not_answer_in_time_is_asked_again(
 
 
 def test_updates_that_cannot_be_kept_come_again(bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    take, failures = Store.take, [sqlite3.OperationalError("database or disk is full")] * 2
-
-    def take_if_there_is_space(store: Store, message: Incoming) -> Any:
-        if failures:
-            raise failures.pop()
-        return take(store, message)
-
-    monkeypatch.setattr(Store, "take", take_if_there_is_space)
+    failures = fill_disk(monkeypatch)
 
     @live
     async def test(bot: Bot, folder: Path) -> None:

@@ -127,7 +127,9 @@ def test_an_unplugged_microphone_is_opened_again(audio: PortAudio) -> None:
     run(follow)
 
 
-def test_a_loudspeaker_that_goes_away_does_not_stop_the_agent(audio: PortAudio) -> None:
+def test_a_loudspeaker_that_goes_away_does_not_stop_the_agent(
+    audio: PortAudio, caplog: pytest.LogCaptureFixture
+) -> None:
     """The agent listens on. It looks for the loudspeaker when it has something to say."""
 
     async def follow() -> None:
@@ -160,6 +162,8 @@ def test_a_loudspeaker_that_goes_away_does_not_stop_the_agent(audio: PortAudio) 
         moving.cancel()
 
     run(follow)
+    assert "the loudspeaker is gone: looking for it again" in caplog.messages
+    assert caplog.messages[-1] == "the loudspeaker is back"
 
 
 async def move_microphone(audio: PortAudio) -> None:

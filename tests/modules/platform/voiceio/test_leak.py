@@ -5,7 +5,8 @@ import numpy as np
 from modules.platform.voiceio.speech import spoken, track
 from modules.platform.voiceio.test_echo import room
 from ravestate.modules.platform.voiceio.activity import CHUNK
-from ravestate.modules.platform.voiceio.echo import FRAME
+from ravestate.modules.platform.voiceio.ear import Ear
+from ravestate.modules.platform.voiceio.echo import FRAME, EchoCanceller
 from ravestate.modules.platform.voiceio.leak import Leak
 
 FAR = "Once there was a robot. It lived in a museum full of old paintings."
@@ -60,3 +61,24 @@ def test_an_echo_that_comes_later_is_found() -> None:
         for at in range(0, len(far) - FRAME, FRAME):
             leak.play(near[at : at + FRAME].astype("<i2"), far[at : at + FRAME].astype("<i2"))
         assert leak.echoes == bool(near.any())
+
+
+def articulate(near: np.ndarray, far: np.ndarray) -> list[float]:
+    """The times at which an ear with a canceller is sure that somebody speaks, while the agent speaks."""
+    ear, found = Ear(canceller=EchoCanceller()), list[float]()
+    a, b = (np.clip(each, -32768, 32767).astype("<i2").tobytes() for each in (near, far))
+    for at in range(0, len(a) - 640, 640):
+        events = ear.feed(a[at : at + 640], at / 32000, b[at : at + 640], agent_speaks=True)
+        found += [at / 32000 for event in events if event == "articulate"]
+    ear.close()
+    return found
+
+
+def test_a_user_who_goes_on_as_the_first_utterance_begins_is_heard_in_a_room_with_an_echo() -> None:
+    """The canceller has not learnt the room yet, and the user's sound must not teach it that the echo is loud."""
+    for voice in ("piper", "espeak:en-us"):
+        far, user = sound((0.5, spoken(FAR, voice))), sound((0.7, "Do you know a story about an old ship?"))
+        for decibels in (-10.0, -20.0):
+            echo = room(far, decibels)
+            assert articulate(echo, far) == []
+            assert [] < articulate(user + echo, far) < [1.7], (voice, decibels)

@@ -211,3 +211,27 @@ def test_words_that_nobody_waits_for_any_more_may_fail_quietly(monkeypatch: pyte
     monkeypatch.setattr(opening, "Recogniser", heard)
     run(talk)
     assert not failures
+
+
+@pytest.mark.parametrize(
+    ("text", "confidence", "length", "what"),
+    [
+        ("Amen.", 0.5, 0.3, "false_alarm"),  # a hum, as a recogniser may write it
+        ("Mm-hmm.", 0.5, 0.5, "back_channel"),
+        ("Stop.", 0.5, 0.3, "utterance"),
+        ("Why?", 0.8, 0.3, "utterance"),
+        ("the mountains and my grandmother", 0.5, 1.8, "utterance"),
+    ],
+)
+def test_a_short_sound_interrupts_the_agent_only_if_its_words_are_clear_or_demand_it(
+    text: str, confidence: float, length: float, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def talk() -> None:
+        conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
+        heard = Recognised(text, confidence)
+        assert conversation.verdict(Turn(3.0, 3.0 + length, agent_spoke=True), heard)[0] == what
+        assert conversation.verdict(Turn(3.0, 3.0 + length), heard)[0] == "utterance"  # nobody is interrupted
+        conversation.close()
+
+    monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))
+    run(talk)

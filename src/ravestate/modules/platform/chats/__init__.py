@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from .addressing import command_in, for_another, is_emoji, mentions, without_mention
+from .addressing import addressed, command_in, is_emoji, mentions, without_mention
+from .attempts import Attempts
 from .chat import Chat
 from .commands import COMMANDS, Command
+from .library import library
 from .messages import Carrier, DeliveryError, Incoming, Outgoing, Person
 from .room import Room
 from .rules import connect
 from .secrecy import secret
-from .sender import back_off
 from .settings import ChatSettings
 from .store import Store
 
 __all__ = [
     "COMMANDS",
+    "Attempts",
     "Carrier",
     "Chat",
     "ChatSettings",
@@ -25,10 +27,10 @@ __all__ = [
     "Person",
     "Room",
     "Store",
-    "back_off",
+    "addressed",
     "command_in",
     "connect",
-    "for_another",
+    "library",
     "is_emoji",
     "mentions",
     "secret",

@@ -18,10 +18,33 @@ def command_in(text: str) -> str | None:
     return found[1].casefold() if found and found[1].casefold() in COMMANDS else None
 
 
-def for_another(text: str, me: str) -> bool:
-    """Return whether a message is a command for another bot: ``/help@other_bot``."""
+def addressed(
+    text: str, handles: Iterable[str], names: Iterable[str], *, group: bool, called: bool = False
+) -> tuple[str | None, str] | None:
+    """Return the command and the words for the agent in a message; None if the message is not for the agent.
+
+    Args:
+        text: The message.
+        handles: The agent's handles on the messenger, such as ``@robin_bot``. They are no part of the words.
+        names: The agent's names. In a group, a message with one of them is for the agent.
+        group: Whether several people may be in the chat.
+        called: Whether the message is for the agent in another way, e.g. as a reply to it.
+
+    Example:
+        >>> addressed("@robin_bot, how are you?", ["@robin_bot"], ["Robin"], group=True)
+        (None, 'how are you?')
+        >>> addressed("/help@other_bot", ["@robin_bot"], ["Robin"], group=True)
+    """
+    handles = tuple(handles)
     found = COMMAND.match(text)
-    return bool(found and found[2] and found[2].casefold() != me.casefold())
+    if found and found[2] and f"@{found[2]}".casefold() not in [each.casefold() for each in handles]:
+        return None
+    command = command_in(text)
+    if group and not (command or called or mentions(text, (*handles, *names))):
+        return None
+    for handle in handles:
+        text = without_mention(text, handle)
+    return command, text
 
 
 def mentions(text: str, names: Iterable[str]) -> bool:

@@ -17,12 +17,12 @@ from ravestate.modules import interloc, rawio
 from ravestate.modules._text import printable
 
 from . import people
+from .attempts import back_off
 from .commands import COMMANDS, FORGOTTEN, NOT_FORGOTTEN, UNCLEAR, UNHEARD, UNSEEN, Command, explanation
 from .draft import Draft
 from .files import fetched
 from .leaving import agent_left
 from .messages import DeliveryError, Outgoing, Person
-from .sender import back_off
 from .splitting import split
 from .store import Answer, Entry
 from .voice import words_in

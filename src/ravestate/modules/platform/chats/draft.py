@@ -45,7 +45,7 @@ class Draft:
             self._grown.clear()
             if not silent() and room.sender.pace.spare():  # messages take priority
                 try:
-                    await room.carrier.show_work(self._chat, printable(self.text).strip())
+                    await room.sender.show_work(self._chat, printable(self.text).strip())
                 except DeliveryError as error:  # a failure to show it does no harm
                     await asyncio.sleep(error.wait)
             await asyncio.sleep(GROWTH)

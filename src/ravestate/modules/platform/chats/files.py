@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 
+from .attempts import back_off
 from .messages import Carrier, DeliveryError
-from .sender import back_off
 
 FETCHES = 4
 """The number of attempts to fetch a file."""

@@ -33,6 +33,7 @@ class Incoming:
         text: The words, the caption of a picture, or the emoji of a reaction. For a command, its name, without a slash.
         file: The reference to a picture or a voice note, for `Carrier.fetch`.
         group: Whether several people may be in the chat.
+        aliases: Other names of the sender and of the chat, for the setting `allow`.
     """
 
     key: str
@@ -43,10 +44,11 @@ class Incoming:
     text: str = ""
     file: str = ""
     group: bool = False
+    aliases: tuple[str, ...] = ()
 
 
 Sent = Literal["text", "picture", "voice", "edit", "reaction"]
-"""The kinds of outgoing messages. A ``voice`` message is spoken, if speech can be made; else it is sent as text."""
+"""The kinds of outgoing messages. A ``voice`` message comes to a carrier with its sound, if speech can be made; else as text."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +61,7 @@ class Outgoing:
         kind: The kind of the message.
         text: The words, the caption of a picture, or the emoji of a reaction.
         to: The id of the message to edit or to react to. For other kinds, the id of the message to reply to; or empty.
-        data: The bytes of a picture.
+        data: The bytes of a picture, or of a voice note (Ogg with Opus).
         trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
     """
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ravestate.folders import user_folder
 
+from .attempts import back_off
 from .chat import Chat
 from .messages import Carrier, Incoming
-from .sender import Sender, back_off
+from .sender import Sender
 from .store import Entry, Store
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from .settings import ChatSettings
 
 T = TypeVar("T")
+E = TypeVar("E")
 
 LAST_WORDS = 5.0
 """The seconds that the agent has to answer and to send when it ends. All other work is done at the next start."""
@@ -50,6 +52,8 @@ class Room:
         settings = cast("ChatSettings", agent.settings[name])
         self.rest = settings.rest
         self._limit = settings.chats
+        self._settings = settings
+        self._warned: set[str] = set()
         self.slot: Any = agent.policy.slots[f"{name}:chat"]
         self.command: Any = agent.policy.signals[f"{name}:command"]
         self.called: set[str] = set()
@@ -89,6 +93,39 @@ class Room:
             await self.sender.close(LAST_WORDS)
         finally:
             self.store.close()
+
+    def read(self, events: Iterable[E], read: Callable[[E], Incoming | None]) -> list[Incoming]:
+        """Return the messages in events of the messenger, without those of people who are not in `allow`.
+
+        Args:
+            events: The events.
+            read: Returns the message in an event; None if it does not concern the agent. If it fails, the event is left
+                out: anybody may send an event of any shape.
+        """
+        found: list[Incoming] = []
+        for event in events:
+            try:
+                message = read(event)
+            except Exception:
+                self.log.exception("an event cannot be read, and is left out")
+                continue
+            if message is not None and (message.kind == "left" or self.admits(message)):
+                found.append(message)
+        return found
+
+    def admits(self, message: Incoming) -> bool:
+        """Return whether a message's sender or chat is in `allow`; log a refusal once for each sender."""
+        person = message.person
+        if self._settings.allows(person.id, message.chat, *message.aliases):
+            return True
+        self.warn(person.id, f"({person.name}) is not in {self.name}.allow, and gets no answer")
+        return False
+
+    def warn(self, concerned: str, what: str) -> None:
+        """Log a warning about somebody or something, once."""
+        if concerned not in self._warned:
+            self._warned.add(concerned)
+            self.log.warning("%s %s", concerned, what)
 
     def receive(self, messages: Iterable[Incoming], position: tuple[str, str] | None = None) -> None:
         """Take messages from the messenger. After the call they are kept, and may be acknowledged.

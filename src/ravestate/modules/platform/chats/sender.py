@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import random
 import sqlite3
 from collections.abc import Callable
 
+from .attempts import Attempts
 from .messages import Carrier, DeliveryError
 from .store import Item, Store
+from .voice import voiced
 
 IN_FLIGHT = 8
 """The maximum number of attempts at a time. After a crash only these may have arrived unnoticed."""
 
-FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
-"""The seconds before the second attempt, and before the later ones at most. Each wait is twice the one before."""
-
+SHOWN = 2.0
+"""The maximum number of seconds for which a message waits until a draft of it is shown."""
 
 BURST = 0.15
 """The seconds of pause whose turns may be made up for at once. At 25 a second, the first second has 28."""
-
-
-def back_off(attempt: int) -> float:
-    """Return the seconds to wait after attempt number `attempt`, the first being 0; chance spreads the attempts."""
-    return min(LONGEST_WAIT, FIRST_WAIT * 2 ** min(attempt, 16)) * random.uniform(0.75, 1.0)
 
 
 class Pace:
@@ -75,9 +70,27 @@ class Sender:
         self._on_moved = on_moved
         self._log = log
         self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._showing: dict[str, asyncio.Task[None]] = {}
         self._attempts = asyncio.Semaphore(IN_FLIGHT)
         self.pace = Pace(carrier.rate)
         """The pace of all requests that a messenger counts."""
+
+    async def show_work(self, chat: str, words: str) -> None:
+        """Show in a chat that the agent is writing. If the call is cancelled, the next message still comes later.
+
+        Raises:
+            DeliveryError: It was not shown.
+        """
+
+        def shown(task: asyncio.Task[None]) -> None:
+            del self._showing[chat]
+            if not task.cancelled():
+                task.exception()  # retrieved also if nobody waits any more
+
+        if chat not in self._showing:
+            task = self._showing[chat] = asyncio.create_task(self._carrier.show_work(chat, words))
+            task.add_done_callback(shown)
+            await asyncio.shield(task)
 
     def wake(self, chat: str) -> None:
         """Deliver the messages to a chat that the store has."""
@@ -96,13 +109,13 @@ class Sender:
         """Deliver what can be delivered within `grace` seconds; the rest stays in the store."""
         if self._tasks:
             await asyncio.wait(list(self._tasks.values()), timeout=grace)
-        tasks = list(self._tasks.values())
+        tasks = [*self._tasks.values(), *self._showing.values()]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _drain(self, chat: str) -> None:
-        attempt = 0
+        attempts = Attempts(self._log, f"chat {chat}")
         while True:
             try:
                 item = self._store.next(chat)
@@ -119,12 +132,9 @@ class Sender:
             except sqlite3.Error as failure:
                 error = DeliveryError(f"the chats' file cannot be written: {failure}")
             if error is None:
-                attempt = 0
-                continue
-            wait = error.wait or back_off(attempt)
-            attempt += 1
-            self._log.log(logging.WARNING if attempt == 3 else logging.INFO, "sending again in %.1f s: %s", wait, error)
-            await asyncio.sleep(wait)
+                attempts.succeed()
+            else:
+                await attempts.fail(error, error.wait)
 
     def _is_elsewhere(self, chat: str, error: DeliveryError) -> bool:
         """Return whether a chat is closed or has another id, after telling so."""
@@ -147,9 +157,11 @@ class Sender:
         """Try to deliver an item once; return the error of a failure."""
         async with self._attempts:
             await self.pace.turn()
+            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft that came later would stay
+                await asyncio.wait((showing,), timeout=SHOWN)
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:
-                id = await self._carrier.send(begun.message, item.begun)
+                id = await self._carrier.send(await voiced(begun.message), item.begun)
             except DeliveryError as error:
                 if not (item.begun or error.unsure):
                     self._store.undo(begun)

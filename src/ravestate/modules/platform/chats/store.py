@@ -284,7 +284,7 @@ class Store:
 
 def _incoming(data: str, chat: str) -> Incoming:
     fields: dict[str, Any] = json.loads(data)
-    fields.update(chat=chat, person=Person(**fields["person"]))
+    fields.update(chat=chat, person=Person(**fields["person"]), aliases=tuple(fields.get("aliases", ())))
     return Incoming(**fields)
 
 

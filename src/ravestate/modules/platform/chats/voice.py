@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import importlib
+from dataclasses import replace
 from typing import Any
 
 from ravestate.errors import PlatformError
+
+from .messages import Outgoing
 
 VOICE = "ravestate.modules.platform.voiceio"
 """The module with the functions. It loads with the first voice note."""
@@ -27,6 +30,14 @@ async def spoken(text: str) -> bytes | None:
         return await asyncio.to_thread(lambda: bytes(_voiceio().synthesise(text)))
     except PlatformError:
         return None
+
+
+async def voiced(message: Outgoing) -> Outgoing:
+    """Return a message of the kind ``voice`` with its sound, or as text if it cannot be spoken; any other as it is."""
+    if message.kind != "voice":
+        return message
+    note = await spoken(message.text)
+    return replace(message, kind="text") if note is None else replace(message, data=note)
 
 
 def _voiceio() -> Any:

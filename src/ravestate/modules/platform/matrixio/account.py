@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import itertools
 import json
 import logging
 import sqlite3
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nio import (  # pyright: ignore[reportMissingTypeStubs]
@@ -22,9 +21,11 @@ from nio import (  # pyright: ignore[reportMissingTypeStubs]
     RoomMemberEvent,
     SyncResponse,
 )
+from nio.crypto import ENCRYPTION_ENABLED  # pyright: ignore[reportMissingTypeStubs]
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.chats import Incoming, Person, Room, back_off
+from ravestate.folders import user_folder
+from ravestate.modules.platform.chats import Attempts, Incoming, Person, Room
 
 from .carrier import GONE, LOST, MatrixCarrier
 from .events import incoming
@@ -48,7 +49,7 @@ log = logging.getLogger("ravestate.matrixio")
 async def run(agent: Agent, settings: Settings) -> None:
     """Serve the account's rooms until cancelled."""
     config = AsyncClientConfig(max_limit_exceeded=0, max_timeouts=0, request_timeout=ANSWER)
-    client = AsyncClient(settings.homeserver.rstrip("/"), settings.user, device_id=DEVICE, config=config)
+    client = AsyncClient(settings.homeserver.rstrip("/"), settings.user, DEVICE, _key_folder(settings), config)
     try:
         await _log_in(client, settings)
         async with Room(agent, "matrixio", MatrixCarrier(client), client.user_id) as room:
@@ -59,9 +60,18 @@ async def run(agent: Agent, settings: Settings) -> None:
         await client.close()
 
 
+def _key_folder(settings: Settings) -> str:
+    """Return the folder for the keys of encrypted rooms; an empty text without the extra ``matrix-encrypted``."""
+    if not ENCRYPTION_ENABLED:
+        return ""
+    folder = (settings.path.parent if settings.path else user_folder("data") / "chats") / "matrix-keys"
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return str(folder)
+
+
 async def _log_in(client: AsyncClient, settings: Settings) -> None:
     """Log in; wait until the server answers."""
-    attempt = 0
+    attempts = Attempts(log, f"{settings.homeserver} does not answer")
     while True:
         try:
             if settings.token:
@@ -74,7 +84,8 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
             why: object = type(error).__name__
         else:
             if not isinstance(answer, ErrorResponse):
-                client.user_id = answer.user_id
+                if settings.token:
+                    client.restore_login(answer.user_id, answer.device_id or DEVICE, client.access_token)
                 return
             if answer.status_code in REFUSED:
                 raise PlatformError(
@@ -82,20 +93,14 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
                     f"RAVESTATE_MATRIXIO_PASSWORD, or RAVESTATE_MATRIXIO_TOKEN ({answer.message})"
                 )
             why = answer.message
-        if attempt in (0, 5):
-            log.warning("%s does not answer (%s); trying again", settings.homeserver, why)
-        await asyncio.sleep(back_off(attempt))
-        attempt += 1
+        await attempts.fail(why)
 
 
 class Inlet:
     """Takes events from the server, and gives them to a room of chats."""
 
     def __init__(self, client: AsyncClient, room: Room, settings: Settings) -> None:
-        self._client = client
-        self._room = room
-        self._settings = settings
-        self._warned: set[str] = set()
+        self._client, self._room, self._settings = client, room, settings
         self._joining: dict[str, asyncio.Task[None]] = {}
 
     async def run(self) -> None:
@@ -109,9 +114,10 @@ class Inlet:
                 task.cancel()
 
     async def _sync(self) -> None:
-        attempt, first = 0, True
+        attempts, first = Attempts(log, "no events"), True
         while True:
             try:
+                await self._exchange_keys()
                 since = self._room.store.noted("since")
                 async with asyncio.timeout(POLL / 1000 + ANSWER):  # nio itself waits for ever for the first answer
                     answer: Any = await self._client.sync(
@@ -119,16 +125,28 @@ class Inlet:
                     )
                 if isinstance(answer, SyncResponse):
                     await self._take(answer, since)
-                    attempt, first = 0, False
+                    attempts.succeed()
+                    first = False
                     continue
                 why: object = answer
                 if answer.status_code in REFUSED:
                     raise PlatformError("matrixio: the server has ended the login: start again, or renew the token")
             except (*LOST, sqlite3.Error) as error:
                 why = repr(error)
-            log.log(logging.WARNING if attempt == 3 else logging.INFO, "no events: %s", why)
-            await asyncio.sleep(back_off(attempt))
-            attempt += 1
+            await attempts.fail(why)
+
+    async def _exchange_keys(self) -> None:
+        """Send and get the keys that encrypted rooms need."""
+        client: Any = self._client
+        if client.olm is None:
+            return
+        await client.send_to_device_messages()
+        if client.should_upload_keys:
+            await client.keys_upload()
+        if client.should_query_keys:
+            await client.keys_query()
+        if client.should_claim_keys:
+            await client.keys_claim(client.get_users_for_key_claiming())
 
     async def _take(self, answer: SyncResponse, since: str | None) -> None:
         """Take the events of an answer, and note the position after them in the same transaction."""
@@ -172,28 +190,17 @@ class Inlet:
         me = self._client.user_id
         return isinstance(event, RoomMemberEvent) and event.state_key == me and event.membership == "invite"
 
-    def _read(self, room: MatrixRoom, events: Iterable[Event]) -> list[Incoming]:
+    def _read(self, room: MatrixRoom, events: Sequence[Event]) -> list[Incoming]:
         """Return the messages in a room's events; those before the agent's invitation do not count."""
         me = self._client.user_id
         names = {room.user_name(me) or "", *self._room.called}
-        messages: list[Incoming] = []
-        for event in events:
-            if self._is_invitation(event):
-                messages.clear()
-            if isinstance(event, MegolmEvent):
-                self._warn(room.room_id, "is encrypted: its messages cannot be read")
-            try:
-                message = incoming(event, room, me, names)
-            except Exception:  # anybody may send an event of any shape
-                log.exception("an event cannot be read, and is left out")
-                continue
-            if message is None:
-                continue
-            if self._settings.allows(event.sender, room.room_id):
-                messages.append(message)
-            else:
-                self._warn(event.sender, "is not in matrixio.allow, and gets no answer")
-        return messages
+        invited = max((at for at, event in enumerate(events) if self._is_invitation(event)), default=0)
+        if any(isinstance(event, MegolmEvent) for event in events[invited:]):
+            why = "the agent has no key for some of its messages"
+            if self._client.olm is None:
+                why = "its messages cannot be read without pip install 'ravestate[matrix-encrypted]'"
+            self._room.warn(room.room_id, f"is encrypted: {why}")
+        return self._room.read(events[invited:], lambda event: incoming(event, room, me, names))
 
     def _invite(self, room: str, state: Iterable[Any]) -> None:
         me = self._client.user_id
@@ -201,7 +208,7 @@ class Inlet:
         if self._settings.allows(room, *hosts):
             self._accept(room)
         else:
-            self._warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
+            self._room.warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
         """Join a room in a task. The server reports an invitation once, so it is kept until the agent has joined."""
@@ -210,9 +217,9 @@ class Inlet:
             self._joining[room] = asyncio.create_task(self._join(room))
 
     async def _join(self, room: str) -> None:
-        refusals = 0
-        for attempt in itertools.count():
-            answer: Any
+        refusals, attempts = 0, Attempts(log, f"room {room} is not joined yet")
+        answer: Any
+        while True:
             try:
                 answer = await self._client.join(room)
                 if not isinstance(answer, ErrorResponse):
@@ -223,12 +230,6 @@ class Inlet:
                     break
             except LOST as error:
                 answer = repr(error)
-            log.log(logging.WARNING if attempt == 3 else logging.INFO, "room %s is not joined yet: %s", room, answer)
-            await asyncio.sleep(back_off(attempt))
+            await attempts.fail(answer)
         del self._joining[room]
         await self._room.persist(lambda: self._room.store.note("invited", json.dumps(list(self._joining))))
-
-    def _warn(self, concerned: str, what: str) -> None:
-        if concerned not in self._warned:
-            self._warned.add(concerned)
-            log.warning("%s %s", concerned, what)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import io
+import json
 from collections.abc import Generator
 from typing import Any
 
 import aiohttp
-from nio import AsyncClient, ErrorResponse  # pyright: ignore[reportMissingTypeStubs]
+from nio import AsyncClient, EncryptionError, ErrorResponse, LocalProtocolError  # pyright: ignore[reportMissingTypeStubs]
+from nio.crypto import decrypt_attachment  # pyright: ignore[reportMissingTypeStubs]
 
 from ravestate.modules.platform.chats import DeliveryError, Outgoing, is_emoji
-from ravestate.modules.platform.chats.voice import spoken
 
 GONE = ("M_FORBIDDEN", "M_NOT_FOUND")
 FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
@@ -45,7 +46,9 @@ class MatrixCarrier:
         """Send a message, and return its id; a repeated message gets the id that it has."""
         with _delivery():
             kind, content = await self._content(message)
-            answer: Any = await self._client.room_send(message.chat, kind, content, tx_id=message.key)
+            answer: Any = await self._client.room_send(
+                message.chat, kind, content, tx_id=message.key, ignore_unverified_devices=True
+            )
         return str(_checked(answer).event_id)
 
     async def _content(self, message: Outgoing) -> tuple[str, dict[str, Any]]:
@@ -58,28 +61,36 @@ class MatrixCarrier:
             change = {"rel_type": "m.replace", "event_id": to}
             return "m.room.message", {**content, "body": f"* {text}", "m.new_content": content, "m.relates_to": change}
         if message.kind == "picture":
-            url = await self._upload(message.data, "image/jpeg" if message.data.startswith(JPEG) else "image/png")
-            content = {"msgtype": "m.image", "body": text or "picture", "url": url}
-        elif message.kind == "voice" and (note := await spoken(text)) is not None:
-            url = await self._upload(note, "audio/ogg")
-            content = {"msgtype": "m.audio", "body": text, "url": url, "org.matrix.msc3245.voice": {}}
+            kind = "image/jpeg" if message.data.startswith(JPEG) else "image/png"
+            content = {"msgtype": "m.image", "body": text or "picture", **await self._upload(message, kind)}
+        elif message.kind == "voice":
+            place = await self._upload(message, "audio/ogg")
+            content = {"msgtype": "m.audio", "body": text, **place, "org.matrix.msc3245.voice": {}}
         if to:
             content["m.relates_to"] = {"m.in_reply_to": {"event_id": to}}
         return "m.room.message", content
 
-    async def _upload(self, data: bytes, type: str) -> str:
+    async def _upload(self, message: Outgoing, kind: str) -> dict[str, Any]:
+        """Upload a message's file, encrypted if the room is; return the fields that tell where it is."""
+        room, data = self._client.rooms.get(message.chat), message.data
+        secret = room is not None and room.encrypted and self._client.olm is not None
         answer: Any
         async with asyncio.timeout(FILE):
-            answer, _ = await self._client.upload(io.BytesIO(data), content_type=type, filesize=len(data))
-        return str(_checked(answer).content_uri)
+            answer, keys = await self._client.upload(io.BytesIO(data), kind, encrypt=secret, filesize=len(data))
+        url = str(_checked(answer).content_uri)
+        return {"file": {**(keys or {}), "url": url, "mimetype": kind}} if secret else {"url": url}
 
     async def fetch(self, file: str) -> bytes:
-        """Return the bytes of a file."""
+        """Return the bytes of a file: of an address, or of the JSON that describes an encrypted file."""
+        found: dict[str, Any] = {"url": file} if file.startswith("mxc:") else json.loads(file)
         with _delivery():
             client: Any = self._client
             async with asyncio.timeout(FILE):
-                answer = await client.download(file)
-        return bytes(_checked(answer).body)
+                answer = await client.download(found["url"])
+        data = bytes(_checked(answer).body)
+        if "key" not in found:
+            return data
+        return decrypt_attachment(data, found["key"]["k"], found["hashes"]["sha256"], found["iv"])
 
     async def show_work(self, chat: str, words: str) -> None:
         """Show in the room that the agent is writing. Matrix has no way to show the words so far."""
@@ -104,6 +115,8 @@ def _delivery() -> Generator[None]:
     """Turn the errors of the connection into a `DeliveryError`."""
     try:
         yield
+    except (EncryptionError, LocalProtocolError) as error:  # the room or its keys are not known yet
+        raise DeliveryError(f"{type(error).__name__}: {error}") from None
     except LOST as error:
         unsure = not isinstance(error, aiohttp.ClientConnectorError)
         raise DeliveryError(f"{type(error).__name__}: {error}", unsure=unsure) from None

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable
 from typing import Any
 
-from nio import Event, MatrixRoom, ReactionEvent, RoomMessage, RoomMessageAudio, RoomMessageImage  # pyright: ignore[reportMissingTypeStubs]
+from nio import (  # pyright: ignore[reportMissingTypeStubs]
+    Event,
+    MatrixRoom,
+    ReactionEvent,
+    RoomEncryptedAudio,
+    RoomEncryptedImage,
+    RoomEncryptedMedia,
+    RoomMessage,
+    RoomMessageAudio,
+    RoomMessageImage,
+)
 
-from ravestate.modules.platform.chats import Incoming, Person, command_in, mentions, without_mention
+from ravestate.modules.platform.chats import Incoming, Person, addressed
+from ravestate.modules.platform.chats.addressing import mentions
 from ravestate.modules.platform.chats.messages import Said
 
 SPOKEN = ("m.text", "m.emote")
@@ -41,24 +53,29 @@ def incoming(event: Event, room: MatrixRoom, me: str, names: Iterable[str]) -> I
     if relation.get("rel_type") == "m.replace":
         content, id, kind = content["m.new_content"], str(relation["event_id"]), "edit"
     body = str(content.get("body", ""))
-    whole, text = body, QUOTE.sub("", body)
-    command = command_in(text)
     called: dict[str, Any] = content.get("m.mentions") or {}
-    mentioned = me in called.get("user_ids", ())
-    if group and not (command or mentioned or mentions(whole, (me, *names))):
+    mentioned = me in called.get("user_ids", ()) or mentions(body, (me,))  # also in the quotation of a reply
+    handles = (me, f"@{me[1:].partition(':')[0]}")
+    found = addressed(QUOTE.sub("", body), handles, names, group=group, called=mentioned)
+    if found is None:
         return None
-    for each in (me, f"@{me[1:].partition(':')[0]}"):
-        text = without_mention(text, each)
+    command, text = found
     if kind == "edit":
         return _made(event, room, id, "edit", person, text, group=group) if content.get("msgtype") in SPOKEN else None
-    if isinstance(event, RoomMessageImage):
+    if isinstance(event, (RoomMessageImage, RoomEncryptedImage)):
         caption = text if content.get("filename", body) != body else ""
-        return _made(event, room, id, "picture", person, caption, event.url, group)
-    if isinstance(event, RoomMessageAudio):
-        return _made(event, room, id, "voice", person, "", event.url, group)
+        return _made(event, room, id, "picture", person, caption, _file(event), group)
+    if isinstance(event, (RoomMessageAudio, RoomEncryptedAudio)):
+        return _made(event, room, id, "voice", person, "", _file(event), group)
     if content.get("msgtype") not in SPOKEN or not text.strip():
         return None
     return _made(event, room, id, "command" if command else "text", person, command or text, group=group)
+
+
+def _file(event: Any) -> str:
+    """Return the address of a file, or the JSON that describes an encrypted one, for the carrier."""
+    secret = isinstance(event, RoomEncryptedMedia)
+    return json.dumps(event.source["content"]["file"]) if secret else str(event.url)
 
 
 def _made(

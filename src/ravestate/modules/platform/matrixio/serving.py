@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
-import importlib
 from typing import TYPE_CHECKING, cast
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.chats import secret
+from ravestate.modules.platform.chats import library, secret
 
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
@@ -28,10 +26,7 @@ async def serve(agent: Agent) -> None:
             "matrixio needs an account: --set matrixio.homeserver=https://... --set matrixio.user=@robin:museum.example, "
             "and export RAVESTATE_MATRIXIO_PASSWORD=... (or RAVESTATE_MATRIXIO_TOKEN=... alone)"
         )
-    try:
-        await asyncio.to_thread(importlib.import_module, "nio")
-    except ImportError as error:
-        raise PlatformError(f"matrixio needs {error.name}: pip install 'ravestate[matrix]'") from error
+    await library("matrixio", "nio", "matrix")
     from .account import run
 
     with secret(*secrets):

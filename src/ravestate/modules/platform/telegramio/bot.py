@@ -14,10 +14,10 @@ from telegram import Bot, Update, User
 from telegram.error import Conflict, InvalidToken, TelegramError
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.chats import COMMANDS, Incoming, Room, back_off
+from ravestate.modules.platform.chats import COMMANDS, Attempts, Incoming, Room
 
 from .carrier import TelegramCarrier
-from .requests import FloodError, Requests
+from .requests import Requests, wait_of
 from .updates import KINDS, incoming
 
 if TYPE_CHECKING:
@@ -25,27 +25,13 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-POLL = 30
-"""The seconds for which the server holds a request for updates, if there are none."""
-
-MOST = 100
-"""The maximum number of updates in an answer."""
-
-PATIENCE = 10
-"""The seconds by which an answer to a request for updates may be late."""
-
-ANSWER = 20.0
-"""The seconds to wait for the answer to any other request."""
-
-CONFLICTS = 4
-"""The number of conflicts in a row after which the bot gives up: another program polls it all the time."""
-
-SETTLED = 60.0
-"""The seconds after which the bot no longer gives up: the other program has then come later, and should give up."""
-
-CONFLICT_WAIT = 2.0
-"""The seconds to wait after the first conflict. After a crash, the server still holds the old process's request."""
-
+POLL = 30  # the seconds for which the server holds a request for updates, if there are none
+MOST = 100  # the maximum number of updates in an answer
+PATIENCE = 10  # the seconds by which an answer to a request for updates may be late
+ANSWER = 20.0  # the seconds to wait for the answer to any other request
+CONFLICTS = 4  # the number of conflicts in a row after which the bot gives up: another program polls it all the time
+SETTLED = 60.0  # the seconds after which it no longer gives up: the other program has come later, and should do so
+CONFLICT_WAIT = 2.0  # the seconds to wait after a conflict: after a crash, the server still holds the old request
 SECRET = "x-telegram-bot-api-secret-token"
 
 log = logging.getLogger("ravestate.telegramio")
@@ -71,7 +57,7 @@ async def run(agent: Agent, settings: Settings, token: str) -> None:
 
 async def _log_in(bot: Bot, root: str) -> User:
     """Return the bot's own user; wait until the server answers."""
-    attempt = 0
+    attempts = Attempts(log, f"{root} does not answer")
     while True:
         try:
             await bot.initialize()
@@ -83,22 +69,14 @@ async def _log_in(bot: Bot, root: str) -> User:
                 "shows (/mybots)"
             ) from None
         except TelegramError as error:
-            if attempt in (0, 5):
-                log.warning("%s does not answer (%s); trying again", root, error.message)
-            await asyncio.sleep(error.seconds if isinstance(error, FloodError) else back_off(attempt))
-            attempt += 1
+            await attempts.fail(error.message, wait_of(error))
 
 
 class Inlet:
     """Takes updates from the server, and gives them to a room."""
 
     def __init__(self, bot: Bot, me: User, room: Room, carrier: TelegramCarrier, settings: Settings) -> None:
-        self._bot = bot
-        self._me = me
-        self._room = room
-        self._carrier = carrier
-        self._settings = settings
-        self._refused: set[int] = set()
+        self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings
 
     async def listen(self, url: str, token: str) -> None:
         """Take the updates that the server sends to a webhook. It stays set, so that no update is lost afterwards."""
@@ -115,7 +93,8 @@ class Inlet:
 
     async def poll(self) -> None:
         """Ask the server for updates."""
-        offset, attempt, conflicts, ready = 0, 0, 0, False
+        offset, conflicts, ready = 0, 0, False
+        attempts = Attempts(log, "no updates")
         now = asyncio.get_running_loop().time
         settled = now() + SETTLED
         # `Bot.get_updates` would fail for all updates of an answer if one of them is malformed.
@@ -130,7 +109,8 @@ class Inlet:
                 offset = max((int(each["update_id"]) + 1 for each in updates), default=offset)
                 if len(updates) < MOST:
                     self._carrier.current.set()
-                attempt = conflicts = 0
+                conflicts = 0
+                attempts.succeed()
             except InvalidToken:
                 raise PlatformError("telegramio: the token is no longer valid: @BotFather has the new one") from None
             except Conflict as error:
@@ -143,31 +123,14 @@ class Inlet:
                 log.warning("another program asks for the messages of this bot")
                 await asyncio.sleep(CONFLICT_WAIT * min(conflicts, CONFLICTS))
             except (TelegramError, sqlite3.Error, TypeError, KeyError, ValueError) as error:
-                log.log(logging.WARNING if attempt == 3 else logging.INFO, "no updates: %s", error)
-                await asyncio.sleep(error.seconds if isinstance(error, FloodError) else back_off(attempt))
-                attempt += 1
+                await attempts.fail(error, wait_of(error))
 
     def take(self, updates: Sequence[Mapping[str, Any]]) -> None:
         """Give updates to the room. After the call they are kept, and may be acknowledged."""
-        messages: list[Incoming] = []
-        for data in updates:
-            try:
-                if (message := self._read(Update.de_json(dict(data), self._bot))) is not None:
-                    messages.append(message)
-            except Exception:  # a malformed update must not block those after it
-                log.exception("an update cannot be read, and is left out")
-        self._room.receive(messages)
+        self._room.receive(self._room.read(updates, self._read))
 
-    def _read(self, update: Update) -> Incoming | None:
+    def _read(self, data: Mapping[str, Any]) -> Incoming | None:
+        update = Update.de_json(dict(data), self._bot)
         if (known := update.effective_message) is not None:
             self._carrier.note(str(known.chat.id), str(known.message_id))
-        message = incoming(update, self._me, {self._me.first_name, *self._room.called})
-        user, chat = update.effective_user, update.effective_chat
-        if message is None or user is None or chat is None or message.kind == "left":
-            return message
-        if self._settings.allows(user.id, user.username, chat.id, chat.username):
-            return message
-        if user.id not in self._refused:
-            self._refused.add(user.id)
-            log.warning("%s (%s) is not in telegramio.allow, and gets no answer", user.id, user.first_name)
-        return None
+        return incoming(update, self._me, {self._me.first_name, *self._room.called})

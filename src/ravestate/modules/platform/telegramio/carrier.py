@@ -13,28 +13,15 @@ from telegram.constants import ChatAction, MessageLimit, ReactionEmoji
 from telegram.error import BadRequest, ChatMigrated, Forbidden, InvalidToken, TelegramError, TimedOut
 
 from ravestate.modules.platform.chats import DeliveryError, Outgoing
-from ravestate.modules.platform.chats.voice import spoken
+from ravestate.modules.platform.chats.sender import SHOWN
 
 from .requests import FloodError
 
-UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)
-"""The failures after which a request has certainly not reached the server."""
-
-AHEAD = 40
-"""The number of message ids among which a message is looked for, if the answer to its attempt got lost."""
-
-KNOWN = 1000
-"""The number of newest message ids that the carrier remembers of a count."""
-
-DRAFT = 1
-"""The id of the draft in a chat: one at a time grows there."""
-
-DRAFT_WAIT = 2.0
-"""The seconds to wait until a draft is shown. A message to the same chat waits as long."""
-
-BIGGEST = 20 * 1024 * 1024
-"""The number of bytes of the largest file that the server hands out."""
-
+UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)  # after these, a request has not been sent
+AHEAD = 40  # the number of ids among which a message is looked for, if the answer to its attempt got lost
+KNOWN = 1000  # the number of newest message ids that the carrier remembers of a count
+DRAFT = 1  # the id of the draft in a chat: one at a time grows there
+BIGGEST = 20 * 1024 * 1024  # the bytes of the largest file that the server hands out
 REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
 
 
@@ -55,7 +42,6 @@ class TelegramCarrier:
     def __init__(self, bot: Bot, rate: float, drafts: bool) -> None:
         self._bot = bot
         self._drafts = drafts
-        self._drawing: dict[str, asyncio.Task[bool]] = {}
         self.rate = rate
         self.current = asyncio.Event()
         """Set once the messages have come that waited for the start of the bot."""
@@ -77,8 +63,6 @@ class TelegramCarrier:
 
     async def send(self, message: Outgoing, again: bool) -> str:
         """Send a message, unless an earlier attempt has sent it; return its id."""
-        if (drawing := self._drawing.get(message.chat)) is not None:  # a draft that came later would stay for 30 s
-            await asyncio.wait((drawing,))
         with _delivery():
             if again and message.kind in ("text", "voice", "picture"):
                 found = await self._find(message)
@@ -104,12 +88,11 @@ class TelegramCarrier:
         reply = None
         if message.to and message.kind != "edit":
             reply = ReplyParameters(int(message.to), allow_sending_without_reply=True)
+        caption = text[: MessageLimit.CAPTION_LENGTH]
         if message.kind == "picture":
-            caption = text[: MessageLimit.CAPTION_LENGTH]
             return (await bot.send_photo(chat, message.data, caption=caption, reply_parameters=reply)).message_id
-        if message.kind == "voice" and (note := await spoken(text)) is not None:
-            caption = text[: MessageLimit.CAPTION_LENGTH]
-            return (await bot.send_voice(chat, note, caption=caption, reply_parameters=reply)).message_id
+        if message.kind == "voice":
+            return (await bot.send_voice(chat, message.data, caption=caption, reply_parameters=reply)).message_id
         return (await bot.send_message(chat, text, reply_parameters=reply)).message_id
 
     async def _find(self, message: Outgoing) -> str | None:
@@ -142,30 +125,20 @@ class TelegramCarrier:
             return bytes(await found.download_as_bytearray())
 
     async def show_work(self, chat: str, words: str) -> None:
-        """Show in the chat that the agent is writing; in a private chat also the words, as a draft."""
+        """Show in the chat that the agent is writing; in a private chat also the words, as a draft.
+
+        Telegram removes a draft when the next message comes, or after 30 s.
+        """
         with _delivery():
             if words and self._drafts and not chat.startswith("-"):
                 try:
-                    await self._draw(chat, words[: self.longest])
+                    await self._bot.send_message_draft(int(chat), DRAFT, words[: self.longest], read_timeout=SHOWN)
                     return
                 except BadRequest:
                     pass
                 except InvalidToken:  # an older server, without this method
                     self._drafts = False
             await self._bot.send_chat_action(chat, ChatAction.TYPING)
-
-    async def _draw(self, chat: str, words: str) -> None:
-        """Show a draft. Telegram removes it when the next message comes, or after 30 s."""
-
-        def drawn(task: asyncio.Task[bool]) -> None:
-            del self._drawing[chat]
-            if not task.cancelled():
-                task.exception()  # retrieved also if nobody waits any more
-
-        request = self._bot.send_message_draft(int(chat), DRAFT, words, read_timeout=DRAFT_WAIT)
-        task = self._drawing[chat] = asyncio.create_task(request)
-        task.add_done_callback(drawn)
-        await asyncio.shield(task)
 
 
 def _count(chat: str) -> str:

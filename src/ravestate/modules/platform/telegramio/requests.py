@@ -8,8 +8,7 @@ from typing import Any
 from telegram.error import NetworkError, TelegramError
 from telegram.request import HTTPXRequest
 
-WAIT = 5.0
-"""The seconds to wait if the server asks to wait, but does not say how long."""
+WAIT = 5.0  # the seconds to wait if the server asks to wait, but does not say how long
 
 
 class FloodError(TelegramError):
@@ -27,14 +26,15 @@ class Requests(HTTPXRequest):
         """Make a request; return the status and the body of the answer."""
         code, body = await super().do_request(*values, **named)
         if code == 429:
-            raise FloodError(_seconds(body))
+            try:
+                raise FloodError(float(json.loads(body)["parameters"]["retry_after"]))
+            except (ValueError, KeyError, TypeError):
+                raise FloodError(WAIT) from None
         if code >= 500:
             raise NetworkError(f"the server has failed (status {code})")
         return code, body
 
 
-def _seconds(body: bytes) -> float:
-    try:
-        return float(json.loads(body)["parameters"]["retry_after"])
-    except (ValueError, KeyError, TypeError):
-        return WAIT
+def wait_of(error: Exception) -> float:
+    """Return the seconds to wait that the server has set with an error; 0 if it has set none."""
+    return error.seconds if isinstance(error, FloodError) else 0.0

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
-import importlib
 from typing import TYPE_CHECKING, cast
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.chats import secret
+from ravestate.modules.platform.chats import library, secret
 
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
@@ -28,10 +26,7 @@ async def serve(agent: Agent) -> None:
             "telegramio needs a bot's token: @BotFather on Telegram makes a bot and shows its token; then "
             "export RAVESTATE_TELEGRAMIO_TOKEN=..."
         )
-    try:
-        await asyncio.to_thread(importlib.import_module, "telegram")
-    except ImportError as error:
-        raise PlatformError(f"telegramio needs {error.name}: pip install 'ravestate[telegram]'") from error
+    await library("telegramio", "telegram", "telegram")
     from .bot import run
 
     with secret(token, token.rpartition(":")[2]):

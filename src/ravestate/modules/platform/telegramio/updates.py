@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from telegram import Chat as TelegramChat
 from telegram import Message, MessageReactionUpdated, ReactionTypeEmoji, Update, User
 
-from ravestate.modules.platform.chats import Incoming, Person, command_in, for_another, mentions, without_mention
+from ravestate.modules.platform.chats import Incoming, Person, addressed
 from ravestate.modules.platform.chats.messages import Said
 
 KINDS = ["message", "edited_message", "message_reaction", "my_chat_member"]
@@ -22,31 +23,26 @@ def incoming(update: Update, me: User, names: Iterable[str]) -> Incoming | None:
         names: The agent's names. In a group, a message that contains one of them is for the agent.
     """
     if (reaction := update.message_reaction) is not None:
-        return _reaction(reaction, str(update.update_id))
+        return _reaction(update, reaction)
     if (member := update.my_chat_member) is not None:
         if member.new_chat_member.status not in ("left", "kicked"):
             return None
-        return _made(update, member.chat.id, "", "left", _person(member.from_user), group=True)
+        return _made(update, member.chat, "", "left", member.from_user)
     message = update.message or update.edited_message
     if message is None or message.from_user is None or message.from_user.is_bot:
         return None
-    mention = f"@{me.username}"
-    whole = message.text or message.caption or ""
-    group = message.chat.type != "private"
-    if for_another(whole, me.username or ""):
-        return None
-    command = command_in(whole)
-    if group and not (command or _replies(message, me) or mentions(whole, (mention, *names))):
-        return None
-    found = _content(message, without_mention(whole, mention))
-    if command:
-        found = ("command", command, "")
-    if update.edited_message:
-        found = ("edit", found[1], "") if found and found[0] == "text" else None
+    whole, group = message.text or message.caption or "", message.chat.type != "private"
+    found = addressed(whole, (f"@{me.username}",), names, group=group, called=_replies(message, me))
     if found is None:
         return None
-    kind, text, file = found
-    return _made(update, message.chat.id, message.message_id, kind, _person(message.from_user), text, file, group)
+    command, words = found
+    content = ("command", command, "") if command else _content(message, words)
+    if update.edited_message and content:
+        content = ("edit", content[1], "") if content[0] == "text" else None
+    if content is None:
+        return None
+    kind, text, file = content
+    return _made(update, message.chat, message.message_id, kind, message.from_user, text, file)
 
 
 def _content(message: Message, text: str) -> tuple[Said, str, str] | None:
@@ -63,25 +59,22 @@ def _content(message: Message, text: str) -> tuple[Said, str, str] | None:
 
 
 def _made(
-    update: Update, chat: int, id: int | str, kind: Said, person: Person,
-    text: str = "", file: str = "", group: bool = False,
-) -> Incoming:  # fmt: skip
-    key = str(update.update_id)
-    return Incoming(key=key, chat=str(chat), id=str(id), kind=kind, person=person, text=text, file=file, group=group)
+    update: Update, chat: TelegramChat, id: int | str, kind: Said, user: User, text: str = "", file: str = ""
+) -> Incoming:
+    aliases = tuple(name for name in (user.username, chat.username) if name)
+    return Incoming(
+        key=str(update.update_id), chat=str(chat.id), id=str(id), kind=kind, text=text, file=file,
+        person=Person(str(user.id), user.first_name or user.username), group=chat.type != "private", aliases=aliases,
+    )  # fmt: skip
 
 
-def _person(user: User) -> Person:
-    return Person(str(user.id), user.first_name or user.username)
-
-
-def _reaction(update: MessageReactionUpdated, key: str) -> Incoming | None:
-    emoji = [each.emoji for each in update.new_reaction if isinstance(each, ReactionTypeEmoji)]
-    old = {each.emoji for each in update.old_reaction if isinstance(each, ReactionTypeEmoji)}
+def _reaction(update: Update, reaction: MessageReactionUpdated) -> Incoming | None:
+    emoji = [each.emoji for each in reaction.new_reaction if isinstance(each, ReactionTypeEmoji)]
+    old = {each.emoji for each in reaction.old_reaction if isinstance(each, ReactionTypeEmoji)}
     new = next((str(each) for each in emoji if each not in old), None)
-    if new is None or update.user is None:
+    if new is None or reaction.user is None:
         return None
-    person, chat = _person(update.user), str(update.chat.id)
-    return Incoming(key=key, chat=chat, id=str(update.message_id), kind="reaction", text=new, person=person)
+    return _made(update, reaction.chat, reaction.message_id, "reaction", reaction.user, new)
 
 
 def _replies(message: Message, me: User) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import threading
 from collections.abc import AsyncIterator
 from importlib import import_module
@@ -20,6 +21,8 @@ GONE = 2.0
 """The seconds after which a device that neither brings nor takes sound counts as unplugged."""
 AGAIN = 2.0
 """The seconds between two attempts to open a device that was unplugged."""
+
+log = logging.getLogger("ravestate.voiceio")
 
 
 class DeviceLine:
@@ -91,16 +94,21 @@ class DeviceLine:
         while not self._closed:
             await asyncio.sleep(GONE / 4)
             late = self._loop.time() - GONE
-            if (self._names[0] and self._taken < late) or (self._queue and self._given < late):
-                await self._reopen()
+            if self._names[0] and self._taken < late:
+                await self._reopen("microphone")
+            elif self._queue and self._given < late:
+                await self._reopen("loudspeaker")
 
-    async def _reopen(self) -> None:
+    async def _reopen(self, what: str) -> None:
         self.lost += 1
+        log.warning("the %s is gone: looking for it again", what)
         self._shut()
         while not self._closed:
             with contextlib.suppress(PlatformError):
                 await asyncio.to_thread(restart)
                 self._open(again=True)
+                whole = len(self._streams) == len([name for name in self._names if name])
+                log.warning("the %s is back" if whole else "the %s is still away: the agent goes on without it", what)
                 return
             self.stop()
             await asyncio.sleep(AGAIN)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .echo import FRAME
-from .likeness import FAR, NEAR, likeness
+from .likeness import FAR, NEAR, likeness, strength
 from .sound import Samples
 
 MEMORY = 16
@@ -22,6 +22,13 @@ CLEAR = 10.0
 """The factor above the expected power at which it is another voice: 10 dB."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
 """The factors by which a chunk changes the expected share: less power than expected, more, another voice."""
+
+SETTLED = 15
+"""Frames with sound on both sides after which the measured strength of the echo counts: 0.3 s."""
+SMOOTH = 0.3
+"""The weight of a new measurement of the strength."""
+MARGIN = 10 ** (4 / 10)
+"""The factor by which an echo may exceed its measured strength: late reflections do not count in it."""
 
 ALIKE = 25.0
 """The `likeness` above which the microphone hears the loudspeaker."""
@@ -49,6 +56,7 @@ class Leak:
         self._far: deque[float] = deque(maxlen=MEMORY)
         self._near_sound: NDArray[np.float32] = np.zeros(NEAR, np.float32)
         self._far_sound: NDArray[np.float32] = np.zeros(FAR, np.float32)
+        self._strength: float | None = None
         self._unlike, self._limit = 0.0, DOUBTFUL
         self._frame = self._alike = 0
         self.echoes = False
@@ -73,8 +81,12 @@ class Leak:
         self._frame += 1
         every = OFTEN if self._limit == DOUBTFUL else SELDOM
         if self._frame % every == 0:
-            alike = likeness(self._near_sound, self._far_sound) > ALIKE
-            self._alike = self._alike + 1 if alike else 0
+            alike, delay = likeness(self._near_sound, self._far_sound)
+            self._alike = self._alike + 1 if alike > ALIKE else 0
+            if alike > ALIKE:
+                found = strength(self._near_sound, self._far_sound, delay)
+                old = found if self._strength is None else self._strength
+                self._strength = old + SMOOTH * (found - old)
         if self._alike >= TWICE:
             self.echoes = True
             self._unlike, self._limit = 0, GONE
@@ -89,10 +101,17 @@ class Leak:
         if not self.echoes:
             return True
         ratio = _power(near) / far
-        hidden = ratio < CLEAR * self.share
+        hidden = ratio < min(CLEAR * self.share, self._loudest)
         step = DOWN if ratio < self.share else UP if hidden else SLOWLY
         self.share = min(MOST, max(LEAST, self.share * step))
         return hidden
+
+    @property
+    def _loudest(self) -> float:
+        """The share that the echo has at most. It does not grow with a user who speaks from the first moment."""
+        if self._strength is None or self._frame < SETTLED:
+            return CLEAR * MOST
+        return MARGIN * self._strength
 
 
 def _shifted(sound: NDArray[np.float32], frame: Samples) -> NDArray[np.float32]:

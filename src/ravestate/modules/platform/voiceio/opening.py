@@ -19,8 +19,11 @@ from .names import Settings
 from .pair import Pair
 from .recogniser import Recognised, Recogniser
 from .synthesiser import Synthesiser
-from .turn import Melody, is_back_channel, is_echo, melody_of, wanted_silence
+from .turn import Melody, is_back_channel, is_demand, is_echo, melody_of, wanted_silence
 from .wav_line import WavLine
+
+SURE = 0.55
+"""The confidence below which a short sound does not interrupt the agent: recognisers hear "Amen" in a mere "mm"."""
 
 
 @dataclass(slots=True)
@@ -88,7 +91,9 @@ class Conversation:
                 return "false_alarm", f"the agent's own voice: {found.text}"
             if is_back_channel(found.text, self.settings.language):
                 return "back_channel", found.text
-            if found.confidence < self.settings.ask_back_below:
+            short = turn.end - turn.start < self.settings.back_channel
+            sure = SURE if short and not is_demand(found.text, self.settings.language) else 0.0
+            if found.confidence < max(sure, self.settings.ask_back_below):
                 return "false_alarm", f"hardly words: {found.text}"
         return "utterance", found.text
 

@@ -12,6 +12,7 @@ from ravestate.modules import rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .feelings import add_feelings
+from .following import follow
 from .names import (
     Settings,
     agent_speaking,
@@ -32,11 +33,6 @@ from .utterances import Utterance
 
 if TYPE_CHECKING:
     from .opening import Conversation
-
-DEAF = 0.25
-"""half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
-LONGEST_END = 300.0
-"""The greatest number of seconds for which an agent may go on after the end of a recording."""
 
 
 # ------------------------------------------------------------------------------------ listening
@@ -76,7 +72,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     add_feelings(ctx)
     ctx[conversation] = talk
     try:
-        await _follow(ctx, talk)
+        await follow(ctx, talk)
     finally:
         ctx[user_speaking] = False
         ctx[conversation] = None
@@ -89,39 +85,6 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
         if line is None:
             ctx.stop(fault)
     return None
-
-
-async def _follow(ctx: rs.RuleContext, talk: Conversation) -> None:
-    """Feed the ear until the line is closed, or until the agent has finished after the end of a recording."""
-    settings, line, ear, mouth = talk.settings, talk.line, talk.ear, talk.mouth
-    spoke_at, ended_at, clipped = float("-inf"), float("inf"), False
-    quiet: asyncio.Future[None] | None = None
-    try:
-        async for block in line.blocks():
-            far = mouth.reference(len(block))
-            if mouth.sounding:
-                spoke_at = ctx.now
-            if settings.half_duplex and ctx.now - spoke_at < DEAF:
-                block = bytes(len(block))
-            for event in ear.feed(block, ctx.now, far, agent_speaks=mouth.speaking):
-                if event == "articulate":
-                    ctx.emit(spoke_up)
-                elif event == "another":
-                    ctx.emit(another_speaks, ear.parted)
-                else:
-                    ctx[user_speaking] = event == "onset"
-            if ear.clipped and not clipped:
-                clipped = True
-                ctx.log.warning("the microphone's sound is too loud and is clipped: lower its level")
-            if line.ended:
-                ended_at = min(ended_at, ctx.now)
-                if quiet is None and ctx.now - ended_at > settings.longest_pause + 0.5:
-                    quiet = asyncio.ensure_future(ctx.quiet())
-                if (quiet is not None and quiet.done()) or ctx.now - ended_at > LONGEST_END:
-                    return
-    finally:
-        if quiet is not None:
-            quiet.cancel()
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:

@@ -139,6 +139,16 @@ def is_back_channel(text: str, language: str = "en") -> bool:
     return bool(words) and len(words) <= 6
 
 
+def is_demand(text: str, language: str = "en") -> bool:
+    """Return whether words ask the agent to stop or to listen.
+
+    Example:
+        >>> is_demand("Hey, wait."), is_demand("In a month")
+        (True, False)
+    """
+    return any(_bare(word) in _words(language)["demands"] for word in text.split())
+
+
 def is_echo(text: str, spoken: str) -> bool:
     """Return whether at least three recognised words are a part of the agent's own words.
 

@@ -1,0 +1,20 @@
+"""The library of a messenger, which loads when the messenger is used."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+
+from ravestate.errors import PlatformError
+
+
+async def library(platform: str, package: str, extra: str) -> None:
+    """Import the package that a platform needs, in a thread: it takes long.
+
+    Raises:
+        PlatformError: The package is missing; the message says how to get it.
+    """
+    try:
+        await asyncio.to_thread(importlib.import_module, package)
+    except ImportError as error:
+        raise PlatformError(f"{platform} needs {error.name}: pip install 'ravestate[{extra}]'") from error
