@@ -33,7 +33,7 @@ def drive() -> Generator[Any, Any, Any]:
     """
     ctx = yield
     while True:
-        result = yield from ctx.rule.function(ctx)
+        result: Any = yield from ctx.rule.function(ctx)
         ctx = yield DONE if result is None else Done(result)
 
 

@@ -34,7 +34,7 @@ class EagerTask:
         task: The task.
         rule: The rule whose coroutine the task has adopted, if it has adopted one.
         driver: The generator that runs the coroutine (`drive`).
-        first: What the adopted coroutine has yielded in its first step.
+        first: The object that the adopted coroutine has yielded in its first step.
         wake: Done when the task has adopted a coroutine.
         abandoned: Whether the task is to end although its coroutine does not end.
     """
