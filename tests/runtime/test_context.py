@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.runtime import async_rules
+from ravestate.runtime import async_rules, runner
 from ravestate.runtime.async_rules import GRACE
 from ravestate.runtime.runner import SETTLES
 from ravestate.runtime.workers import SHARE
@@ -200,7 +200,8 @@ async def test_several_may_wait_for_the_same() -> None:
 
 
 @on_loop
-async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop() -> None:
+async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)  # a slow machine would give the loop its turn earlier
     async with rs.Context(policy) as context:
         ran: list[str] = []
         asyncio.get_running_loop().call_soon(ran.append, "the loop")
@@ -209,7 +210,8 @@ async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop() -> None
 
 
 @on_loop
-async def test_the_loop_has_its_turn_although_every_spike_comes_at_once() -> None:
+async def test_the_loop_has_its_turn_although_every_spike_comes_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)
     async with rs.Context(policy) as context:
         ran: list[int] = []
         asyncio.get_running_loop().call_soon(ran.append, 0)
