@@ -23,19 +23,15 @@ async def answer(ctx):
 """
 
 
-@pytest.mark.parametrize("beside", [[], ["webio"]], ids=["alone", "beside webio"])
-def test_it_opens_a_page_and_ends_in_order(tmp_path: Path, beside: list[str]) -> None:
+def test_it_opens_a_page_beside_that_of_webio_and_ends_in_order(tmp_path: Path) -> None:
     (tmp_path / "parrot.py").write_text(PARROT)
-    line = [sys.executable, "-m", "ravestate", "robot", str(tmp_path / "parrot.py"), *beside, "--on", "bus"]
-    line += ["--bus", "127.0.0.1:0", "--port", "0"]
-    if beside:
-        line += ["--set", "webio.port=0"]
+    line = [sys.executable, "-m", "ravestate", "robot", str(tmp_path / "parrot.py"), "webio", "--on", "bus"]
+    line += ["--bus", "127.0.0.1:0", "--port", "0", "--set", "webio.port=0"]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ})
     assert process.stdout is not None
     said = process.stdout.readline()
     assert said.startswith("Roboy is at http://127.0.0.1:") and "its topics are on the built-in bus" in said
-    if beside:
-        assert process.stdout.readline().startswith("The agent is at http://127.0.0.1:")
+    assert process.stdout.readline().startswith("The agent is at http://127.0.0.1:")
     with urllib.request.urlopen(said.split()[3].rstrip(",")) as page:
         assert "assets/robot.js" in page.read().decode()
     process.send_signal(signal.SIGINT)

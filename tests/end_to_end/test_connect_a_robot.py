@@ -4,10 +4,12 @@ import contextlib
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
 import threading
+import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,54 +17,55 @@ import pytest
 from websockets.sync.client import connect
 
 from modules.platform.ros.networks import Ros1, end
+from ravestate.cli import main
 from repo.snippets import blocks_in, save
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "how-to" / "connect-a-robot.md"
+EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
 STAYS = ("ravestate robot", "ravestate run")
 """The beginnings of commands that run until Ctrl-C."""
-
-PIP = """#!/bin/sh
-# `pip install`, of this folder: does it have these extras, and can it be built?
-exec {python} -m pip --disable-pip-version-check install --no-index --no-deps --no-build-isolation --dry-run \
-    "$(echo "$2" | sed 's#^ravestate#{root}#')" 2>&1
-"""
 
 
 class Reader:
     """Types the commands of a page into a shell, and reads the output."""
 
-    def __init__(self, folder: Path, environment: dict[str, str], start_master: Callable[[], None]) -> None:
+    def __init__(self, folder: Path, capture: pytest.CaptureFixture[str], start_master: Callable[[], None]) -> None:
         self.folder = folder
+        self._capture = capture
         self._start_master = start_master
-        self._environment = environment
         self._running: list[subprocess.Popen[str]] = []
 
     def type(self, command: str, shown: list[str]) -> str:
         """Run a command; assert that it shows these lines; return its output."""
         if command.startswith("ravestate robot"):
             command += " --port 0"
-        if command == "ravestate ros check":
-            self._start_master()
         if command.startswith(STAYS):
             return self._start(command, shown)
-        place = self.folder / ".place"
-        done = subprocess.run(
-            ["bash", "-c", f"{command} && pwd > {place}"], cwd=self.folder, env=self._environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False,
-        )  # fmt: skip
-        if place.exists():
-            self.folder = Path(place.read_text().strip())
+        if extras := re.fullmatch(r"pip install 'ravestate\[(.*)\]'", command):
+            assert set(extras[1].split(",")) <= set(EXTRAS)
+            return ""
+        if folder := re.fullmatch(r"mkdir (\w+) && cd (\w+)", command):
+            assert folder[1] == folder[2]
+            self.folder /= folder[1]
+            self.folder.mkdir()
+            return ""
+        program, *arguments = shlex.split(command)
+        assert program == "ravestate", command
+        if arguments == ["ros", "check"]:
+            self._start_master()
         faults = any(line.startswith("FAULT") for line in shown)
-        assert done.returncode == int(faults), f"{command}\n{done.stdout}"
-        for line in shown:
-            assert line in done.stdout.splitlines(), f"{command}\n{done.stdout}"
-        return done.stdout
+        with contextlib.chdir(self.folder):
+            code = main(arguments)
+        said = self._capture.readouterr().out
+        assert code == int(faults), f"{command}\n{said}"
+        assert set(shown) <= set(said.splitlines()), f"{command}\n{said}"
+        return said
 
     def _start(self, command: str, shown: list[str]) -> str:
         process = subprocess.Popen(
-            ["bash", "-c", f"exec {command}"], cwd=self.folder, env=self._environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            [sys.executable, "-m", *shlex.split(command)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
         )  # fmt: skip
         self._running.append(process)
         assert process.stdout is not None
@@ -87,23 +90,19 @@ class Reader:
 
 
 @pytest.fixture
-def reader(tmp_path: Path) -> Iterator[Reader]:
+def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
     network = Ros1()
     end(network.master)  # only `ros check` is to find one
-    programs = tmp_path / "programs"
-    programs.mkdir()
-    for name, text in {
-        "pip": PIP.format(python=sys.executable, root=ROOT),
-        "ravestate": f'#!/bin/sh\nexec {sys.executable} -m ravestate "$@"\n',
-    }.items():
-        (programs / name).write_text(text)
-        (programs / name).chmod(0o755)
-    (tmp_path / "empty").mkdir()
-    environment = {
-        **os.environ, **network.environment, "PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "src"),
-        "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100), "RAVESTATE_ROBOYIO_BUS": "127.0.0.1:0",
+    variables = {
+        **network.environment, "PYTHONPATH": str(ROOT / "src"), "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100),
+        "RAVESTATE_ROBOYIO_BUS": "127.0.0.1:0",
     }  # fmt: skip
-    made = Reader(tmp_path / "empty", environment, network.start_master)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(
+        "ravestate.modules.platform.ros.checking.LOOKS", 1
+    )  # the patrol waits for nodes that are not there
+    made = Reader(tmp_path, capsys, network.start_master)
     yield made
     made.kill()
     network.stop()

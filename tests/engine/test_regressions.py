@@ -655,3 +655,30 @@ def test_an_alternative_that_waits_behind_a_rival_puts_it_under_pressure_from_th
     play = Play(World((*S3, SignalOf()), V1, rules, ((0.0, ("emit", "s0", 0)),))).play()
     starts = [line.split(" s <")[0] for line in play.heard if "< Run(" in line]
     assert (runs(play), starts) == (["r2", "r3"], ["1", "1"])
+
+
+def test_the_patience_of_a_rival_ends_although_nothing_waited_for_it_meanwhile() -> None:
+    # L16: r1 puts r0 under pressure until 3 s and then loses s1 for a while. The end of the patience was forgotten.
+    rules = (RuleOf(when=((Want("s0"), Want("s1", where="odd")),), writes=("v0",), patience=2.0),)
+    inputs = (
+        (1.0, ("add", RuleOf(when=on("s1", "s0"), writes=("v0",)))),
+        (0.0, ("emit", "s1", 2)),
+        (0.0, ("emit", "s0", 0)),
+        (0.0, ("wipe", "s1")),
+        (0.3, ("emit", "s1", 0)),
+    )
+    play = Play(World((SignalOf(), SignalOf()), V1, rules, inputs)).play()
+    assert [line.split(" s <")[0] for line in play.heard if "< Run(" in line] == ["3"]
+
+
+def test_no_alternative_answers_a_cause_that_has_merged_with_an_answered_one() -> None:
+    # L11, L18: r1 has answered the first cause, and r2 joins the second cause to it. So r0 may not follow r3.
+    rules = (
+        RuleOf(when=on("s0"), writes=("v0",)),
+        RuleOf(when=on("s2"), writes=("v0",)),
+        RuleOf(when=on("s2", "s0"), writes=("v1",), emits=("s1",), acts=(Act(steps=((0.0, ("emit", "s1", 1)),)),)),
+        RuleOf(when=on("s0"), writes=("v0",), acts=(Act(end="resigned"),), weight=2.0),
+    )
+    inputs = ((0.0, ("emit", "s2", 1)), (1.0, ("emit", "s0", 3)))
+    play = Play(World(S3, (SlotOf(), SlotOf()), rules, inputs)).play()
+    assert runs(play) == ["r1", "r2", "r3"]

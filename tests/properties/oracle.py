@@ -80,7 +80,8 @@ class Exclusion:
                     a, b = activation.spikes[one.index], activation.spikes[other.index]
                     assert a.group.root() is b.group.root(), f"{name} joins {a} and {b} of different groups"
         key = (clause.index, tuple(spike.id for _, spike in held))
-        assert key not in self.seen, f"{name} runs twice on {activation.spikes}"
+        # Detached spikes serve any number of runs (L19), so a clause without other spikes may run twice on the same ones.
+        assert not firm or key not in self.seen, f"{name} runs twice on {activation.spikes}"
         self.seen.add(key)
         groups = tuple(dict.fromkeys(spike.group.root() for spike in firm)) if rule.slots else ()
         mine = Started(effect.run, name, rule.slotset, groups, tuple(spike.id for spike in firm))

@@ -183,7 +183,7 @@ class Agenda:
         state.refused.clear()
         for activation in found:
             if activation not in state.stuck:
-                state.stuck[activation] = None
+                state.stuck.add(activation)
                 heapq.heappush(breakers, (state.order(activation), activation))
         while breakers:
             order, best = heapq.heappop(breakers)
@@ -194,7 +194,7 @@ class Agenda:
                 continue
             for group in best.firm_groups():
                 for other in group.interested:  # what these wait for depends on the group, and so on this start
-                    state.stuck.pop(other, None)
+                    state.stuck.discard(other)
                     state.refused[other] = None
             self.runs.start(best)
             break

@@ -46,7 +46,7 @@ class ConflictSets:
         """Put the next alternative in the place of an activation that has resigned or failed."""
         queued = self.state.alternatives.pop(activation, None)
         spike = activation.spikes[0]
-        if queued is not None and spike is not None:
+        if queued is not None and spike is not None and not spike.group.root().finished(activation.clause.rule.slots):
             clauses, made, base = queued
             refused = spike.refused or ()
             while made < len(clauses) and clauses[made].rule.index in refused:
@@ -59,6 +59,8 @@ class ConflictSets:
         clauses, made, base = self.state.alternatives.pop(activation)
         spike = activation.spikes[0]
         assert spike is not None  # it is ready, or runs
+        if spike.group.root().finished(activation.clause.rule.slots):
+            return  # its group has merged with one in which the slots are consumed
         for position in range(made, len(clauses)):
             if spike.refused is None or clauses[position].rule.index not in spike.refused:
                 self._activate(clauses[position], base + position + 1, spike)

@@ -10,7 +10,7 @@ A rival that may never become ready is under pressure: it has its patience, once
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
@@ -20,6 +20,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import FIRM, NO, Horizon
+from ravestate.engine.idle import Idle
 from ravestate.engine.refusal import Refusal
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
@@ -36,12 +37,12 @@ class Consent:
         self.holdings = holdings
         self.halves = halves
 
-    def ask(self, activation: Activation, without: Collection[Activation] = (), *, commit: bool = True) -> Refusal:
+    def ask(self, activation: Activation, idle: Sequence[Idle] = (), *, commit: bool = True) -> Refusal:
         """Ask every causal group of a ready activation for consent. Return the refusal; an empty refusal is consent.
 
         Args:
             activation: The activation.
-            without: Activations that count as doing nothing.
+            idle: Activations that count as doing nothing.
             commit: Whether rivals come under pressure, and give up when their patience is over.
         """
         refusal = Refusal()
@@ -60,24 +61,24 @@ class Consent:
                 if clause.rule.cooldown:
                     self.halves.unfold(spike, half)
                 elif (best := self._best(half, spike, clause)) is not None:
-                    horizon = horizon or self._horizon(activation, without)
+                    horizon = horizon or self._horizon(activation, idle)
                     if self._judge_half(refusal, horizon, best, spike, clause, commit=commit):
                         eliminated = True
             for rival, members in self._rivals(activation, group):
                 if clause.rule.cooldown or rival.rule.cooldown:
                     refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
                 if standing.refuses(rival, clause):
-                    horizon = horizon or self._horizon(activation, without)
+                    horizon = horizon or self._horizon(activation, idle)
                     if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                         eliminated = True
                 elif rival.rule.cooldown and standing.overtakes(rival, clause):
                     soon.append((rival, members, group))
         for rival, members, group in soon if refusal.names else ():
-            horizon = horizon or self._horizon(activation, without)
+            horizon = horizon or self._horizon(activation, idle)
             if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                 eliminated = True
         if eliminated and refusal.names:
-            return self.ask(activation, without)  # rivals judged before may have hung on the eliminated one
+            return self.ask(activation, idle)  # rivals judged before may have hung on the eliminated one
         if horizon is not None:
             refusal.interests.update(horizon.visited)
             refusal.hopes = horizon.hopes
@@ -105,7 +106,7 @@ class Consent:
             if member is None:
                 if apart:
                     break  # the older activation takes the signal
-            elif member.state >= RUNNING or member in horizon.still or _is_covered(member, sure):
+            elif member.state >= RUNNING or horizon.is_still(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)
             if strength == NO:
@@ -114,7 +115,9 @@ class Consent:
                 _note_firm(refusal, roots)
                 if member is not None:
                     sure.append(member)
-            elif self.press(rival, member, group, activation, commit=commit) > self.state.now:
+            elif (until := self.press(rival, member, group, activation, commit=commit)) > self.state.now:
+                if member is None:
+                    refusal.recheck = min(refusal.recheck, until)
                 refusal.pressed = True
             else:
                 if commit and member is not None:
@@ -172,15 +175,15 @@ class Consent:
         if commit and (not pressed or pressed[-1][0] < ahead):
             until = state.now + (state.patience if half.patience is None else half.patience)
             state.pressed.setdefault(spike, {}).setdefault(half, pressed).append((ahead, until))
-            if until > state.now:
-                state.deadlines.add(until, PATIENCE, (spike.group.root(), half.best[0].clause.index))
         begin, eliminated = 0, False
         for count, until in list(pressed):
             end = min(count, ahead)
             if until > state.now:
                 kept = [n.clause.rule.name for n in half.best[begin:end] if state.keeps(n, spike)]
-                refusal.names.update(dict.fromkeys(kept))
-                refusal.pressed = refusal.pressed or bool(kept)
+                if kept:
+                    refusal.names.update(dict.fromkeys(kept))
+                    refusal.pressed = True
+                    refusal.recheck = min(refusal.recheck, until)
             elif commit and begin < end and self.holdings.entries.refuse_best(spike, half, begin, end):
                 eliminated = True
             begin = count
@@ -247,8 +250,8 @@ class Consent:
             return table.get(key, -NEVER)
         patience = rival.rule.patience
         until = table[key] = state.now + (state.patience if patience is None else patience)
-        if until > state.now:
-            state.deadlines.add(until, PATIENCE, (group, rival.index if member is None else member))
+        if until > state.now and member is not None:  # a refusal keeps the time for a stand-by
+            state.deadlines.add(until, PATIENCE, (group, member))
         if state.tracer is not None:
             missing = rival.all_bits if member is None else member.missing
             lacks = tuple([n.signal.name for n in rival.needs if n.bit & missing])
@@ -261,9 +264,9 @@ class Consent:
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 
-    def _horizon(self, activation: Activation, without: Collection[Activation]) -> Horizon:
+    def _horizon(self, activation: Activation, idle: Sequence[Idle]) -> Horizon:
         """Return a horizon in which the activation does nothing, nor do those that wait, or would wait, for it (L16)."""
-        still = {activation, *without}
+        still = {activation}
         clause = activation.clause
         slots = clause.rule.slotset
         for group in activation.firm_groups():
@@ -276,7 +279,7 @@ class Consent:
                     and self.state.standing.overtakes(clause, theirs)
                 ):
                     still.add(other)
-        return Horizon(self.state, still)
+        return Horizon(self.state, still, idle)
 
     def _rival_halves(self, clause: Clause, group: Group) -> list[tuple[Half, Spike]]:
         """Return the halves that hold spikes of the group for clauses that write a slot of `clause`, with the spikes."""

@@ -21,8 +21,8 @@ class Kind(enum.IntEnum):
 
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need
-    RECHECK = 2  # the order of recovering utilities changes
-    PATIENCE = 3  # the patience of a pressured rival ends
+    RECHECK = 2  # the order of recovering utilities changes, or the patience of a rival without an activation ends
+    PATIENCE = 3  # the patience of a pressured activation ends
     EXPIRE = 4  # a spike is too old for an incomplete activation
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
@@ -87,8 +87,6 @@ class Deadlines:
             return owner.refusal is not None and owner.refusal.recheck == time
         if kind == PATIENCE:
             group, rival = owner[0].root(), owner[1]
-            if isinstance(rival, int):  # the rival stands by, and so do those who wait for it
-                return bool(group.interested)
             return rival.state < RUNNING and rival.pressed.get(group) == time
         if kind == EXPIRE:
             return bool(owner.holders) or self.state.is_live(owner)

@@ -238,7 +238,7 @@ class Engine:
             activation.refusal.recheck = NEVER
             self.state.asking[activation] = None
 
-    def on_patience(self, time: float, owner: tuple[Group, int | Activation]) -> None:
+    def on_patience(self, time: float, owner: tuple[Group, Activation]) -> None:
         self.state.dirty[owner[0].root()] = None
 
     def on_expire(self, time: float, spike: Spike) -> None:

@@ -21,11 +21,12 @@ the steps whose strengths it needs, and `_solve` keeps those that wait on a stac
 
 from __future__ import annotations
 
-from collections.abc import Generator, Set
+from collections.abc import Generator, Sequence, Set
 from typing import Any, Final
 
 from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.group import Group
+from ravestate.engine.idle import Idle
 from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need
@@ -45,6 +46,7 @@ class Horizon:
     Args:
         state: The state of the engine.
         still: The activations that count as doing nothing: the asking one, and those that wait for it.
+        idle: More activations that count as doing nothing.
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
@@ -61,6 +63,7 @@ class Horizon:
         "_path",
         "_still",
         "hopes",
+        "idle",
         "recheck",
         "roots",
         "state",
@@ -68,9 +71,10 @@ class Horizon:
         "visited",
     )
 
-    def __init__(self, state: State, still: Set[Activation]) -> None:
+    def __init__(self, state: State, still: Set[Activation], idle: Sequence[Idle] = ()) -> None:
         self.state = state
         self.still = still
+        self.idle = idle
         self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
         self._cuts = 0  # how often a cycle was cut
         self._path: set[tuple[int, Group]] = set()  # the signals whose derivation is in progress
@@ -80,6 +84,16 @@ class Horizon:
         self.visited: dict[Group, None] = {}
         self.hopes: dict[tuple[int, int], int] = {}
         self.recheck = NEVER
+
+    def is_still(self, activation: Activation) -> bool:
+        """Return whether an activation counts as doing nothing."""
+        return activation in self.still or (bool(self.idle) and self._is_idle(activation))
+
+    def _is_idle(self, activation: Activation) -> bool:
+        for idle in self.idle:
+            if activation in idle:
+                return True
+        return False
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
         """Return how viable a clause is in a group, and the live activations on which a firm result rests.
@@ -133,7 +147,7 @@ class Horizon:
             if one.clause is clause
             and one.state == GATHERING
             and one.missing & open_bits
-            and one not in self.still
+            and not self.is_still(one)
             and one not in group.members
         ]
 
@@ -255,7 +269,7 @@ class Horizon:
                     self.roots.append(activation)
                     best = FIRM
                     break
-                if activation not in self.still:
+                if not self.is_still(activation):
                     ways.append((activation.clause, activation))
             if best != FIRM:
                 for clause in rule.clauses:
@@ -308,11 +322,15 @@ class Horizon:
         if self._still is None:
             self._still = {}
             for activation in self.still:
-                number = activation.clause.rule.index
-                self._still[number] = self._still.get(number, 0) + (activation.state != ENDED)
+                if activation.state != ENDED and not self._is_idle(activation):
+                    number = activation.clause.rule.index
+                    self._still[number] = self._still.get(number, 0) + 1
         count = self._still.get(rule, 0)
+        for idle in self.idle:
+            count += idle.counts.get(rule, 0)
         if near:
-            count += sum(activation not in self.still for activation in self._rules(group).get(rule, ()))
+            for activation in self._rules(group).get(rule, ()):
+                count += not self.is_still(activation)
         return count
 
 

@@ -26,7 +26,8 @@ class Refusal:
         pressed: Whether a rival may never be ready, so that only its patience ends the wait.
         hopes: Things outside its groups on which the refusal depends (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
-        recheck: The earliest time at which recovering utilities, or the age of a spike, may lift it (seconds).
+        recheck: The earliest time at which recovering utilities, the patience of a rival without an activation, or the
+            age of a spike may lift it (seconds).
     """
 
     __slots__ = ("blockers", "firm", "hopes", "interests", "names", "pressed", "recheck", "taken")

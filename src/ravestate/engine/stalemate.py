@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 
 from ravestate.engine.activation import Activation
 from ravestate.engine.consent import Consent
+from ravestate.engine.idle import Idle
 
 
-def stalemate(consent: Consent, refused: Iterable[Activation], known: Collection[Activation] = ()) -> set[Activation]:
+def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | None = None) -> set[Activation]:
     """Return activations that wait for nothing but each other.
 
-    Two ready rules may each wait for a rival that the other might bring about. They would wait for ever, so the one
-    with the greater effective utility goes first, or else the one declared first.
+    Two ready rules may each wait for a rival whose missing signal the other rule may cause. Both would wait for ever.
+    So the rule with the greater effective utility goes first; if they are equal, the rule declared first does.
 
     Args:
         consent: The part of the engine that asks for consent.
-        refused: The activations that were refused since the last search: at least one is in any new stalemate.
+        refused: The activations that were refused since the last search. Every new stalemate has one of them.
         known: The activations that earlier searches found.
     """
     waiting = consent.state.waiting.keys()
@@ -28,7 +29,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Collection
             if one in seen or not _hangs(one):
                 continue
             if any([waiting.isdisjoint(roots) for roots in _firm(one)]):
-                continue  # it waits for work that waits for nothing
+                continue  # none of the roots waits, so this wait will end
             seen.add(one)
             for roots in _firm(one):
                 reached += roots
@@ -40,24 +41,32 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Collection
             freed = {one for one in stuck if any([stuck.isdisjoint(roots) for roots in _firm(one)])}
             stuck -= freed
         while stuck:
-            without = stuck.union(known)
-            answers = [(one, consent.ask(one, without, commit=False)) for one in stuck]
+            new = Idle(one for one in sorted(stuck, key=_age) if known is None or one not in known)
+            idle = (new,) if known is None else (new, known)
+            answers = [(one, consent.ask(one, idle, commit=False)) for one in sorted(stuck, key=_age)]
             moved = [(one, refusal) for one, refusal in answers if refusal]
             if not moved:
                 break
             stuck -= {one for one, _ in moved}
-            for _, refusal in moved:  # it waits for others as well, and these may wait for it
+            for _, refusal in moved:  # search these too: they may wait for the first ones
                 reached += [root for roots in refusal.firm for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck
 
 
 def _firm(activation: Activation) -> list[tuple[Activation, ...]]:
-    """Return for each rival that an activation surely waits for the activations at work."""
+    """Return, for each rival that live activations will make ready or rule out, these activations (`Refusal.firm`)."""
     return [] if activation.refusal is None else activation.refusal.firm
 
 
 def _hangs(activation: Activation) -> bool:
-    """Return whether an activation waits for work in progress alone, so that it might wait for ever."""
+    """Return whether an activation waits only for other activations, not for a taken slot or a rival's patience.
+
+    Such a wait might never end.
+    """
     refusal = activation.refusal
     return refusal is not None and bool(refusal.firm) and not refusal.bounded
+
+
+def _age(activation: Activation) -> int:
+    return activation.id

@@ -25,6 +25,7 @@ from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
 from ravestate.engine.group import Group
+from ravestate.engine.idle import Idle
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
 from ravestate.engine.standing import Standing
@@ -132,7 +133,7 @@ class State:
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
         """The activations refused since the last search for a stalemate."""
-        self.stuck: dict[Activation, None] = {}
+        self.stuck = Idle()
         """The activations found in a stalemate since they were refused."""
         self.dirty: dict[Group, None] = {}
         """The groups in which something ended: the activations that wait there ask again."""

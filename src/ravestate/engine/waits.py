@@ -52,7 +52,7 @@ class Waits:
         state.waiting.pop(activation, None)
         state.refused.pop(activation, None)
         if state.stuck:
-            state.stuck.pop(activation, None)
+            state.stuck.discard(activation)
         for hope in refusal.hopes:
             hoping = state.hoping.get(hope)
             if hoping is not None:
@@ -103,7 +103,7 @@ class Waits:
     def pass_time(self) -> None:
         """Judge stalemates again, because with time the reasons to wait may change."""
         if self.state.stuck:
-            self.state.refused.update(self.state.stuck)
+            self.state.refused.update(dict.fromkeys(self.state.stuck))
             self.state.stuck.clear()
 
 

@@ -84,23 +84,6 @@ def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
     ros1_network.run(main)
 
 
-def test_turtlebot_on_real_ros_2(ros2_network: Network) -> None:
-    async def main() -> None:
-        seen: list[dict[str, Any]] = []
-        async with ros2_network.lent() as node:
-            robot = StandIn(roboyio.load_robot("turtlebot"), node, quickly)
-            robot.watch(seen.append)
-            settings = {**ros2_network.settings, "roboyio": {"link": "ros2", "robot": "turtlebot"}}
-            async with rs.Context(roboyio, parrot(), settings=settings):
-                await until(
-                    lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
-                )
-                await until(lambda: any(looks["yaw"] > 0.2 for looks in seen))
-            await robot.close()
-
-    ros2_network.run(main)
-
-
 def test_gaze_in_virtual_time() -> None:
     slow = rs.Module("slow", requires=[rawio])
 

@@ -112,9 +112,13 @@ def test_an_agent_without_ros_ends_with_what_to_install() -> None:
     asyncio.run(main())
 
 
-def test_the_last_words_of_an_agent_still_leave() -> None:
+def test_the_first_words_of_an_agent_leave_and_the_last_ones_too() -> None:
     agent = rs.Module("agent", requires=[ros2])
     chat = ros2.publisher(agent, "chat", topic="/chat", type="std_msgs/String")
+
+    @agent.rule(when=rs.startup, writes=chat)
+    async def greet(ctx: rs.RuleContext) -> None:
+        ctx[chat] = {"data": "hello"}
 
     @agent.rule(when=rs.shutdown, writes=chat)
     async def leave(ctx: rs.RuleContext) -> None:
@@ -129,8 +133,8 @@ def test_the_last_words_of_an_agent_still_leave() -> None:
             await until(lambda: bus.find("subscriber", "/chat"))
             async with rs.Context(agent, settings={"ros2": settings}):
                 await until(lambda: bus.find("publisher", "/chat"))
-            await until(lambda: heard)
-            assert heard == ["goodbye"]
+            await until(lambda: len(heard) > 1)
+            assert heard == ["hello", "goodbye"]
             await world.close()
 
     asyncio.run(main())

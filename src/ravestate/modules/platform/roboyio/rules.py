@@ -45,6 +45,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         if settings.link == "bus":
             node = own = open_node(2, NodeSettings(bus=settings.bus), _nowhere, {}, bus=True)
         assert node is not None  # `_not_now` has looked
+        await node.prepare()
         from .connection import Connection
 
         made = Connection(robot, node, ctx.sleep, settings.speech_timeout)

@@ -148,6 +148,7 @@ class Node:
         self._calls: dict[int, tuple[asyncio.Future[Any], Channel, Callable[[Any], None] | None]] = {}
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
         self._told: set[str] = set()
+        self._preparing: asyncio.Future[Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
     @property
@@ -254,6 +255,17 @@ class Node:
             self._link.start()
         if self._link.failed is not None:
             raise self._link.failed
+
+    async def prepare(self) -> None:
+        """Load the types in a thread, unless they are. Without it, the first use of the node loads them on the loop.
+
+        Raises:
+            PlatformError: The library of types is missing.
+        """
+        if not self.types.loaded:
+            if self._preparing is None:  # one for all, so that those who wait go on in their order
+                self._preparing = asyncio.ensure_future(asyncio.to_thread(lambda: self.types.store))
+            await asyncio.shield(self._preparing)
 
     def send(self, kind: Kind, channel: int, number: int, body: memoryview | bytes = b"") -> None:
         """Send a frame, or keep it until the link works."""

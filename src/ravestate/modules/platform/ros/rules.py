@@ -103,12 +103,12 @@ def connect(
         """Open the topics, services and actions of all slots; follow the simulation's clock if the settings say so."""
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
-        made = await asyncio.to_thread(make_node, ctx.settings, ctx.stop)  # the types take a while
+        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # at once, so that no rule of the startup finds no node
         try:
+            await made.prepare()
             bind_all(ctx, made, version)
             if ctx.settings.use_sim_time:
                 follow_clock(ctx, made)
-            ctx[node] = made
             await asyncio.get_running_loop().create_future()
         except PlatformError as error:
             ctx.stop(error)

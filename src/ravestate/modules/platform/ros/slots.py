@@ -170,6 +170,7 @@ class Declarations:
             """Write each message of the topic to the slot."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
+            await here.prepare()
 
             def take(message: Any) -> None:
                 ctx[slot] = message
@@ -215,6 +216,7 @@ class Declarations:
             """Publish each value of the slot."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
+            await here.prepare()
             cast("Channel", _channel(here, slot)).publish(ctx.payload(slot.changed))
             return None
 
@@ -244,6 +246,7 @@ class Declarations:
             """Call the service, and raise its answer."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
+            await here.prepare()
             try:
                 answer = await _channel(here, slot).call(ctx.payload(slot.requested))
             except PlatformError as error:
@@ -295,6 +298,7 @@ class Declarations:
             """Send the goal, and raise its feedback and its result."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
+            await here.prepare()
             asked = ctx.payload(slot.requested)
             goal = asked if isinstance(asked, Goal) else None
             value = asked if goal is None else goal.value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import threading
 from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, Literal, cast
@@ -30,8 +31,21 @@ class Types:
     def __init__(self, version: Literal[1, 2], definitions: Definitions | None = None) -> None:
         self.version = version
         self.definitions = definitions or Definitions()
-        self.store = _store(version)
-        """The library's store of types."""
+        self._store: Any = None
+        self._loading = threading.Lock()
+
+    @property
+    def store(self) -> Any:
+        """The library's store of types. Its first use loads the library, which takes a while."""
+        with self._loading:
+            if self._store is None:
+                self._store = _store(self.version)
+            return self._store
+
+    @property
+    def loaded(self) -> bool:
+        """Whether the library is loaded."""
+        return self._store is not None
 
     def require(self, name: str, kind: str = "msg") -> str:
         """Make a type known, with all that it contains; return its full name.

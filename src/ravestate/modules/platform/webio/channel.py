@@ -1,4 +1,4 @@
-"""A WebSocket with limits, for any protocol: the size of frames, time limits, and closing codes."""
+"""A WebSocket for any protocol. It limits the size of frames and the wait for the first one, and has closing codes."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Channel:
         await self._socket.send_bytes(bytes(sound))
 
     def reply(self, text: str) -> None:
-        """Queue a frame. The task that writes sends it with `send_replies`."""
+        """Queue a frame. The writing task later calls `send_replies`, which sends it."""
         if len(self._replies) >= self._most:
             raise WebSocketDisconnect(1008, "it does not read")
         self._replies.append(text)

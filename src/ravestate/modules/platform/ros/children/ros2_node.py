@@ -177,8 +177,16 @@ class Ros2Node:
             else:
                 self._pipe.tell(FAULT, f"the goal was {status}", channel, number)
 
-        client.send_goal_async(deserialize_message(body, cls.Goal), feedback).add_done_callback(accepted)
-        self._executor.wake()
+        message = deserialize_message(body, cls.Goal)
+
+        def send():
+            try:
+                client.send_goal_async(message, feedback).add_done_callback(accepted)
+            except Exception as error:
+                self._pipe.tell(FAULT, reason(error), channel, number)
+
+        # On the executor's thread: on another one, the server's answer may come before the client expects it.
+        self._executor.create_task(send)
 
     def answer(self, channel, number, body, failed):
         """Answer a call of a service that the agent offers."""
@@ -193,8 +201,7 @@ class Ros2Node:
         if goal is not None:
             goal["cancelled"] = True
             if goal["handle"] is not None:
-                goal["handle"].cancel_goal_async()
-                self._executor.wake()
+                self._executor.create_task(goal["handle"].cancel_goal_async)
 
     def unbind(self, channel):
         """Remove what `bind` has made."""
