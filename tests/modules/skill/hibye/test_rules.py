@@ -4,6 +4,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.modules import hibye, idle, interloc, rawio
+from ravestate.modules.meta.ontology import Node
 from ravestate.modules.meta.verbaliser import PhraseBook
 from ravestate.testing import Simulation, simulate
 
@@ -45,6 +46,20 @@ def test_a_name_that_is_known_may_be_said() -> None:
             said.add(only(sim))
     assert said <= phrases("greeting", name="Ada")
     assert any("Ada" in text for text in said)
+
+
+def test_a_user_whom_a_platform_recognises_is_greeted_by_name() -> None:
+    """When they come, or when they have been present without a name."""
+    ada = interloc.Recognised("Ada", Node("Person", {"name": "Ada"}))
+    for seed in range(5):
+        with simulate(hibye, seed=seed) as sim:
+            sim.put(interloc.users, {"door": ada})
+            assert only(sim) in phrases("recognised", name="Ada") and "Ada" in only(sim)
+        with simulate(hibye, seed=seed) as sim:
+            sim.put(interloc.users, {"page": None})
+            sim.said.clear()
+            sim.emit(interloc.recognised, rs.Entry("page", ada))
+            assert only(sim) in phrases("recognised", name="Ada")
 
 
 def test_hello_and_goodbye_are_answered_before_anybody_else_talks() -> None:

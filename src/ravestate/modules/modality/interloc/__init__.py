@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .names import agent, facts, forgotten, module, users
+from .names import Recognised, agent, facts, forgotten, module, recognised, users
 
-__all__ = ["agent", "facts", "forgotten", "module", "users"]
+__all__ = ["Recognised", "agent", "facts", "forgotten", "module", "recognised", "users"]

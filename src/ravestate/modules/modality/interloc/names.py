@@ -2,17 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import ravestate as rs
 
+if TYPE_CHECKING:
+    from ravestate.modules.meta.ontology import Node
+
 module = rs.Module("interloc")
+
+
+class Recognised(str):
+    """The name of a user whom a platform has recognised, together with their node in memory (`node`): an item of `users`."""
+
+    node: Node
+
+    def __new__(cls, name: str, node: Node) -> Recognised:
+        """Return the name with the node."""
+        self = super().__new__(cls, name)
+        self.node = node
+        return self
+
 
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""The present users: a key that the platform chooses for the user → the user's name, or None while it is unknown."""
+"""The present users: a key that the platform chooses for the user → the user's name, or None while it is unknown. A
+`Recognised` is the name of a user whom a platform has recognised."""
+
+recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
+"""A platform has found out who a user is who was present before. The payload is their entry in `users`."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """Topic, such as ``home`` or ``sister`` → known facts about the user. A module that learns facts writes them."""

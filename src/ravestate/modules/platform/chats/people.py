@@ -21,18 +21,6 @@ PATIENCE = 30.0
 """The seconds to wait for memory; after that the conversation begins without it."""
 
 
-class Recognised(str):
-    """The name of a person, together with their node in memory (`node`). It is an item of ``interloc.users``."""
-
-    node: Node
-
-    def __new__(cls, name: str, node: Node) -> Recognised:
-        """Return the name with the node."""
-        self = super().__new__(cls, name)
-        self.node = node
-        return self
-
-
 async def welcome(context: Context, platform: str, person: Person, log: logging.Logger) -> None:
     """Add a person to the users who are present, under the name by which memory knows their account."""
     name: str | None = person.name
@@ -42,7 +30,7 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
             if memory is not None:
                 account = _account(platform, person)
                 node = await memory.together(lambda graph: _known(graph, account, person.name))
-                name = Recognised(node["name"], node) if node.get("name") else name
+                name = interloc.Recognised(node["name"], node) if node.get("name") else name
     except (RavestateError, TimeoutError) as error:
         log.warning("memory was not asked about a person: %s", str(error) or "it took too long")
         name = None  # the name alone might mean another person, of whom memory knows more

@@ -22,15 +22,16 @@ GENERAL = 0.15
 
 
 @module.rule(
-    when=interloc.users.added,
+    when=interloc.users.added | interloc.recognised,
     writes=(verbaliser.intent, greeted),
     weight=1.1,  # outranks a simultaneous goodbye
 )
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
-    """Greet a user who comes."""
-    name = ctx.payload(interloc.users.added).item
+    """Greet a user who comes, or whom a platform has recognised."""
+    name = (ctx.payload(interloc.users.added) or ctx.payload(interloc.recognised)).item
     ctx[greeted] = ctx.now
-    ctx[verbaliser.intent] = Intent("greeting", {"name": name}, __package__)
+    intent = "recognised" if isinstance(name, interloc.Recognised) else "greeting"
+    ctx[verbaliser.intent] = Intent(intent, {"name": name}, __package__)
 
 
 @module.rule(when=interloc.users.removed, reads=parted, writes=verbaliser.intent)

@@ -147,10 +147,11 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
     now = acquaintance_of(ctx)
     keep(ctx, now, now.rebased(base, after))
     users = ctx[interloc.users]
-    if after.name != called and len(users) == 1:
+    if len(users) == 1:
         [(key, item)] = users.items()
-        if item is None or item == called:
-            users.add(key, after.name)
+        new = item_of(after)
+        if (item is None or item == called) and (new, node_id(new)) != (item, node_id(item)):
+            users.add(key, new)
 
 
 @module.rule(
@@ -185,7 +186,7 @@ async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=interloc.users.added.max_age(None).detached(),
+    when=interloc.users.added.max_age(None).detached() | interloc.recognised.max_age(None).detached(),
     reads=(ontology.memory, interloc.users),
     writes=(talk, who, facts, told),
     emits=noted,
@@ -196,7 +197,7 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("somebody is there already")
     before = acquaintance_of(ctx)
-    person = person_of(ctx.payload(interloc.users.added).item)
+    person = person_of((ctx.payload(interloc.users.added) or ctx.payload(interloc.recognised)).item)
     if person is None or before.name == person[NAME]:
         user = before
     elif before.who is None:
@@ -223,6 +224,16 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
     person = person_of(others[0]) if others else None
     await begin(ctx, Acquaintance(person, {}, Talk(quiet=not others)))
     return None
+
+
+def item_of(user: Acquaintance) -> str | None:
+    """Return the item of a user in `interloc.users`: their name, with their node if it is certain who they are."""
+    return user.name if user.who is None or user.talk.doubt else interloc.Recognised(user.who[NAME], user.who)
+
+
+def node_id(item: object) -> str | None:
+    """Return the id of the node in an item of `interloc.users`; None if it has none."""
+    return item.node.id if isinstance(item, interloc.Recognised) else None
 
 
 def person_of(item: object) -> ontology.Node | None:

@@ -1,15 +1,15 @@
 """The process of one model: it answers requests on standard input, one after another.
 
-`model_process` runs this file. The argument names a backend, which is a file in the same folder: ``python -P serve.py
-whisper``. The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by
+`process` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. It is a file, or a
+folder with ``__init__.py`` and files that it imports (``from . import ...``). The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by
 as many bytes as the line's ``size`` says. The process ends when standard input ends, so it also ends when its parent does.
 """
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
-import runpy
 import signal
 import sys
 from pathlib import Path
@@ -24,8 +24,7 @@ def main() -> None:
     requests = os.fdopen(os.dup(0), "rb")
     config, _ = _read(requests)
     try:
-        backend: Any = runpy.run_path(str(Path(__file__).with_name(f"{sys.argv[1]}.py")))
-        handle = backend["load"](config)
+        handle = _program(Path(sys.argv[1])).load(config)
     except BaseException as error:
         _write(answers, {"error": _reason(error)}, b"")
         os._exit(1)
@@ -40,6 +39,16 @@ def main() -> None:
         except Exception as error:
             answer, sound = {"error": _reason(error)}, b""
         _write(answers, answer, sound)
+
+
+def _program(path: Path) -> Any:
+    """Import a file or a folder, under a name that no package has."""
+    file, folders = (path / "__init__.py", [str(path)]) if path.is_dir() else (path, None)
+    spec = importlib.util.spec_from_file_location("ravestate_backend", file, submodule_search_locations=folders)
+    assert spec is not None and spec.loader is not None
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def _read(stream: BinaryIO) -> tuple[dict[str, Any], bytes]:

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.voiceio import model_process
-from ravestate.modules.platform.voiceio.model_process import ModelProcess
+from ravestate.modules._children import process as model_process
+from ravestate.modules._children.process import Backend, ModelProcess
 
 BACKEND = """
 import os, threading
@@ -36,17 +36,15 @@ def load(config):
 
 
 @pytest.fixture
-def children(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with the real server of requests and a backend that obeys."""
-    (tmp_path / "serve.py").write_text((model_process.CHILDREN / "serve.py").read_text(encoding="utf-8"))
+def backend(tmp_path: Path) -> Backend:
+    """A backend that obeys."""
     (tmp_path / "obedient.py").write_text(BACKEND)
-    monkeypatch.setattr(model_process, "CHILDREN", tmp_path)
-    return tmp_path
+    return Backend(tmp_path / "obedient.py", "voiceio", "obedient", lambda reason: f" ({len(reason)} letters)")
 
 
 @pytest.fixture
-def process(children: Path) -> Iterator[ModelProcess]:
-    one = ModelProcess("obedient", {})
+def process(backend: Backend) -> Iterator[ModelProcess]:
+    one = ModelProcess(backend, {})
     yield one
     one.close()
 
@@ -97,16 +95,16 @@ def test_a_process_that_dies_is_replaced(process: ModelProcess) -> None:
     assert process.restarts == 1
 
 
-def test_a_model_that_cannot_be_loaded_says_why(children: Path) -> None:
-    process = ModelProcess("obedient", {"broken": True})
-    with pytest.raises(PlatformError, match="cannot load obedient: ValueError: the file is damaged"):
+def test_a_model_that_cannot_be_loaded_says_why(backend: Backend) -> None:
+    process = ModelProcess(backend, {"broken": True})
+    with pytest.raises(PlatformError, match=r"cannot load obedient: ValueError: the file is damaged \(31 letters\)$"):
         process.start()
     process.close()
 
 
-def test_an_interpreter_that_is_missing_is_named(children: Path) -> None:
+def test_an_interpreter_that_is_missing_is_named(backend: Backend) -> None:
     with pytest.raises(PlatformError, match="cannot start '/none/python'"):
-        ModelProcess("obedient", {}, "/none/python").start()
+        ModelProcess(backend, {}, "/none/python").start()
 
 
 def test_a_closed_process_refuses(process: ModelProcess) -> None:
@@ -120,9 +118,9 @@ def test_a_closed_process_refuses(process: ModelProcess) -> None:
         os.kill(pid, 0)
 
 
-def test_users_of_the_same_model_share_its_process(children: Path) -> None:
-    one, two = model_process.take("obedient", {"a": 1}), model_process.take("obedient", {"a": 1})
-    other = model_process.take("obedient", {"a": 2})
+def test_users_of_the_same_model_share_its_process(backend: Backend) -> None:
+    one, two = model_process.take(backend, {"a": 1}), model_process.take(backend, {"a": 1})
+    other = model_process.take(backend, {"a": 2})
     assert one is two is not other
     one.start()
     model_process.drop(one)
@@ -132,21 +130,21 @@ def test_users_of_the_same_model_share_its_process(children: Path) -> None:
     assert one.pid is None
 
 
-def test_a_process_that_lingers_serves_the_next_user(children: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_lingers_serves_the_next_user(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 3600.0)
-    one = model_process.take("obedient", {"b": 1})
+    one = model_process.take(backend, {"b": 1})
     one.start()
     pid = one.pid
     model_process.drop(one, linger=True)
-    two = model_process.take("obedient", {"b": 1})
+    two = model_process.take(backend, {"b": 1})
     assert two is one and two.pid == pid is not None
     model_process.drop(two)
     assert two.pid is None
 
 
-def test_a_process_that_nobody_takes_again_ends(children: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_nobody_takes_again_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 0.0)
-    one = model_process.take("obedient", {"c": 1})
+    one = model_process.take(backend, {"c": 1})
     one.start()
     before = set(threading.enumerate())
     model_process.drop(one, linger=True)
@@ -155,23 +153,25 @@ def test_a_process_that_nobody_takes_again_ends(children: Path, monkeypatch: pyt
     assert one.pid is None
     with pytest.raises(PlatformError, match="is closed"):
         one.start()
-    other = model_process.take("obedient", {"c": 1})
+    other = model_process.take(backend, {"c": 1})
     assert other is not one
     model_process.drop(other)
 
 
-def test_processes_that_linger_end_with_the_interpreter(children: Path) -> None:
+def test_processes_that_linger_end_with_the_interpreter(backend: Backend) -> None:
     """Also while their timer runs."""
     program = (
         "import sys, pathlib\n"
-        "from ravestate.modules.platform.voiceio import model_process\n"
-        "model_process.CHILDREN = pathlib.Path(sys.argv[1])\n"
-        "one = model_process.take('obedient', {})\n"
+        "from ravestate.modules._children import process\n"
+        "backend = process.Backend(pathlib.Path(sys.argv[1]), 'voiceio', 'obedient')\n"
+        "one = process.take(backend, {})\n"
         "one.start()\n"
         "print(one.pid)\n"
-        "model_process.drop(one, linger=True)\n"
+        "process.drop(one, linger=True)\n"
     )
-    done = subprocess.run([sys.executable, "-c", program, str(children)], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(backend.program)], capture_output=True, text=True, timeout=60
+    )
     assert (done.returncode, done.stderr) == (0, "")
     with pytest.raises(ProcessLookupError):
         os.kill(int(done.stdout), 0)
@@ -194,3 +194,11 @@ def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: Mode
     waiting.join()
     assert refused and process.request({"do": "go on"}, seconds=20, unwanted=threading.Event())[0]["pid"] == process.pid
     assert process.restarts == 0
+
+
+def test_a_backend_may_be_a_folder_of_files_that_import_each_other(tmp_path: Path) -> None:
+    (tmp_path / "__init__.py").write_text("from .work import double\n\ndef load(config):\n    return double\n")
+    (tmp_path / "work.py").write_text("def double(header, data):\n    return {}, 2 * data\n")
+    process = ModelProcess(Backend(tmp_path, "voiceio", "twice"), {})
+    assert process.request({}, b"ab", seconds=20) == ({}, b"abab")
+    process.close()

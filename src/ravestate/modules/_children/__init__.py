@@ -1,0 +1,1 @@
+"""Processes beside the agent that hold models. Modules name a program of theirs as the backend."""

@@ -1,0 +1,319 @@
+"""Models in processes of their own, which all contexts of this process share.
+
+A model that hangs or crashes ends its process alone: the next request gets a fresh one. In a thread, a model would also
+hold Python's lock while it loads, and stop every event loop.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import itertools
+import json
+import os
+import selectors
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+from typing import IO, Any
+
+from ravestate.errors import PlatformError
+
+LOADING = 120.0
+"""The longest time (seconds) that a model may take to load."""
+
+LINGER = 60.0
+"""The seconds for which an unused process stays loaded, if its last user asks for it."""
+
+SERVER = Path(__file__).with_name("serve.py")
+
+
+def _no_mend(_: str) -> str:
+    return ""
+
+
+@dataclass(frozen=True, slots=True)
+class Backend:
+    """A program for a process, and its names in messages.
+
+    Attributes:
+        program: A file, or a folder with ``__init__.py``. Its function ``load`` takes the configuration, and returns the
+            function that handles a request. It imports nothing from Ravestate.
+        owner: The module that uses it.
+        name: The backend's name in messages.
+        mend: Return the remedy for a reason for which the backend cannot be loaded, to be added to the message.
+    """
+
+    program: Path
+    owner: str
+    name: str
+    mend: Callable[[str], str] = _no_mend
+
+
+class ModelProcess:
+    """The process of one model. All methods block and are thread-safe; requests are answered one after another."""
+
+    def __init__(self, backend: Backend, config: Mapping[str, Any], python: str = sys.executable) -> None:
+        """Nothing is started yet.
+
+        Args:
+            backend: The program.
+            config: Its configuration, as data for JSON.
+            python: The interpreter that has the backend's packages.
+        """
+        self._backend = backend
+        self._title = f"{backend.owner}: {backend.name}"
+        self.restarts = 0
+        """The number of processes that replaced a dead or hanging one."""
+        self._config = dict(config)
+        self._python = python
+        self._turn = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._errors: IO[bytes] | None = None
+        self._rest = b""
+        self._closed = False
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number, if it runs."""
+        return self._process.pid if self._process is not None and self._process.poll() is None else None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request is under way."""
+        return self._turn.locked()
+
+    def start(self) -> None:
+        """Load the model, unless it is loaded.
+
+        Raises:
+            PlatformError: The model cannot be loaded; the message has the backend's reason.
+        """
+        with self._turn:
+            self._start()
+
+    def request(
+        self,
+        header: Mapping[str, Any],
+        data: bytes = b"",
+        *,
+        seconds: float,
+        unwanted: threading.Event | None = None,
+    ) -> tuple[dict[str, Any], bytes]:
+        """Send a request, and return its answer. The first request loads the model.
+
+        Args:
+            header, data: The request.
+            seconds: The longest time that the answer may take, once the model has begun.
+            unwanted: Set in another thread if the answer is of no use any more. If the request still waits for earlier
+                ones, it is then dropped.
+
+        Raises:
+            PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within
+                `seconds`. In the last two cases, the next request starts a fresh process. Or the request was dropped.
+        """
+        with self._turn:
+            if unwanted is not None and unwanted.is_set():
+                raise PlatformError(
+                    f"{self._backend.owner}: a request to {self._backend.name} was dropped, because another one replaces it"
+                )
+            self._start()
+            answer, sound = self._exchange(header, data, seconds)
+        if "error" in answer:
+            raise PlatformError(f"{self._title} failed: {answer['error']}")
+        return answer, sound
+
+    def close(self) -> None:
+        """Kill the process. It has nothing to save."""
+        self._closed = True
+        if (process := self._process) is not None:
+            process.kill()  # a request that is under way reads the end of its pipe, and fails
+        with self._turn:
+            self._end()
+
+    # ------------------------------------------------------------------------------- internals
+
+    def _start(self) -> None:
+        if self._closed:
+            raise PlatformError(f"{self._title} is closed")
+        if self.pid is not None:
+            return
+        if self._process is not None:
+            self.restarts += 1
+            self._end()
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
+        try:
+            # -P: the files beside the program must not be imported in place of packages with their names.
+            self._process = subprocess.Popen(
+                [self._python, "-P", str(SERVER), str(self._backend.program)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._errors,
+                bufsize=0,
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._end()
+            raise PlatformError(
+                f"{self._backend.owner}: cannot start {self._python!r} for {self._backend.name}: {error}"
+            ) from error
+        assert self._process.stdin is not None and self._process.stdout is not None
+        os.set_blocking(self._process.stdin.fileno(), False)
+        os.set_blocking(self._process.stdout.fileno(), False)
+        self._rest = b""
+        answer, _ = self._exchange(self._config, b"", LOADING)
+        if "error" in answer:
+            self._end()
+            raise PlatformError(
+                f"{self._backend.owner}: cannot load {self._backend.name}: {answer['error']}{self._backend.mend(answer['error'])}"
+            )
+
+    def _exchange(self, header: Mapping[str, Any], data: bytes, seconds: float) -> tuple[dict[str, Any], bytes]:
+        end = monotonic() + seconds
+        try:
+            self._send(json.dumps({**header, "size": len(data)}).encode() + b"\n" + data, end)
+            while b"\n" not in self._rest:
+                self._receive(end)
+            line, _, self._rest = self._rest.partition(b"\n")
+            answer: dict[str, Any] = json.loads(line)
+            size = answer.pop("size")
+            while len(self._rest) < size:
+                self._receive(end)
+            sound, self._rest = self._rest[:size], self._rest[size:]
+            return answer, sound
+        except TimeoutError:
+            self._end()
+            raise PlatformError(f"{self._title} did not answer within {seconds:g} s, and starts again") from None
+        except (EOFError, OSError):
+            how = self._obituary()
+            self._end()
+            raise PlatformError(f"{self._backend.owner}: the process of {self._backend.name} ended ({how})") from None
+
+    def _send(self, data: bytes, end: float) -> None:
+        assert self._process is not None and self._process.stdin is not None
+        pipe = self._process.stdin.fileno()
+        rest = memoryview(data)
+        while rest:
+            _wait(pipe, selectors.EVENT_WRITE, end)
+            with contextlib.suppress(BlockingIOError):
+                rest = rest[os.write(pipe, rest) :]
+
+    def _receive(self, end: float) -> None:
+        assert self._process is not None and self._process.stdout is not None
+        pipe = self._process.stdout.fileno()
+        _wait(pipe, selectors.EVENT_READ, end)
+        block = os.read(pipe, 1 << 20)
+        if not block:
+            raise EOFError
+        self._rest += block
+
+    def _obituary(self) -> str:
+        if self._process is None:
+            return "closed"
+        try:
+            code = self._process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            return "its pipe is closed"
+        how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        if self._errors is not None:
+            self._errors.seek(0)
+            said = self._errors.read(1 << 16).decode("utf-8", "replace").strip().splitlines()
+            how += f": {said[-1]}" if said else ""
+        return how
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    with contextlib.suppress(OSError):
+                        pipe.close()
+        if self._errors is not None:
+            self._errors.close()
+            self._errors = None
+
+
+def _wait(pipe: int, event: int, end: float) -> None:
+    with selectors.DefaultSelector() as selector:
+        selector.register(pipe, event)
+        if not selector.select(max(0.0, end - monotonic())):
+            raise TimeoutError
+
+
+# ------------------------------------------------------------------------------------- sharing
+
+_processes: dict[str, ModelProcess] = {}
+_users: dict[str, int] = {}
+_timers: dict[str, threading.Timer] = {}
+_sharing = threading.Lock()
+_unshared = itertools.count()
+
+
+def take(
+    backend: Backend, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True
+) -> ModelProcess:
+    """Return the process for this backend and configuration, started or not, with one more user. Pair it with `drop`.
+
+    Args:
+        backend, config, python: As for `ModelProcess`.
+        shared: Whether all users of the same configuration get the same process; if not, this user gets a fresh one.
+    """
+    with _sharing:
+        key = json.dumps(
+            [str(backend.program), dict(config), python, None if shared else next(_unshared)], sort_keys=True
+        )
+        if (timer := _timers.pop(key, None)) is not None:
+            timer.cancel()
+        process = _processes.get(key)
+        if process is None:
+            process = _processes[key] = ModelProcess(backend, config, python)
+        _users[key] = _users.get(key, 0) + 1
+        return process
+
+
+def drop(process: ModelProcess, *, linger: bool = False) -> None:
+    """Remove one user of `process`; without users it ends.
+
+    Args:
+        process: The process.
+        linger: Whether it ends only after `LINGER` seconds without a user, because a user is likely to come back.
+    """
+    with _sharing:
+        key = next((key for key, known in _processes.items() if known is process), None)
+        if key is None:
+            return
+        _users[key] -= 1
+        if _users[key]:
+            return
+        if linger:
+            timer = _timers[key] = threading.Timer(LINGER, _end_unused, [key])
+            timer.daemon = True
+            timer.start()
+            return
+        del _processes[key], _users[key]
+    process.close()
+
+
+def _end_unused(key: str) -> None:
+    """End a process that nobody has taken again."""
+    with _sharing:
+        if _timers.get(key) is not threading.current_thread():
+            return  # somebody took it in the last moment
+        del _timers[key], _users[key]
+        process = _processes.pop(key)
+    process.close()
+
+
+@atexit.register
+def _close_all() -> None:
+    for timer in list(_timers.values()):
+        timer.cancel()
+    for process in list(_processes.values()):
+        process.close()

@@ -1,0 +1,86 @@
+"""The module activity: its records, settings, signals and slots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+import ravestate as rs
+
+from .film import Film
+from .pose import Pose
+from .recogniser import Recogniser
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """An activity that somebody performed before the camera."""
+
+    name: str
+    """The name, as spoken: ``waving``, ``playing the guitar``."""
+    confidence: float
+    """0 to 1."""
+    start: float
+    """Seconds on the context's clock."""
+    end: float
+    others: Mapping[str, float] = field(default_factory=dict[str, float])
+    """The next best names, with their confidence."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """The name of the movement that the agent has just seen."""
+
+    name: str
+    start: float
+    """Seconds on the context's clock."""
+    end: float
+
+
+class Settings(rs.Settings):
+    """The recogniser's pace, and the place of the movements that it was taught."""
+
+    window: Annotated[float, Field(ge=1.0, le=10.0)] = 3.0
+    """The length of the movement that one recognition looks at, in seconds."""
+    step: Annotated[float, Field(gt=0)] = 0.5
+    """Seconds from one recognition to the next."""
+    folder: Path | None = None
+    """The folder of taught movements; by default ``activities`` in your data folder."""
+
+
+module = rs.Module("activity", settings=Settings)
+
+posed: rs.Signal[Pose] = module.signal("posed", payload=Pose, input=True)
+"""A camera has seen a body. A platform or `visionio` emits this signal for each frame with a body."""
+
+label: rs.Signal[str] = module.signal("label", payload=str, input=True)
+"""An external recogniser has named an activity. The name may have the form ``playing_guitar``."""
+
+recognised: rs.Signal[Activity] = module.signal("recognised", payload=Activity, input=True)
+"""Somebody performs an activity that the agent knows. While the activity goes on, the signal comes every `step` seconds.
+For an unknown movement, there is no signal."""
+
+taught: rs.Signal[Lesson] = module.signal("taught", payload=Lesson, input=True)
+"""A user has named the movement between two times. The recogniser learns it from the poses of that time."""
+
+in_view: rs.Slot[bool] = module.flag("in_view", input=True)
+"""Whether the camera sees a body."""
+
+known: rs.Slot[tuple[str, ...]] = module.slot("known", ())
+"""The names of all activities that the recogniser knows, in alphabetical order."""
+
+movement: rs.Slot[Film] = module.slot("movement", Film(), always=True)
+"""The poses of the last thirty seconds."""
+
+model: rs.Slot[Recogniser | None] = module.slot("model", None, type=Recogniser, input=True)
+"""The recogniser; None until it is loaded."""
+
+due: rs.Signal[float] = module.signal("due", payload=float, keep="latest")
+"""It is time for a recognition. The payload is the time of the newest pose."""
+
+looked: rs.Signal[None] = module.signal("looked", keep="latest")
+"""A pose has come."""

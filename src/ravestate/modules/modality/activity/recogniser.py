@@ -1,0 +1,269 @@
+"""The recogniser: it compares the features of a movement with those of the activities that it knows.
+
+Each activity is a Gaussian: a mean and a deviation of its own for each feature, and one correlation of features for all.
+A movement belongs to the activity under which it is most probable. It is unknown if it is too far from that activity's mean, or
+if one of the starter set's *other* movements is more probable. Both sides of the body are tried.
+
+A new activity needs few demonstrations, because only its mean is new: its deviations are those of an average activity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+from ravestate.errors import PlatformError
+
+from .features import COUNT, features_of
+from .pose import Pose
+from .skeleton import skeleton_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+OWN = 0.9
+"""The share of an activity's own variance in its deviations; the rest is that of an average activity."""
+RIDGE = 0.05
+"""A variance that every feature has in addition, and the share of the correlations that is given up."""
+SPREAD = 0.8
+"""The deviations of a taught activity, relative to those of an average activity."""
+FAVOUR = 0.5
+"""How much more probable a taught activity is beforehand: twice the log likelihood, per feature."""
+LIMIT = 4.0
+"""The greatest distance from a taught activity, in the same unit."""
+REMEMBERED = 64
+"""The number of inverse matrices that are kept: one for each set of visible features."""
+SECOND = 3
+"""The maximum number of next best names."""
+FAR = 3.0
+"""The greatest distance of a next best activity, in limits: it may be improbable, but the movement resembles it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recognition:
+    """The result of a recognition."""
+
+    name: str = ""
+    """The activity; empty for an unknown movement, or if too little of the body is visible."""
+    confidence: float = 0.0
+    """0 to 1."""
+    others: tuple[tuple[str, float], ...] = ()
+    """The next best names, with their confidence."""
+    nearest: str = ""
+    """The most probable activity, even if the movement is too far from it."""
+    distance: float = float("inf")
+    """The distance from the nearest activity: the mean squared deviation of a feature; 1 is the limit."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Starter:
+    """The activities that the recogniser knows from the beginning."""
+
+    names: tuple[str, ...]
+    """A name for each Gaussian; empty for a movement that is none of the activities."""
+    means: NDArray[Any]
+    """(activities, features), of normalised features."""
+    deviations: NDArray[Any]
+    centre: NDArray[Any]
+    """(features,): what is subtracted from a feature to normalise it."""
+    size: NDArray[Any]
+    """(features,): what it is then divided by."""
+    usual: NDArray[Any]
+    """(features,): the deviations of an average activity."""
+    correlation: NDArray[Any]
+    """(features, features)"""
+    limit: float
+    """The greatest distance from a known activity."""
+    heat: float
+    """The divisor of log likelihoods that makes the confidence honest."""
+
+    @classmethod
+    def load(cls) -> Starter:
+        """Return the starter set that comes with the module.
+
+        Raises:
+            PlatformError: numpy is missing.
+        """
+        np = numpy()
+        with (files(__name__.rpartition(".")[0]) / "starter.npz").open("rb") as file:
+            data = dict(np.load(file))
+        names = tuple(str(name) for name in data.pop("names"))
+        limit, heat = float(data.pop("limit")), float(data.pop("heat"))
+        return cls(names=names, limit=limit, heat=heat, **{key: value.astype(float) for key, value in data.items()})
+
+    @classmethod
+    def learn(cls, examples: Mapping[str, Sequence[NDArray[Any]]], others: Sequence[Sequence[NDArray[Any]]]) -> Starter:
+        """Return a starter set with neutral `limit` and `heat`.
+
+        Args:
+            examples: Name → features of performances.
+            others: Features of performances of movements that are none of the activities, one group for each movement.
+        """
+        np = numpy()
+        names = (*examples, *("" for _ in others))
+        groups = [np.array(group) for group in (*examples.values(), *others)]
+        everything = np.concatenate(groups)
+        centre, size = np.nanmean(everything, axis=0), np.nanstd(everything, axis=0) + 1e-6
+        groups = [(group - centre) / size for group in groups]
+        means = np.stack([np.nanmean(group, axis=0) for group in groups])
+        rests = [group - mean for group, mean in zip(groups, means, strict=True)]
+        usual = np.nanmean(np.concatenate(rests) ** 2, axis=0)
+        own = np.stack([np.nanmean(rest**2, axis=0) for rest in rests])
+        deviations = np.sqrt((1 - OWN) * usual + OWN * own + RIDGE)
+        scaled = np.concatenate([rest / deviation for rest, deviation in zip(rests, deviations, strict=True)])
+        known = (~np.isnan(scaled)).astype(float)
+        filled = np.nan_to_num(scaled)
+        common = filled.T @ filled / np.maximum(known.T @ known, 1)
+        spread = np.sqrt(np.diag(common))
+        values, vectors = np.linalg.eigh(common / np.outer(spread, spread))
+        correlation = (vectors * np.maximum(values, 1e-3)) @ vectors.T
+        correlation = (1 - RIDGE) * correlation + RIDGE * np.eye(len(correlation))
+        return cls(names, means, deviations, centre, size, np.sqrt(usual + RIDGE), correlation, 1.0, 1.0)
+
+
+class Recogniser:
+    """The starter set, and the activities that users have taught. Not thread-safe: use it from one thread at a time."""
+
+    def __init__(self, starter: Starter | None = None) -> None:
+        """Load the starter set, unless one is given.
+
+        Raises:
+            PlatformError: numpy is missing.
+        """
+        self._np = numpy()
+        self.starter = starter or Starter.load()
+        self._taught: dict[str, list[NDArray[Any]]] = {}
+        self._inverses: dict[bytes, Any] = {}
+        self._arrange()
+
+    def __repr__(self) -> str:
+        return f"Recogniser({len(self.names)} activities)"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all activities, in alphabetical order."""
+        return tuple(sorted({name for name in self._names if name}))
+
+    @property
+    def taught(self) -> frozenset[str]:
+        """The names of the activities that users have taught."""
+        return frozenset(self._taught)
+
+    def teach(self, name: str, poses: Sequence[Pose]) -> bool:
+        """Learn an activity from a demonstration; return False if too little of the body is visible in it.
+
+        Args:
+            name: A new name, or that of a known activity.
+            poses: The demonstration, of about three seconds.
+        """
+        skeleton = skeleton_of(poses)
+        if skeleton is None:
+            return False
+        self.teach_features(name, (features_of(skeleton), features_of(skeleton.mirrored())))
+        return True
+
+    def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
+        """Learn an activity from the features of a demonstration, and those of its mirror image.
+
+        Demonstrations with the left and with the right hand count as one: the side that is nearer to the others is taken.
+        """
+        np, group = self._np, self._taught.setdefault(name, [])
+        both = [(side - self.starter.centre) / self.starter.size for side in sides]
+        if group:
+            mean = _mean(np.array(group))
+            away = [np.nanmean(((side - mean) / self.starter.usual) ** 2) for side in both]
+            both = [both[int(np.argmin(away))]]
+        group.append(both[0])
+        self._arrange()
+
+    def recognise(self, poses: Sequence[Pose]) -> Recognition:
+        """Return the activity that a movement shows.
+
+        Args:
+            poses: The poses of one body, of about three seconds.
+        """
+        skeleton = skeleton_of(poses)
+        if skeleton is None:
+            return Recognition()
+        return self.recognise_features((features_of(skeleton), features_of(skeleton.mirrored())))
+
+    def recognise_features(self, sides: Sequence[NDArray[Any]]) -> Recognition:
+        """Return the activity that features show.
+
+        Args:
+            sides: The features of a movement, and those of its mirror image.
+        """
+        np = self._np
+        pairs = [self._compared((side - self.starter.centre) / self.starter.size) for side in sides]
+        better = np.argmin([cost for _, cost, _ in pairs], axis=0)
+        distance = np.choose(better, [one for one, _, _ in pairs])
+        cost = np.min([cost for _, cost, _ in pairs], axis=0)
+        weight = np.exp(-0.5 * (cost - cost.min()) * pairs[0][2] / self.starter.heat)
+        probability: dict[str, float] = {}
+        for name, one in zip(self._names, weight / weight.sum(), strict=True):
+            probability[name] = probability.get(name, 0.0) + float(one)
+        best = int(np.argmin(cost))
+        name, away = self._names[best], float(distance[best] / self._limits[best])
+        if not name or away > 1.0:
+            return Recognition(nearest=name, distance=away)
+        reachable = {
+            other for other, far, limit in zip(self._names, distance, self._limits, strict=True) if far <= FAR * limit
+        }
+        others = sorted(
+            ((other, p) for other, p in probability.items() if other in reachable - {name, ""}),
+            key=lambda pair: -pair[1],
+        )[:SECOND]
+        return Recognition(name, probability[name], tuple(others), name, away)
+
+    def _arrange(self) -> None:
+        """Put the taught activities beside those of the starter set."""
+        np, starter = self._np, self.starter
+        taught = {name: np.array(group) for name, group in self._taught.items()}
+        self._names = (*starter.names, *taught)
+        means = [_mean(group) for group in taught.values()]
+        # The mean of a few demonstrations is uncertain, so a movement may be further away from it.
+        wider = [SPREAD * starter.usual * np.sqrt(1 + 1 / len(group)) for group in taught.values()]
+        self._means = np.stack([*starter.means, *means])
+        self._deviations = np.stack([*starter.deviations, *wider])
+        self._favour = np.array([0.0] * len(starter.names) + [FAVOUR] * len(taught))
+        self._limits = np.array([starter.limit] * len(starter.names) + [LIMIT] * len(taught))
+
+    def _compared(self, features: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], int]:
+        """Return the distance from each activity, twice the negative log likelihood per feature, and the features' number."""
+        np = self._np
+        there = ~np.isnan(features)
+        key = there.tobytes()
+        if key not in self._inverses:
+            if len(self._inverses) >= REMEMBERED:
+                self._inverses.clear()
+            self._inverses[key] = np.linalg.inv(self.starter.correlation[np.ix_(there, there)])
+        deviations = self._deviations[:, there]
+        away = np.nan_to_num((features[there] - self._means[:, there]) / deviations)
+        count = int(there.sum())
+        distance = np.einsum("ci,ij,cj->c", away, self._inverses[key], away) / count
+        return distance, distance + 2 * np.log(deviations).sum(axis=1) / count - self._favour, count
+
+
+def _mean(group: NDArray[Any]) -> NDArray[Any]:
+    np = numpy()
+    there = ~np.isnan(group)
+    total = np.where(there, group, 0.0).sum(axis=0)
+    return np.where(there.any(axis=0), total / np.maximum(there.sum(axis=0), 1), np.nan)
+
+
+def numpy() -> Any:
+    """Return numpy.
+
+    Raises:
+        PlatformError: It is missing.
+    """
+    try:
+        return import_module("numpy")
+    except ImportError as error:
+        raise PlatformError("activity needs numpy: pip install 'ravestate[activity]'") from error
+
+
+__all__ = ["COUNT", "Recogniser", "Recognition", "Starter"]

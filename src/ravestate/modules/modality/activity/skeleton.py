@@ -1,0 +1,123 @@
+"""A movement without its camera: a skeleton of unit size that faces the viewer, at a fixed rate of frames."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .pose import LANDMARKS, Pose
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+RATE = 20.0
+"""The frames per second of a normalised movement."""
+VISIBLE = 0.5
+"""The least visibility of a landmark that counts."""
+PRESENT = 0.5
+"""The least share of the frames in which a joint must be visible."""
+FEWEST = 8
+"""The least number of poses in a movement."""
+SHORTEST = 1.0
+"""The least length of a movement, in seconds."""
+
+NOSE, SHOULDERS, HIPS = 0, (11, 12), (23, 24)
+USED = (0, 11, 12, 13, 14, 15, 16, 23, 24, 25, 26, 27, 28)
+"""The landmarks that count."""
+JOINTS = (0, 13, 14, 15, 16, 25, 26, 27, 28)
+"""The landmarks of the joints that move: head, elbows, wrists, knees, ankles; the left one first."""
+ARMS = 5
+"""The first joints are relative to the shoulders, the others to the hips."""
+WIDTH = 0.72
+"""The usual distance between the shoulders, in torso lengths: the scale if the hips are not visible."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Skeleton:
+    """A normalised movement of T frames. The unit is the torso; x points to the performer's left, y up, z to the front."""
+
+    joints: NDArray[np.float64]
+    """(T, 9, 3): `JOINTS`, relative to the middle of the shoulders, or of the hips for the legs."""
+    present: NDArray[np.bool_]
+    """(9,): whether a joint is visible for long enough."""
+    torso: NDArray[np.float64]
+    """(T, 3): from the middle of the hips to the middle of the shoulders."""
+    rise: NDArray[np.float64]
+    """(T,): the height of the shoulders' middle in the picture, relative to its mean."""
+    has_hips: bool
+    """Whether the hips are visible. If they are not, `torso` is meaningless."""
+
+    def mirrored(self) -> Skeleton:
+        """Return the movement of the other side: left becomes right."""
+        swapped = [0, *(i + 1 if i % 2 else i - 1 for i in range(1, len(JOINTS)))]
+        flip = [-1.0, 1.0, 1.0]
+        return Skeleton(
+            self.joints[:, swapped] * flip, self.present[swapped], self.torso * flip, self.rise, self.has_hips
+        )
+
+
+def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
+    """Return the normalised movement of some poses; None if they are too few, or the shoulders are not visible.
+
+    Distance, side and direction of the camera drop out. The origin moves with the body, and the unit is the torso. The body is
+    turned about the vertical until its shoulders, on average, are parallel to the picture.
+
+    Args:
+        poses: The poses of one body, in the order of their times.
+    """
+    import numpy as np
+
+    if len(poses) < FEWEST:
+        return None
+    times = np.array([pose.at for pose in poses], dtype=np.float64)
+    points = np.stack([pose.points for pose in poses]).astype(np.float64)
+    good = np.isfinite(points).all(axis=(1, 2)) & np.isfinite(times)
+    good[1:] &= np.diff(times) > 0
+    times, points = times[good], points[good]
+    if len(times) < FEWEST or times[-1] - times[0] < SHORTEST:
+        return None
+    marks, visible = _resampled(times, points)
+    if visible[list(SHOULDERS)].min() < PRESENT:
+        return None
+    marks[..., 1:] *= -1.0  # from the picture's axes (y down, z away) to y up, z to the viewer
+    shoulders, hips = marks[:, SHOULDERS].mean(axis=1), marks[:, HIPS].mean(axis=1)
+    has_hips = bool(visible[list(HIPS)].min() >= PRESENT)
+    across = np.median(marks[:, 11] - marks[:, 12], axis=0)
+    width = float(np.linalg.norm(across))
+    size = float(np.median(np.linalg.norm(shoulders - hips, axis=1))) if has_hips else width / WIDTH
+    if size < 1e-6 or not np.isfinite(size):
+        return None
+    if has_hips:
+        across = across + np.median(marks[:, 23] - marks[:, 24], axis=0)
+    angle = float(np.arctan2(across[2], across[0]))
+    cos, sin = np.cos(angle), np.sin(angle)
+    turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+    arms = marks[:, JOINTS[:ARMS]] - shoulders[:, None]
+    legs = marks[:, JOINTS[ARMS:]] - hips[:, None]
+    joints = np.concatenate([arms, legs], axis=1) @ turn / size
+    present = visible[list(JOINTS)] >= PRESENT
+    present[ARMS:] &= has_hips
+    rise = (shoulders[:, 1] - shoulders[:, 1].mean()) / size
+    return Skeleton(np.clip(joints, -4, 4), present, (shoulders - hips) @ turn / size, np.clip(rise, -4, 4), has_hips)
+
+
+def _resampled(
+    times: NDArray[np.float64], points: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the places (T, 33, 3) at `RATE`, and the share of the time for which each landmark is visible (33,).
+
+    A gap in which a landmark is invisible is bridged by a straight line.
+    """
+    import numpy as np
+
+    frames = np.arange(times[0], times[-1], 1 / RATE)
+    marks = np.zeros((len(frames), LANDMARKS, 3))
+    seen = points[..., 3] >= VISIBLE
+    for index in USED:
+        here = seen[:, index] if seen[:, index].sum() >= 2 else np.ones(len(times), dtype=bool)
+        for axis in range(3):
+            marks[:, index, axis] = np.interp(frames, times[here], points[here, index, axis])
+    padded = np.concatenate([marks[:1], marks, marks[-1:]])
+    return (padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4, seen.mean(axis=0)

@@ -1,0 +1,124 @@
+"""The agent's end of the vision worker: it opens a camera there, and asks what is seen."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ravestate.errors import PlatformError
+from ravestate.modules._children import process
+from ravestate.modules._children.process import Backend, ModelProcess
+
+from .frames import Frame
+from .places import MEND, eyes_python
+
+WORKER = Backend(
+    Path(__file__).with_name("worker"),
+    "visionio",
+    "the vision worker",
+    lambda reason: f". {MEND}" if "module" in reason else "",
+)
+PATIENCE = 30.0
+"""The longest time (seconds) that a look may take."""
+
+_numbers = itertools.count(1)
+
+
+class Eye:
+    """One stream of pictures in the vision worker, which all agents of this process share.
+
+    Args:
+        python: The interpreter of the worker; by default the one that has the packages.
+
+    Raises:
+        PlatformError: No interpreter has the packages.
+    """
+
+    def __init__(self, python: Path | None = None) -> None:
+        self.ended = False
+        """Whether a video or a folder has come to its end."""
+        self.skipped = 0
+        """The number of the camera's pictures that were skipped, because newer ones had come."""
+        self.waited = 0.0
+        """The part of the last look (seconds) that was spent waiting for the camera."""
+        self._process: ModelProcess = process.take(WORKER, {"want": ["faces"]}, eyes_python(python))
+        self._stream = str(next(_numbers))
+        self._source: tuple[str, bool] | None = None
+        self._pid: int | None = None
+
+    @property
+    def process(self) -> ModelProcess:
+        """The worker's process."""
+        return self._process
+
+    async def open(self, source: str, *, loop: bool = False) -> bool:
+        """Open a camera: a device, a video file, or a folder; return whether it is live.
+
+        Raises:
+            PlatformError: It cannot be opened, or the worker cannot be started.
+        """
+        self._source = source, loop
+        return await asyncio.to_thread(self._open)
+
+    async def look(
+        self, want: Sequence[str], request: Mapping[str, Any], *, at: float = 0.0, frame: Frame | None = None
+    ) -> dict[str, Any] | None:
+        """Look at a picture, or at the camera; return what is seen, or None if there is no new picture.
+
+        Args:
+            want: ``faces``, ``pose`` or both.
+            request: The known tracks, for the worker: see its docstring.
+            at: The time for a video or a folder (seconds since the beginning).
+            frame: The picture; None to look at the open camera.
+
+        Raises:
+            PlatformError: The picture or the camera fails, or the worker has died. The next look tries again.
+        """
+        return await asyncio.to_thread(self.look_now, want, request, at=at, frame=frame)
+
+    def look_now(
+        self, want: Sequence[str], request: Mapping[str, Any], *, at: float = 0.0, frame: Frame | None = None
+    ) -> dict[str, Any] | None:
+        """Look at a picture as `look` does, and block meanwhile."""
+        header: dict[str, Any] = {"do": "look", "stream": self._stream, "want": list(want), "at": at, **request}
+        if frame is not None and frame.shape is not None:
+            header |= {"shape": list(frame.shape), "encoding": frame.encoding, "step": frame.step}
+        if frame is None and self._pid != self._process.pid:
+            self._open()  # the worker has died meanwhile
+        data = b"" if frame is None else frame.data
+        if frame is not None and not data:
+            raise PlatformError("visionio: the picture is empty")
+        answer, _ = self._process.request(header, data, seconds=PATIENCE)
+        self.ended = answer.get("ended", False)
+        self.skipped = answer.get("skipped", 0)
+        self.waited = answer.get("waited", 0.0)
+        if "fault" in answer:
+            raise PlatformError(f"visionio: {answer['fault']}")
+        return answer if "picture" in answer else None
+
+    def reopen(self) -> None:
+        """Open the camera anew at the next look."""
+        self._pid = None
+
+    def close(self) -> None:
+        """Close the camera. The worker ends with its last user."""
+        if self._process.pid is not None and not self._process.busy:
+            with contextlib.suppress(PlatformError):
+                self._process.request({"do": "close", "stream": self._stream}, seconds=5.0)
+        process.drop(self._process)
+
+    def _open(self) -> bool:
+        if self._source is None:
+            raise PlatformError("visionio: no camera is open")
+        source, loop = self._source
+        answer, _ = self._process.request(
+            {"do": "open", "stream": self._stream, "source": source, "loop": loop}, seconds=PATIENCE
+        )
+        self._pid = self._process.pid
+        if "fault" in answer:
+            raise PlatformError(f"visionio: {answer['fault']}")
+        return answer["live"]

@@ -1,0 +1,77 @@
+"""The records of what the agent sees: faces, poses, and each look at a picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ravestate.modules.meta.ontology import Node
+
+Box = tuple[int, int, int, int]
+"""x, y, width and height (pixels of the picture), from the picture's upper left corner."""
+
+Vector = tuple[float, ...]
+"""A face as 128 numbers. The Euclidean distance of two vectors tells whether they are the same person's."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FaceVec:
+    """A face in a picture.
+
+    Attributes:
+        vector: 128 numbers, the newest of this track.
+        box: x, y, width and height (pixels).
+        track: The number of the track: the same face from picture to picture.
+        person: The person in memory whose stored face is close enough; None if there is none.
+        distance: The Euclidean distance to that person's nearest stored vector; None without a person.
+        quality: How well the face could be seen when the vector was computed (0 to 1).
+        fresh: Whether the vector was computed from this picture, rather than from an earlier one.
+        time: The time of the picture (seconds on the context's clock); None for now.
+    """
+
+    vector: Vector
+    box: Box
+    track: int
+    person: Node | None = None
+    distance: float | None = None
+    quality: float = 1.0
+    fresh: bool = True
+    time: float | None = None
+
+    def __repr__(self) -> str:
+        who = self.person.get("name") if self.person else None
+        return f"FaceVec(track={self.track}, person={who!r}, distance={self.distance}, box={self.box}, quality={self.quality})"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pose:
+    """A body in a picture.
+
+    Attributes:
+        landmarks: 33 points, each x, y, z and visibility, in shares of the picture's size; None without a body.
+        time: The time of the picture (seconds on the context's clock).
+    """
+
+    landmarks: tuple[tuple[float, float, float, float], ...] | None
+    time: float
+
+    def __repr__(self) -> str:
+        return f"Pose({'no body' if self.landmarks is None else f'{len(self.landmarks)} landmarks'}, time={self.time})"
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A look at a picture.
+
+    Attributes:
+        time: The time of the picture (seconds on the context's clock).
+        size: Its width and height (pixels).
+        tracks: The numbers of the faces in it.
+        dark: Whether it is black.
+        dropped: The number of pictures so far that were skipped, because newer ones had come.
+    """
+
+    time: float
+    size: tuple[int, int]
+    dark: bool = False
+    dropped: int = 0
+    tracks: tuple[int, ...] = ()

@@ -1,0 +1,111 @@
+"""The camera of a platform: the place for its newest picture."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+from ravestate.errors import PlatformError
+
+ENCODINGS = ("rgb8", "bgr8", "rgba8", "bgra8", "mono8")
+"""The kinds of raw pixels."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """A picture in memory. It is never written to a file.
+
+    Attributes:
+        data: An encoded picture (JPEG, PNG), or raw pixels, row after row.
+        shape: The height and the width of raw pixels; None for an encoded picture.
+        encoding: The bytes of a raw pixel, by ROS's names: one of `ENCODINGS`.
+        step: The bytes of a row of raw pixels; 0 if no bytes follow the last pixel of a row.
+    """
+
+    data: bytes
+    shape: tuple[int, int] | None = None
+    encoding: str = "rgb8"
+    step: int = 0
+
+    def __repr__(self) -> str:
+        return f"Frame({len(self.data)} bytes)"
+
+
+class Frames:
+    """The pictures of a platform's camera: a web page, a robot. Only the newest is kept.
+
+    Example:
+        ::
+
+            @page.rule(when=connected, writes=visionio.camera)
+            async def open_eyes(ctx):
+                ctx[visionio.camera] = frames = visionio.Frames()
+                frames.put(jpeg)        # for each picture, from any thread
+    """
+
+    def __init__(self) -> None:
+        self.dropped = 0
+        """The number of pictures that were dropped, because newer ones had come."""
+        self.closed = False
+        """Whether no more pictures come."""
+        self._newest: Frame | None = None
+        self._lock = threading.Lock()
+        self._waiting: tuple[asyncio.AbstractEventLoop, asyncio.Event] | None = None
+
+    def put(self, data: bytes | bytearray | memoryview, shape: tuple[int, int] | None = None) -> None:
+        """Take a picture. Thread-safe.
+
+        Args:
+            data: An encoded picture (JPEG, PNG), or raw RGB pixels.
+            shape: The height and the width (pixels) of raw pixels; None for an encoded picture.
+        """
+        self._put(Frame(bytes(data), shape))
+
+    def put_message(self, message: Any) -> None:
+        """Take a picture of ROS: a message with the fields of ``sensor_msgs/Image`` or ``CompressedImage``. Thread-safe.
+
+        Raises:
+            PlatformError: The message has another encoding than `ENCODINGS`.
+        """
+        encoding = getattr(message, "encoding", None)
+        if encoding is None:
+            self._put(Frame(bytes(message.data)))
+            return
+        encoding = {"8UC3": "bgr8", "8UC1": "mono8"}.get(encoding, encoding)
+        if encoding not in ENCODINGS:
+            raise PlatformError(
+                f"visionio: a picture has the encoding {encoding!r}: publish one of {', '.join(ENCODINGS)}, or a compressed picture"
+            )
+        self._put(Frame(bytes(message.data), (message.height, message.width), encoding, message.step))
+
+    def _put(self, frame: Frame) -> None:
+        with self._lock:
+            if self.closed:
+                return
+            self.dropped += self._newest is not None
+            self._newest = frame
+            self._wake()
+
+    def close(self) -> None:
+        """Note that no more pictures come, so that the people leave whom the agent sees. Thread-safe."""
+        with self._lock:
+            self.closed = True
+            self._wake()
+
+    async def next(self) -> Frame | None:
+        """Wait for the newest picture that has not been taken; None once the camera is closed."""
+        while True:
+            with self._lock:
+                frame, self._newest = self._newest, None
+                if frame is not None or self.closed:
+                    return frame
+                event = asyncio.Event()
+                self._waiting = asyncio.get_running_loop(), event
+            await event.wait()
+
+    def _wake(self) -> None:
+        waiting, self._waiting = self._waiting, None
+        if waiting is not None:
+            waiting[0].call_soon_threadsafe(waiting[1].set)

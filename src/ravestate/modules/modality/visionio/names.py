@@ -1,0 +1,97 @@
+"""The module visionio: its settings, signals and slots."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast
+
+from pydantic import Field
+
+import ravestate as rs
+from ravestate.modules import activity, idle, interloc, ontology, rawio, verbaliser
+
+from .face import FaceVec, Look, Pose
+from .tracks import Sighting
+from .visitors import Visitor
+
+if TYPE_CHECKING:
+    from .frames import Frames
+
+Seconds = Annotated[float, Field(gt=0)]
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class Settings(rs.Settings):
+    """The camera, and how sure the agent must be of a face."""
+
+    source: str = "default"
+    """The camera: ``default``, a device (``/dev/video0``), a video file, a folder of pictures; empty for none. A platform's
+    camera in ``visionio.camera`` comes first."""
+    loop: bool = False
+    """Whether a video file or a folder begins again at its end."""
+    python: Path | None = None
+    """The Python interpreter that has the packages of the eyes, by default that of ``make eyes`` or this one."""
+    fps: Annotated[float, Field(gt=0, le=60)] = 10.0
+    """The greatest number of pictures a second that the agent looks at."""
+    load: Annotated[float, Field(gt=0, le=1)] = 0.6
+    """The share of the time that looking may take: on a slow machine, the agent looks at fewer pictures."""
+
+    threshold: Annotated[float, Field(gt=0, le=2)] = 0.55
+    """The Euclidean distance of two vectors up to which they are the same person's."""
+    sure: Annotated[int, Field(ge=1, le=20)] = 3
+    """The number of vectors in a row that must agree before the agent decides whom it sees."""
+    quality: Share = 0.3
+    """How well a face must be seen (0 to 1) for its vector to count."""
+    gone_after: Seconds = 4.0
+    """Seconds without a person's face after which the person has left."""
+    history: Annotated[int, Field(ge=10)] = 100
+    """The number of faces that ``visionio.history`` keeps."""
+    most: Annotated[int, Field(ge=1)] = 8
+    """The number of vectors that memory keeps for each person."""
+    ask: bool = True
+    """Whether the agent asks people who tell their names if it may remember their faces. Without a yes it keeps none."""
+
+
+module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle, activity], settings=Settings)
+
+facevec: rs.Signal[FaceVec] = module.signal("facevec", payload=FaceVec, input=True, limit=1000)
+"""A face in a picture, with its vector. The signal is raised for each face in each picture."""
+
+sighted: rs.Signal[Sighting] = module.signal("sighted", payload=Sighting, limit=100)
+"""There is a new picture. The faces in it do not have their people yet."""
+
+looked: rs.Signal[Look] = module.signal("looked", payload=Look, input=True, keep="latest")
+"""The agent has looked at a picture, with or without faces."""
+
+pose: rs.Signal[Pose] = module.signal("pose", payload=Pose, input=True, limit=1000)
+"""The body in a picture. The signal is raised for each picture, if a rule of the agent listens to it."""
+
+camera: rs.Slot[Frames | None] = module.slot("camera", None, type=cast("type[Frames]", object), input=True)
+"""The camera of a platform, such as a web page or a robot, which puts pictures in; None without one."""
+
+history: rs.Slot[tuple[FaceVec, ...]] = module.slot("history", ())
+"""A ring buffer of the last faces with new vectors, oldest first."""
+
+visitors: rs.Collection[Visitor] = module.collection("visitors")
+"""The people whom the agent sees: a key of `interloc.users` → the person's node, tracks and vectors."""
+
+left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
+"""A person has left. The payload is the visitor, as the agent saw them last."""
+
+named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
+"""A person whom the agent sees has told their name. The payload is their node, which memory keeps from now on."""
+
+asking: rs.Slot[str] = module.slot("asking", "")
+"""The key of the visitor whom the agent has asked whether it may remember their face; empty without such a question."""
+
+asked_at: rs.Slot[float] = module.slot("asked_at", 0.0)
+"""The time of that question (seconds on the context's clock)."""
+
+agreed: rs.Signal[str] = module.signal("agreed", payload=str)
+"""A visitor agrees that the agent remembers their face. The payload is their key."""
+
+refused: rs.Signal[str] = module.signal("refused", payload=str)
+"""A visitor does not want the agent to remember their face. The payload is their key."""
+
+withdrawn: rs.Signal[str] = module.signal("withdrawn", payload=str)
+"""A visitor asks the agent to forget their face. The payload is their key; empty if the agent sees nobody."""

@@ -1,0 +1,120 @@
+"""Tracks: the same face from picture to picture, and which faces need a new vector. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ravestate.modules.meta.ontology import Node
+
+from .face import Box, Look, Vector
+
+LOST = 1.5
+"""The seconds after which a face that is not found again gets a new track."""
+REFRESH = 3.0
+"""The seconds after which a face that is known gets a new vector, because two people may have changed places."""
+TRIES = 10
+"""The number of vectors after which a face that is badly seen gets only one each second."""
+THOROUGH = 1.0
+"""The seconds between two thorough searches of the picture, which find small faces."""
+
+
+@dataclass(slots=True)
+class Track:
+    """A face that is followed.
+
+    Attributes:
+        number: Its number.
+        box: Its last place.
+        seen: The time at which it was seen last (seconds).
+        vector: Its newest vector; None before the first.
+        quality: How well the face was seen for this vector.
+        encoded: The time of this vector.
+        tries: The number of its vectors.
+        person, distance: The nearest person in memory, and the distance; None if nobody is near enough.
+        agreed: The number of good vectors in a row that agree about the person.
+    """
+
+    number: int
+    box: Box
+    seen: float
+    vector: Vector | None = None
+    quality: float = 0.0
+    encoded: float = float("-inf")
+    tries: int = 0
+    person: Node | None = None
+    distance: float | None = None
+    agreed: int = 0
+
+    def fresh(self, now: float, sure: int) -> bool:
+        """Return whether the face needs no new vector now."""
+        wait = REFRESH if self.agreed >= sure else 1.0 if self.tries >= TRIES else 0.0
+        return now - self.encoded < wait
+
+    def recognise(self, person: Node | None, distance: float | None, quality: float) -> None:
+        """Note whose face the newest vector is.
+
+        Args:
+            person, distance: The nearest person; None if nobody is near enough.
+            quality: The quality from which on a vector counts.
+        """
+        same = (self.person and self.person.id) == (person and person.id)
+        if self.quality >= quality:
+            self.agreed = self.agreed + 1 if same else 1
+        self.person, self.distance = person, distance
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sighting:
+    """The faces in a picture.
+
+    Attributes:
+        look: The picture's time and size.
+        faces: The tracks of the faces, each with whether its vector is of this picture.
+    """
+
+    look: Look
+    faces: tuple[tuple[Track, bool], ...]
+
+
+@dataclass(slots=True)
+class Tracks:
+    """The faces that are followed.
+
+    Attributes:
+        sure: The number of vectors in a row that must agree.
+    """
+
+    sure: int = 3
+    _tracks: dict[int, Track] = field(default_factory=dict[int, Track])
+    _last: int = 0
+    _thorough: float = float("-inf")
+
+    def request(self, now: float) -> dict[str, Any]:
+        """Return what the vision worker must know for the next look."""
+        known = [
+            {"track": one.number, "box": list(one.box), "fresh": one.fresh(now, self.sure)}
+            for one in self._tracks.values()
+        ]
+        return {"known": known, "thorough": int(now - self._thorough >= THOROUGH)}
+
+    def update(self, faces: Iterable[Mapping[str, Any]], now: float) -> list[tuple[Track, bool]]:
+        """Take the faces of a picture; return their tracks, each with whether it has a new vector."""
+        if now - self._thorough >= THOROUGH:
+            self._thorough = now
+        found: list[tuple[Track, bool]] = []
+        for face in faces:
+            box: Box = tuple(face["box"])
+            track = self._tracks.get(face["track"])
+            if track is None:
+                self._last += 1
+                track = self._tracks[self._last] = Track(self._last, box, now)
+            track.box, track.seen = box, now
+            if face["vector"] is not None:
+                track.vector, track.quality = tuple(face["vector"]), face["quality"]
+                track.encoded, track.tries = now, track.tries + 1
+            found.append((track, face["vector"] is not None))
+        for one in [one for one in self._tracks.values() if now - one.seen > LOST]:
+            del self._tracks[one.number]
+        return found

@@ -1,0 +1,155 @@
+"""The people before the camera: from a history of faces to people who come, are recognised, and leave. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import dist
+
+from ravestate.modules.meta.ontology import Node
+from ravestate.modules.modality.interloc import Recognised
+
+from .face import FaceVec, Vector
+
+WAIT = 2.5
+"""The seconds after which a face that is badly seen counts as a stranger's."""
+KEPT = 8
+"""The number of vectors that are kept of a visit."""
+ALIKE = 0.15
+"""The distance below which a second vector tells nothing new."""
+
+
+@dataclass(frozen=True, slots=True)
+class Visitor:
+    """A person whom the agent sees.
+
+    Attributes:
+        key: Their key in ``interloc.users``.
+        node: Their node: that of a known person, or a transient one, which memory does not have.
+        known: Whether memory has the node.
+        since, seen: The times at which they came, and were seen last (seconds on the context's clock).
+        tracks: The numbers of their tracks.
+        vectors: Their best vectors of this visit, each with its quality, best first.
+        linked: Whether they are a user whom a platform has added.
+        faces: Whether memory has their face, or the user has been asked. Else the agent may ask.
+        mistaken: The ids of people who they are not, although their faces are alike.
+        moving: Whether they take the place of the user whom a platform has added, who has been removed for a moment.
+    """
+
+    key: str
+    node: Node
+    known: bool = False
+    since: float = 0.0
+    seen: float = 0.0
+    tracks: frozenset[int] = frozenset()
+    vectors: tuple[tuple[float, Vector], ...] = ()
+    linked: bool = False
+    faces: bool = False
+    mistaken: frozenset[str] = frozenset()
+    moving: bool = False
+
+    @property
+    def name(self) -> str | None:
+        """Their name, if it is known."""
+        return self.node.get("name")
+
+    def good(self, least: float) -> tuple[tuple[float, Vector], ...]:
+        """Return the vectors of at least this quality, each with its quality."""
+        return tuple(one for one in self.vectors if one[0] >= least)
+
+    @property
+    def item(self) -> Recognised | None:
+        """Their item in ``interloc.users``."""
+        return Recognised(self.node["name"], self.node) if self.known and self.name else None
+
+    def met(self, face: FaceVec, *, least: float, threshold: float) -> Visitor:
+        """Return the visitor, seen once more.
+
+        Args:
+            face: Their face.
+            least: The quality from which on a second vector is kept.
+            threshold: The distance up to which two vectors are the same person's.
+        """
+        vectors = self.vectors
+        if face.fresh and (not vectors or (face.quality >= least and self.resembles(face.vector, threshold))):
+            vectors = best([*vectors, (face.quality, face.vector)], KEPT)
+        return replace(self, seen=at(face), tracks=self.tracks | {face.track}, vectors=vectors)
+
+    def resembles(self, vector: Vector, threshold: float) -> bool:
+        """Return whether a vector is as close to those of this visit as one person's are."""
+        return any(dist(vector, one) <= threshold for _, one in self.vectors)
+
+    def __repr__(self) -> str:
+        return f"Visitor({self.key!r}, {self.name!r}, known={self.known}, tracks={sorted(self.tracks)})"
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """The owner of a track's face: a person in memory, or None for a stranger; and the vectors that say so."""
+
+    person: Node | None
+    vectors: tuple[Vector, ...] = ()
+
+
+def at(face: FaceVec) -> float:
+    """Return the time of a face (seconds on the context's clock)."""
+    return face.time or 0.0
+
+
+def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
+    """Return the vectors of the best quality. If two are nearly equal, the better one stays."""
+    kept: list[tuple[float, Vector]] = []
+    for quality, vector in sorted(vectors, key=lambda one: -one[0]):
+        if all(dist(vector, other) > ALIKE for _, other in kept):
+            kept.append((quality, vector))
+    return tuple(kept[:most])
+
+
+def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: float) -> Decision | None:
+    """Return whose face a track is, once the last `sure` vectors of good quality agree; until then None.
+
+    Args:
+        history: The last faces, oldest first, with `face` at the end.
+        face: The newest face of the track.
+        sure: The number of vectors that must agree.
+        quality: The quality from which on a vector counts.
+    """
+    track = [one for one in history if one.track == face.track]
+    good = [one for one in track if one.fresh and one.quality >= quality][-sure:]
+    people = {one.person.id if one.person else None for one in good}
+    if len(good) == sure and len(people) == 1:
+        return Decision(good[-1].person, tuple(one.vector for one in good))
+    if not good and track and at(face) - at(track[0]) >= WAIT:
+        return Decision(None)
+    return None
+
+
+def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
+    """Return the visitor to whom a new track belongs; None if somebody new has come.
+
+    A person whose face was lost for a moment gets a new track. They are the same visitor if memory or the vectors say so.
+    """
+    for one in visitors.values():
+        if decision.person is not None and one.node.id == decision.person.id:
+            return one
+    near = [one for one in visitors.values() if one.resembles(face.vector, threshold)]
+    near = [one for one in near if decision.person is None or not one.known]
+    return min(near, key=lambda one: min(dist(face.vector, v) for _, v in one.vectors), default=None)
+
+
+def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
+    """Return the visitor who has a track."""
+    return next((one for one in visitors.values() if track in one.tracks), None)
+
+
+def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
+    """Return the visitor to whom the agent talks: the one with the largest face lately; None if it sees nobody."""
+    sizes = {face.track: face.box[2] * face.box[3] for face in history}
+    return max(
+        visitors.values(), key=lambda one: max((sizes.get(track, 0) for track in one.tracks), default=0), default=None
+    )
+
+
+def gone(visitors: Mapping[str, Visitor], now: float, after: float) -> list[Visitor]:
+    """Return the visitors whose faces have not been seen for `after` seconds."""
+    return [one for one in visitors.values() if now - one.seen > after]

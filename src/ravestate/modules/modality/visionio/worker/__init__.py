@@ -1,0 +1,126 @@
+"""The vision worker: the process that takes pictures from a camera, and finds faces and poses in pictures.
+
+It runs in an environment of its own, and imports nothing from Ravestate. A request is a record and the bytes of a picture:
+
+    {"do": "open", "stream": "a", "source": "/dev/video0" | "walk.mp4" | "photos/", "loop": false}
+    {"do": "look", "stream": "a", "want": ["faces", "pose"], "at": 1.5, "known": [{"track": 3, "box": [x, y, w, h], "fresh": true}]}
+    {"do": "close", "stream": "a"}
+
+An answer has ``fault`` if a camera or a picture fails; then nothing was seen. Without a new picture it has no ``picture``.
+A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``. With bytes, it
+looks at them: an encoded picture (JPEG, PNG), or raw pixels if the record has ``"shape": [height, width]``. It may then have
+``"encoding"`` (``rgb8``) and ``"step"``, the bytes of a row.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from typing import Any
+
+from . import picture
+from .cameras import open_camera
+
+
+def load(config: dict[str, Any]):
+    """Load the models that are always wanted; return the function that handles a request.
+
+    Args:
+        config: ``want``: what will be asked for, ``faces`` or ``pose`` or both.
+    """
+    with contextlib.suppress(OSError):
+        os.nice(10)  # the conversation comes first
+    worker = Worker()
+    for what in config.get("want", ()):
+        worker.load(what)
+    return worker.handle
+
+
+class Worker:
+    """The models, and the open streams of pictures."""
+
+    def __init__(self) -> None:
+        self._faces: Any = None
+        self._streams: dict[str, Stream] = {}
+
+    def load(self, what: str) -> None:
+        """Load the models that find faces; those of poses belong to a stream."""
+        if what == "faces" and self._faces is None:
+            from .faces import Faces
+
+            self._faces = Faces()
+
+    def handle(self, header: dict[str, Any], data: bytes) -> tuple[dict[str, Any], bytes]:
+        """Answer a request."""
+        name = header.get("stream", "")
+        if header["do"] == "close":
+            self._streams.pop(name, Stream()).close()
+            return {}, b""
+        stream = self._streams.setdefault(name, Stream())
+        if header["do"] == "open":
+            return stream.open(header["source"], loop=header.get("loop", False)), b""
+        return self._look(stream, header, data), b""
+
+    def _look(self, stream: Stream, header: dict[str, Any], data: bytes) -> dict[str, Any]:
+        answer: dict[str, Any] = {}
+        if data:
+            try:
+                seen = picture.from_bytes(
+                    data, header.get("shape"), header.get("encoding", "rgb8"), header.get("step", 0)
+                )
+            except ValueError as error:
+                return {"fault": str(error)}
+        else:
+            seen, answer = stream.picture(header["at"])
+            if seen is None:
+                return answer
+        answer |= {"picture": [seen.width, seen.height], "dark": seen.dark}
+        for what in header["want"]:
+            self.load(what)
+            answer[what] = (self._faces.find if what == "faces" else stream.pose())(seen, header)
+        return answer
+
+
+class Stream:
+    """The pictures of one agent: its camera, if it has one here, and what is known from its earlier pictures."""
+
+    def __init__(self) -> None:
+        self._camera: Any = None
+        self._pose: Any = None
+
+    def open(self, source: str, *, loop: bool) -> dict[str, Any]:
+        """Open a camera; the answer has the fault if it cannot be opened."""
+        self.close()
+        try:
+            self._camera = open_camera(source, loop=loop)
+        except (OSError, ValueError) as error:
+            return {"fault": str(error)}
+        return {"live": self._camera.live}
+
+    def picture(self, at: float) -> tuple[picture.Picture | None, dict[str, Any]]:
+        """Return the camera's newest picture at a time, if there is a new one, and the answer so far."""
+        if self._camera is None:
+            return None, {"closed": True}
+        before = time.monotonic()
+        try:
+            seen, fault = self._camera.picture(at), ""
+        except (OSError, ValueError) as error:
+            seen, fault = None, str(error)
+        waited = time.monotonic() - before if self._camera.live else 0.0
+        answer = {"ended": self._camera.ended, "skipped": self._camera.skipped, "waited": waited}
+        return seen, {**answer, **({"fault": fault} if fault else {})}
+
+    def pose(self):
+        """Return the function that finds the body in a picture. It follows the body from picture to picture."""
+        if self._pose is None:
+            from .pose import Pose
+
+            self._pose = Pose()
+        return self._pose.find
+
+    def close(self) -> None:
+        """Let go of the camera."""
+        if self._camera is not None:
+            self._camera.close()
+            self._camera = None

@@ -1,0 +1,80 @@
+"""A picture in the worker: pixels of a size that is quick to search, and the size that it had."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(1 << 27))  # a small file may unpack to gigabytes
+
+import cv2
+import numpy as np
+
+cv2.setNumThreads(1)
+
+LARGEST = 1280
+"""The longer side (pixels) above which a picture is scaled down. Faces of 40 pixels in it can be recognised."""
+DARK = 6.0
+"""The mean brightness (0 to 255) below which a picture counts as black."""
+
+
+class Picture:
+    """A picture.
+
+    Attributes:
+        pixels: RGB, (height, width, 3), uint8, scaled down.
+        scale: The factor from these pixels to those of the original.
+        width, height: The size of the original (pixels).
+        dark: Whether it is black.
+        time: The time at which it was taken (seconds), which never goes back for one camera.
+    """
+
+    def __init__(self, pixels: np.ndarray, time: float = 0.0) -> None:
+        """Scale the pixels (RGB) down where they are too many."""
+        self.height, self.width = pixels.shape[:2]
+        self.scale = max(1.0, max(self.width, self.height) / LARGEST)
+        if self.scale > 1.0:
+            size = max(1, round(self.width / self.scale)), max(1, round(self.height / self.scale))
+            pixels = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA)
+        self.pixels = np.ascontiguousarray(pixels)
+        self.dark = bool(self.pixels[::4, ::4].mean() < DARK)
+        self.time = time
+
+
+CHANNELS = {
+    "rgb8": (3, None),
+    "bgr8": (3, cv2.COLOR_BGR2RGB),
+    "rgba8": (4, cv2.COLOR_RGBA2RGB),
+    "bgra8": (4, cv2.COLOR_BGRA2RGB),
+    "mono8": (1, cv2.COLOR_GRAY2RGB),
+}
+"""Encoding of raw pixels → the bytes of a pixel, and OpenCV's conversion to RGB."""
+
+
+def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb8", step: int = 0) -> Picture:
+    """Return the picture in an encoded file, or in raw pixels.
+
+    Args:
+        data: The file or the pixels.
+        shape: The height and the width of raw pixels; None for a file.
+        encoding: A key of `CHANNELS`.
+        step: The bytes of a row of raw pixels; 0 if no bytes follow its last pixel.
+
+    Raises:
+        ValueError: The bytes are no picture.
+    """
+    if shape is not None:
+        height, width = shape
+        channels, conversion = CHANNELS[encoding]
+        step = step or width * channels
+        if not 0 < width * channels <= step or len(data) != height * step:
+            raise ValueError(f"{len(data)} bytes are no picture of {width} x {height} pixels in {encoding}")
+        rows = np.frombuffer(data, np.uint8).reshape(height, step)[:, : width * channels]
+        pixels = np.ascontiguousarray(rows.reshape(height, width, channels))
+        return Picture(pixels if conversion is None else cv2.cvtColor(pixels, conversion))
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    except cv2.error as error:
+        raise ValueError(f"the picture cannot be read: {error.err}") from None
+    if pixels is None:
+        raise ValueError("the bytes are no picture that can be read (JPEG, PNG, WebP, BMP or TIFF)")
+    return Picture(cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB))

@@ -1,0 +1,318 @@
+"""The rules: when the agent offers the game, what counts as a move, and what each move does."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import ravestate as rs
+from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.modules import activity, agenda, emotion, interloc, nlp, rawio, verbaliser
+from ravestate.modules.meta.verbaliser.intents import Intent
+from ravestate.modules.modality.emotion.feeling import Feeling
+
+from .game import Game, Outcome, World, guessed, moves_of, play
+from .names import (
+    Settings,
+    abandoned,
+    begun,
+    counted,
+    declined,
+    game,
+    gestures,
+    invited,
+    module,
+    moved,
+    perform,
+    prompted,
+    sightings,
+    strayed,
+    watched,
+)
+from .understanding import Move, load, understand
+
+TOPIC = "charades"
+FEELINGS: dict[Feeling, rs.Signal[None]] = {
+    "shy": emotion.shy,
+    "surprised": emotion.surprised,
+    "happy": emotion.happy,
+    "affectionate": emotion.affectionate,
+    "sad": emotion.sad,
+}
+PRIORITY = 40.0
+"""The weight of the answers in a game: above all others, such as agentqa's answer to "stop"."""
+
+
+def is_on(now: Game) -> bool:
+    """Return whether a game is on, or offered."""
+    return now.is_on
+
+
+def is_empty(users: Mapping[str, object]) -> bool:
+    """Return whether no user is left."""
+    return not users
+
+
+def is_waiting(now: Game) -> bool:
+    """Return whether the agent waits for a move, or no game is on: a countdown has been called off."""
+    return now.is_waiting or not now.is_on
+
+
+@module.rule(when=rs.startup, background=True)
+def learn(ctx: rs.RuleContext) -> None:
+    """Learn the examples. Until that is done, only words that equal an example are recognised."""
+    try:
+        load()
+    except ModelMissing as error:
+        warn_once(ctx.log, error)
+
+
+# ------------------------------------------------------------------------------------- the offer
+
+offer = agenda.goal(
+    module,
+    "offer",
+    intent=Intent("offer", package=__package__),
+    unless=game.holds(is_on),
+    cooldown=120.0,
+    done=begun,
+    refused=declined,
+)
+"""The goal to play: the agent offers the game when it is bored."""
+
+
+@module.rule(
+    when=offer.pursued.max_age(None).detached(),
+    writes=(game, agenda.topics),
+    emits=prompted,
+    detached=True,
+)
+async def note_offer(ctx: rs.RuleContext) -> None:
+    """Wait for the answer to an offer that was made out of boredom."""
+    turn = ctx[game].turn + 1
+    ctx[game] = Game("offered", turn=turn)
+    ctx[agenda.topics].add(TOPIC, "a game of charades")
+    ctx.emit(prompted, turn)
+
+
+# ------------------------------------------------------------------------------- the user's moves
+
+
+@module.rule(when=nlp.analysis.changed, reads=(game, activity.known), writes=strayed, emits=(moved, invited, abandoned))
+async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Emit the move that the user's words make. Words on something else are left to the other skills."""
+    seen = ctx.payload(nlp.analysis.changed)
+    now = ctx[game]
+    if seen is None:
+        return rs.Resign("nothing was analysed")
+    move = await asyncio.to_thread(understand, seen, moves_of(now.step), ctx[activity.known])
+    if move is not None and move.kind == "play":
+        ctx.emit(invited, move)
+    elif move is not None and move.kind != "farewell":
+        ctx.emit(moved, move)
+    elif not now.is_on:
+        return rs.Resign("no game is on")
+    elif move is not None or now.step == "offered":
+        ctx.emit(abandoned)
+    else:
+        ctx[strayed] = ctx.now
+    return None
+
+
+EFFECTS = (game, verbaliser.intent, rawio.output, agenda.topics)
+EMITTED = (prompted, counted, begun, declined, perform, activity.taught, *FEELINGS.values())
+SURROUNDINGS = (gestures, activity.in_view)
+
+
+@module.rule(when=moved, reads=SURROUNDINGS, writes=EFFECTS, emits=EMITTED, detached=True, weight=PRIORITY)
+async def answer(ctx: rs.RuleContext) -> None:
+    """Answer the user's move."""
+    carry_out(ctx, play(ctx[game], ctx.payload(moved), world_of(ctx)))
+
+
+@module.rule(when=invited, reads=SURROUNDINGS, writes=EFFECTS, emits=EMITTED, detached=True)
+async def propose(ctx: rs.RuleContext) -> None:
+    """Offer the game to a user who wants to play, or is bored. A skill that knows the game they name goes first."""
+    carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
+
+
+def carry_out(ctx: rs.RuleContext, out: Outcome) -> None:
+    """Write the slots and emit the signals of an outcome."""
+    before, after = ctx[game], out.game
+    ctx[game] = after
+    if out.say:
+        ctx[verbaliser.intent] = Intent(out.say, out.words, __package__)
+    if out.feeling is not None:
+        ctx.emit(FEELINGS[out.feeling])
+    if out.lesson:
+        ctx.emit(activity.taught, activity.Lesson(out.lesson, before.start, before.end))
+    if out.performs:
+        ctx.emit(perform, out.performs)
+    if after.is_on:
+        ctx[agenda.topics].add(TOPIC, "a game of charades")
+        if before.step in ("off", "offered") and after.step != "offered":
+            ctx.emit(begun)
+    elif TOPIC in ctx[agenda.topics]:
+        ctx[agenda.topics].remove(TOPIC)
+        if before.step == "offered":
+            ctx.emit(declined)
+    if out.counts:
+        ctx.emit(counted)
+    if after.is_waiting:
+        ctx.emit(prompted, after.turn)
+    else:
+        ctx.wipe(prompted)
+
+
+def world_of(ctx: rs.RuleContext) -> World:
+    """Return the surroundings of the game."""
+    return World(ctx.random, ctx[gestures], ctx[activity.in_view])
+
+
+# ------------------------------------------------------------------- countdown, watching, guessing
+
+
+@module.rule(
+    when=counted.max_age(None),
+    writes=(game, sightings, verbaliser.intent, rawio.output),
+    emits=watched,
+    until=game.changed.where(is_waiting),
+    detached=True,
+)
+async def count_down(ctx: rs.RuleContext) -> None:
+    """Count to three, and watch."""
+    settings: Settings = ctx.settings
+    ctx[sightings] = ()
+    for n in (3, 2, 1):
+        ctx[verbaliser.intent] = Intent("count", {"n": n}, __package__)
+        await ctx.sleep(settings.count)
+    ctx[verbaliser.intent] = Intent("go", package=__package__)
+    ctx[game] = replace(ctx[game], step="watching", start=ctx.now)
+    await ctx.sleep(settings.watch)
+    ctx[game] = replace(ctx[game], end=ctx.now)
+    ctx.emit(watched)
+
+
+@module.rule(
+    when=activity.recognised.max_age(None).detached(),
+    reads=game,
+    writes=sightings,
+    detached=True,
+    background=True,
+)
+async def see(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Note an activity during the countdown, or while the agent watches."""
+    step = ctx[game].step
+    if step not in ("counting", "watching"):
+        return rs.Resign("the agent does not watch now")
+    ctx[sightings] = (*ctx[sightings], (step == "watching", ctx.payload(activity.recognised)))
+    return None
+
+
+@module.rule(
+    when=watched.max_age(None),
+    reads=(sightings, activity.in_view),
+    writes=(game, verbaliser.intent, rawio.output),
+    emits=(prompted, *FEELINGS.values()),
+    detached=True,
+)
+async def guess(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Voice the first guess."""
+    if ctx[game].step != "watching":
+        return rs.Resign("the game has been stopped")
+    seen = ctx[sightings]
+    while_watching = [one for at_work, one in seen if at_work]
+    out = guessed(
+        ctx[game], ranked(while_watching or [one for _, one in seen]), World(ctx.random, in_view=ctx[activity.in_view])
+    )
+    ctx[game] = out.game
+    ctx[verbaliser.intent] = Intent(out.say, out.words, __package__)
+    if out.feeling is not None:
+        ctx.emit(FEELINGS[out.feeling])
+    ctx.emit(prompted, out.game.turn)
+    return None
+
+
+def ranked(seen: Iterable[activity.Activity]) -> tuple[str, ...]:
+    """Return the names of the seen activities, the most probable first."""
+    total: Counter[str] = Counter()
+    for one in seen:
+        total[one.name] += one.confidence  # type: ignore[assignment]  # a Counter adds floats as well
+        for other, confidence in one.others.items():
+            total[other] += confidence  # type: ignore[assignment]
+    return tuple(name for name, _ in total.most_common())
+
+
+# -------------------------------------------------------------------------------- silence, asides
+
+
+@module.rule(
+    when=prompted.min_age(Settings.patience).max_age(None),
+    reads=SURROUNDINGS,
+    writes=EFFECTS,
+    emits=EMITTED,
+    detached=True,
+)
+async def remind(ctx: rs.RuleContext) -> rs.Resign | None:
+    """After a silence, ask again; after another, end the game. A silent chooser gets the countdown."""
+    if ctx[game].turn != ctx.payload(prompted):
+        return rs.Resign("the game has gone on")
+    carry_out(ctx, play(ctx[game], Move("silence"), world_of(ctx)))
+    return None
+
+
+@module.rule(
+    when=(rawio.typing.detached() | rawio.hearing.detached()) & game.holds(is_on),
+    reads=game,
+    emits=prompted,
+    detached=True,
+    background=True,
+)
+async def be_patient(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Wait on while the user types or speaks."""
+    now = ctx[game]
+    if not now.is_waiting:
+        return rs.Resign("the agent does not wait for the user")
+    ctx.emit(prompted, now.turn)
+    return None
+
+
+@module.rule(
+    when=strayed.changed.min_age(Settings.aside).max_age(None).detached(),
+    reads=strayed,
+    writes=(game, verbaliser.intent, rawio.output),
+    emits=prompted,
+    until=rawio.input.changed,
+    detached=True,
+    background=True,
+)
+async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Return to the game after words on something else, when all that was asked is answered."""
+    turn = ctx[game].turn
+    await ctx.quiet()
+    now = ctx[game]
+    if now.turn != turn or not now.is_waiting or ctx[strayed] != ctx.payload(strayed.changed):
+        return rs.Resign("the game has gone on")
+    ctx[verbaliser.intent] = Intent(now.question, now.words, __package__)
+    ctx.emit(prompted, now.turn)
+    return None
+
+
+@module.rule(
+    when=abandoned.max_age(None).detached()
+    | (interloc.users.removed.max_age(None).detached() & interloc.users.holds(is_empty)),
+    writes=(game, agenda.topics),
+    detached=True,
+    background=True,
+)
+async def end(ctx: rs.RuleContext) -> rs.Resign | None:
+    """End the game without a word: the user has said goodbye or left, or ignores the offer."""
+    now = ctx[game]
+    if not now.is_on:
+        return rs.Resign("no game is on")
+    ctx[game] = Game(turn=now.turn + 1)
+    ctx[agenda.topics].remove(TOPIC)
+    ctx.wipe(prompted)
+    return None

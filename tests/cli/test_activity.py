@@ -1,0 +1,75 @@
+"""``ravestate activity`` on files of landmarks, and on a real video."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from modules.modality.activity.performers import performance
+from ravestate.cli import main
+from ravestate.modules.modality.activity.files import write
+
+VIDEO = Path(sys.prefix) / "share" / "ravestate" / "eyes" / "videos" / "walk.mp4"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> str:
+    return str(tmp_path / "taught")
+
+
+def recording(tmp_path: Path, name: str, seed: int = 2) -> str:
+    file = tmp_path / f"{name}-{seed}.npz"
+    write(file, performance(name, seed))
+    return str(file)
+
+
+def test_an_activity_is_guessed(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["activity", "guess", recording(tmp_path, "rowing"), "--folder", folder]) == 0
+    line = capsys.readouterr().out.strip()
+    assert line.endswith("%  rowing")
+
+
+def test_a_movement_is_taught_and_then_guessed(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+    file = recording(tmp_path, "skiing")
+    assert main(["activity", "guess", file, "--folder", folder]) == 0
+    assert capsys.readouterr().out.strip().endswith("unknown")
+    more = recording(tmp_path, "skiing", 3)
+    assert main(["activity", "teach", "Nordic skiing", file, more, "--folder", folder]) == 0
+    assert "learnt nordic skiing from 2 demonstrations" in capsys.readouterr().out
+    assert main(["activity", "guess", recording(tmp_path, "skiing", 4), "--folder", folder]) == 0
+    assert capsys.readouterr().out.strip().endswith("nordic skiing")
+    assert main(["activity", "list", "--folder", folder]) == 0
+    assert "nordic skiing  (taught)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (["guess", "{tmp}/missing.npz"], 2, "there is no file"),
+        (["guess", "{tmp}"], 2, "is a folder"),
+        (["teach", " ", "{tmp}/bad.npz"], 2, "the name is empty"),
+        (["guess", "{tmp}/bad.npz"], 1, "no file of landmarks"),
+        (["teach", "x", "{tmp}/bad.npz"], 1, "no file of landmarks"),
+    ],
+)
+def test_wrong_use_is_told(
+    tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, message: str
+) -> None:
+    (tmp_path / "bad.npz").write_text("hello")
+    given = [argument.replace("{tmp}", str(tmp_path)) for argument in arguments]
+    assert main(["activity", *given, "--folder", folder]) == code
+    assert message in capsys.readouterr().err
+    assert not Path(folder).exists()
+
+
+def test_people_who_walk_in_a_real_video_are_seen_and_not_taken_for_an_activity(
+    folder: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nobody has taught the recogniser to know walking."""
+    assert VIDEO.is_file(), "the video of the tests is missing: run make test, which fetches it"
+    assert main(["activity", "guess", str(VIDEO), "--folder", folder]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) >= 3
+    assert all(line.endswith("unknown") for line in lines), lines

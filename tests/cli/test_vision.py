@@ -1,0 +1,90 @@
+"""``ravestate vision``: whose faces are in pictures, and learning a face."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cli.examples import call
+from modules.modality.visionio.photographs import eye, photo
+from ravestate.modules.modality.visionio import places
+
+LINE = re.compile(r"(\S.*?) +(-|\d\.\d{3})  -?\d+,-?\d+,\d+,\d+  (.+)")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def worker() -> Iterator[None]:
+    """Keep one worker for all commands, which would each start one."""
+    eye()
+    yield
+    eye().close()
+    eye.cache_clear()
+
+
+def rows(text: str) -> list[tuple[str, str, str]]:
+    """The name, distance and file of each line."""
+    found = [LINE.fullmatch(line) for line in text.splitlines()]
+    return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
+
+
+def test_who_learn_and_forget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    memory = ("--path", str(tmp_path / "memory.lbug"))
+    code, out, _ = call(capsys, "vision", "who", *memory, str(photo("obama")))
+    assert code == 0 and rows(out) == [("unknown", "-", "obama")]
+    assert not (tmp_path / "memory.lbug").exists()
+    code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")), str(photo("obama2")))
+    assert (code, out) == (0, "learnt 2 views of Barack\n")
+    code, out, _ = call(capsys, "vision", "who", *memory, str(photo("obama3")), str(photo("biden")), str(photo("six")))
+    assert code == 0
+    assert [name for name, _, _ in rows(out)] == ["Barack", *["unknown"] * 7]
+    assert [float(distance) <= 0.45 for _, distance, _ in rows(out)] == [True, *[False] * 7]
+    code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")))
+    assert (code, out) == (0, "learnt 0 views of Barack\n")  # it tells nothing new
+    code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
+    assert (code, out) == (0, "forgot 3\n")
+    code, out, _ = call(capsys, "vision", "who", *memory, str(photo("obama")))
+    assert rows(out) == [("unknown", "-", "obama")]
+
+
+def test_files_that_are_no_pictures_are_told_and_the_others_are_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = tmp_path / "bad.jpg"
+    bad.write_bytes(b"not a picture")
+    code, out, errors = call(capsys, "vision", "who", str(bad), str(photo("hanks")))
+    assert code == 1 and "bad.jpg: the bytes are no picture" in errors and len(rows(out)) == 1
+    code, _, errors = call(capsys, "vision", "who", str(tmp_path / "none.jpg"))
+    assert code == 2 and "there is no file" in errors
+    code, _, errors = call(capsys, "vision", "who", str(tmp_path))
+    assert code == 2 and "is a folder" in errors
+
+
+@pytest.mark.parametrize(
+    ("files", "why"),
+    [(("six",), "has 6 faces"), (("obama", "biden"), "shows another person")],
+)
+def test_learn_takes_one_face_of_one_person(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], files: tuple[str, ...], why: str
+) -> None:
+    memory = tmp_path / "memory.lbug"
+    code, _, errors = call(capsys, "vision", "learn", "--path", str(memory), "Ada", *(str(photo(one)) for one in files))
+    assert code == 2 and why in errors and not memory.exists()
+
+
+def test_check_names_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = call(capsys, "vision", "check", "--set", "visionio.source=/dev/video9")
+    assert code == 0 and "finds and recognises faces" in out and "/dev/video9" in out
+
+
+def test_what_is_missing_is_told_with_the_mend(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(places.sys, "prefix", str(tmp_path / "env"))
+    monkeypatch.setattr(places, "find_spec", lambda _: None)
+    code, _, errors = call(capsys, "vision", "who", str(photo("hanks")))
+    assert code == 1 and "make eyes" in errors and "ravestate[eyes]" in errors
+    code, out, _ = call(capsys, "vision", "check")
+    assert code == 1 and "MISSING" in out
+    code, _, errors = call(capsys, "vision", "who", str(photo("hanks")), "--set", "visionio.python=/no/python")
+    assert code == 1 and "there is no such file" in errors

@@ -1,0 +1,33 @@
+"""The camera of `visionio` shows the body to `activity`, if somebody listens for activities."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+import ravestate as rs
+from ravestate.modules import activity, visionio
+from ravestate.testing import simulate
+
+VIDEO = Path(sys.prefix) / "share" / "ravestate" / "eyes" / "videos" / "walk.mp4"
+
+
+@pytest.mark.parametrize("listens", [True, False])
+def test_people_in_a_real_video_are_followed(tmp_path: Path, listens: bool) -> None:
+    listener = rs.Module("listener", requires=[activity])
+    if listens:
+
+        @listener.rule(when=activity.recognised)
+        async def hear(ctx: rs.RuleContext) -> None: ...
+
+    settings = {
+        "visionio": {"source": str(VIDEO)},
+        "activity": {"folder": tmp_path},
+        "ontology": {"path": tmp_path / "memory.lbug"},
+    }
+    with simulate(visionio, listener, settings=settings) as sim:
+        sim.advance(1.5)
+        assert sim.read(activity.in_view) is listens
+        assert (len(sim.read(activity.movement).poses) >= 5) is listens

@@ -1,0 +1,132 @@
+"""The module in virtual time: poses come in, activities come out, and lessons are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ravestate as rs
+from modules.modality.activity.performers import performance
+from ravestate.modules import activity
+from ravestate.testing import Simulation, simulate
+
+
+class Witness:
+    """A module that notes the recognised activities."""
+
+    def __init__(self) -> None:
+        self.seen: list[activity.Activity] = []
+        self.module = rs.Module("witness", requires=[activity])
+
+        @self.module.rule(when=activity.recognised.max_age(None).detached())
+        async def note(ctx: rs.RuleContext) -> None:
+            self.seen.append(ctx.payload(activity.recognised))
+
+    @property
+    def names(self) -> set[str]:
+        return {one.name for one in self.seen}
+
+
+def show(sim: Simulation, poses: Sequence[activity.Pose]) -> tuple[float, float]:
+    """Let a camera see a performance; return its beginning and end."""
+    start = sim.now
+    for pose in poses:
+        sim.advance(max(0.0, start + pose.at - sim.now))
+        sim.emit(activity.posed, activity.Pose(sim.now, pose.points))
+    return start, sim.now
+
+
+def test_a_known_activity_is_recognised_every_half_second(tmp_path: Path) -> None:
+    witness = Witness()
+    with simulate(activity, witness.module, settings={"activity": {"folder": tmp_path}}) as sim:
+        sim.advance(1.0)
+        start, end = show(sim, performance("rowing", 2))
+        assert witness.names == {"rowing"}
+        assert 2 <= len(witness.seen) <= 3
+        one = witness.seen[-1]
+        assert start <= one.start < one.end <= end
+        assert 0.5 < one.confidence <= 1.0
+
+
+def test_an_unknown_movement_raises_nothing_until_it_is_taught(tmp_path: Path) -> None:
+    settings = {"activity": {"folder": tmp_path}}
+    witness = Witness()
+    with simulate(activity, witness.module, settings=settings) as sim:
+        sim.advance(1.0)
+        begin, end = show(sim, performance("skiing", 2))
+        assert witness.seen == []
+        sim.emit(activity.taught, activity.Lesson("Nordic_Skiing", begin, end))
+        assert "nordic skiing" in sim.read(activity.known)
+        assert [file.name for file in tmp_path.iterdir()] == ["nordic-skiing-1.npz"]
+        sim.advance(5.0)
+        show(sim, performance("skiing", 2))
+        assert witness.names == {"nordic skiing"}
+    again = Witness()
+    with simulate(activity, again.module, settings=settings) as sim:  # after a restart
+        sim.advance(1.0)
+        show(sim, performance("skiing", 2))
+        assert again.names == {"nordic skiing"}
+
+
+def test_a_lesson_about_a_time_without_poses_teaches_nothing(tmp_path: Path) -> None:
+    with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
+        sim.advance(1.0)
+        sim.emit(activity.taught, activity.Lesson("nothing", 0.0, 1.0))
+        sim.emit(activity.taught, activity.Lesson(" ", 0.0, 1.0))
+        assert len(sim.read(activity.known)) == 16
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_who_is_not_seen_any_more_is_not_in_view(tmp_path: Path) -> None:
+    with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
+        assert not sim.read(activity.in_view)
+        show(sim, performance("waving", 1)[:10])
+        assert sim.read(activity.in_view)
+        sim.advance(3.0)
+        assert not sim.read(activity.in_view)
+
+
+def test_a_body_that_leaves_and_comes_back_is_a_new_movement(tmp_path: Path) -> None:
+    """The poses before a long gap do not mix with those after it."""
+    witness = Witness()
+    with simulate(activity, witness.module, settings={"activity": {"folder": tmp_path}}) as sim:
+        sim.advance(1.0)
+        show(sim, performance("boxing", 2))
+        sim.advance(10.0)
+        witness.seen.clear()
+        show(sim, performance("waving", 2))
+        assert witness.names == {"waving"}
+
+
+def test_the_labels_of_another_recogniser_are_taken_over(tmp_path: Path) -> None:
+    witness = Witness()
+    with simulate(activity, witness.module, settings={"activity": {"folder": tmp_path}}) as sim:
+        sim.advance(10.0)
+        sim.emit(activity.label, "Playing_the_Piano")
+        sim.emit(activity.label, "  ")
+        assert witness.seen == [activity.Activity("playing the piano", 1.0, 7.0, 10.0)]
+
+
+def test_a_broken_file_is_reported_and_left_out(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "bad.npz").write_bytes(b"nothing")
+    np.savez(tmp_path / "empty.npz", times=np.zeros(0), points=np.zeros((0, 33, 4)))
+    with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
+        sim.advance(1.0)
+        assert len(sim.read(activity.known)) == 16
+    assert "bad.npz" in caplog.text and "empty.npz" in caplog.text
+
+
+def test_a_folder_that_cannot_be_written_keeps_the_lesson_for_this_session(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    place = tmp_path / "file"
+    place.write_text("")
+    with simulate(activity, settings={"activity": {"folder": place}}) as sim:
+        sim.advance(1.0)
+        begin, end = show(sim, performance("golf", 2))
+        sim.emit(activity.taught, activity.Lesson("golf", begin, end))
+        assert "golf" in sim.read(activity.known)
+    assert "cannot be written" in caplog.text

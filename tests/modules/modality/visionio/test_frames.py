@@ -1,0 +1,59 @@
+"""A platform's camera: only the newest picture is kept."""
+
+import asyncio
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from ravestate.errors import PlatformError
+from ravestate.modules.modality.visionio.frames import Frame, Frames
+
+
+def test_only_the_newest_picture_is_given() -> None:
+    async def watch() -> None:
+        frames = Frames()
+        for number in range(5):
+            frames.put(bytes([number]))
+        frame = await frames.next()
+        assert frame is not None and frame.data == b"\4" and frames.dropped == 4
+
+    asyncio.run(watch())
+
+
+def test_a_picture_from_another_thread_wakes_the_agent() -> None:
+    async def watch() -> Frame | None:
+        frames = Frames()
+        waiting = asyncio.create_task(frames.next())
+        await asyncio.sleep(0)
+        threading.Thread(target=frames.put, args=(b"pixels", (1, 2))).start()
+        return await waiting
+
+    frame = asyncio.run(watch())
+    assert frame is not None and (frame.data, frame.shape) == (b"pixels", (1, 2))
+    assert "pixels" not in repr(frame)
+
+
+def test_messages_of_ros() -> None:
+    frames = Frames()
+    frames.put_message(SimpleNamespace(format="jpeg", data=[1, 2]))
+    frame = asyncio.run(frames.next())
+    assert frame is not None and (frame.data, frame.shape) == (b"\1\2", None)
+    frames.put_message(SimpleNamespace(data=bytes(6), height=1, width=2, step=6, encoding="8UC3"))
+    frame = asyncio.run(frames.next())
+    assert frame is not None and (frame.shape, frame.encoding, frame.step) == ((1, 2), "bgr8", 6)
+    with pytest.raises(PlatformError, match="'32FC1': publish one of rgb8, bgr8"):
+        frames.put_message(SimpleNamespace(data=b"", height=1, width=1, step=4, encoding="32FC1"))
+
+
+def test_a_closed_camera_ends_the_watch_and_takes_nothing_more() -> None:
+    async def watch() -> Frame | None:
+        frames = Frames()
+        waiting = asyncio.create_task(frames.next())
+        await asyncio.sleep(0)
+        frames.close()
+        frames.put(b"late")
+        assert await frames.next() is None
+        return await waiting
+
+    assert asyncio.run(watch()) is None

@@ -1,0 +1,93 @@
+"""Faces in memory: filed, found, merged, forgotten."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from modules.modality.visionio.photographs import OBAMA, faces
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology import Graph, Memory, Node
+from ravestate.modules.meta.ontology.opening import open_memory
+from ravestate.modules.modality.visionio import people
+
+
+@pytest.fixture
+def graph(memory: Path) -> Iterator[Memory]:
+    opened = open_memory(ontology.Settings(path=memory))
+    yield opened
+    opened.close().result(20)
+
+
+def vector(name: str) -> tuple[float, ...]:
+    return faces()[name].vector
+
+
+def do(memory: Memory, operation: Any) -> Any:
+    return memory.together(operation).result(20)
+
+
+def keep(memory: Memory, name: str, *photos: str, most: int = 8) -> tuple[Node, int]:
+    def file(graph: Graph) -> tuple[Node, int]:
+        person = graph.ensure("Person", {"name": name})
+        return people.keep(graph, person, [(1.0, vector(photo)) for photo in photos], most)
+
+    return do(memory, file)
+
+
+def test_a_vector_survives_as_text_and_damaged_text_is_nothing() -> None:
+    text = people.packed(vector("obama"))
+    assert people.unpacked(text) == pytest.approx(vector("obama"), abs=1e-7)
+    assert people.unpacked("") is None and people.unpacked(text[:-4]) is None and people.unpacked("ä" * 684) is None
+
+
+def test_the_nearest_person_is_found_up_to_the_threshold(graph: Memory) -> None:
+    assert do(graph, lambda g: people.nearest(g, vector("obama"), 0.55)) is None
+    keep(graph, "Barack", "obama")
+    keep(graph, "Joe", "biden")
+    found = do(graph, lambda g: people.nearest(g, vector("obama3"), 0.55))
+    assert found.person["name"] == "Barack" and 0.2 < found.distance < 0.45
+    assert do(graph, lambda g: people.nearest(g, vector("six_1"), 0.55)) is None
+    assert do(graph, lambda g: people.nearest(g, vector("obama3"), 0.1)) is None
+    assert 0.6 < do(graph, lambda g: people.least(g, vector("six_1"))) < 1.0
+
+
+def test_of_two_people_who_are_as_near_nobody_is_recognised(graph: Memory) -> None:
+    keep(graph, "Barack", "obama")
+    keep(graph, "Bary", "obama")
+    assert do(graph, lambda g: people.nearest(g, vector("obama3"), 0.55)) is None
+
+
+def test_a_view_that_tells_nothing_new_is_left_out_and_the_oldest_goes(graph: Memory) -> None:
+    assert keep(graph, "Barack", "obama2", "obama2_32bit")[1] == 1
+    person, filed = keep(graph, "Barack", *OBAMA, most=3)
+    assert filed >= 3
+    assert len(do(graph, lambda g: people.faces_of(g, person))) == 3
+
+
+def test_people_of_one_name_and_one_face_are_merged_others_are_not(graph: Memory) -> None:
+    first, _ = keep(graph, "Barack", "obama")
+    keep(graph, "Joe", "biden")
+
+    def file(g: Graph) -> tuple[Node, int]:
+        g.relate(first, "lives_in", g.ensure("City", {"name": "Chicago"}), {})
+        return people.keep(g, Node("Person", {"name": "barack"}), [(1.0, vector("obama_partial_face"))], 8)
+
+    kept, _ = do(graph, file)
+    names = sorted(one["name"] for one in graph.find("Person").result(20))
+    assert names == ["Joe", "barack"]
+    assert [one["name"] for one in graph.related(kept, "lives_in").result(20)] == ["Chicago"]
+    assert len(do(graph, lambda g: people.faces_of(g, kept))) == 2
+    do(graph, lambda g: people.keep(g, Node("Person", {"name": "barack"}), [(1.0, vector("hanks"))], 8))
+    assert len(graph.find("Person", name="barack").result(20)) == 2  # another man of that name
+
+
+def test_faces_are_forgotten_alone_or_with_their_person(graph: Memory) -> None:
+    person, _ = keep(graph, "Barack", "obama", "obama2")
+    assert do(graph, lambda g: people.forget_faces(g, person)) == 2
+    assert do(graph, people.stored) == [] and graph.get(person.id).result(20) is not None
+    assert do(graph, lambda g: people.forget_faces(g, Node("Person"))) == 0
+    keep(graph, "Barack", "obama")
+    graph.forget(person).result(20)
+    assert do(graph, people.stored) == []

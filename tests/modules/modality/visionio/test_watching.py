@@ -1,0 +1,189 @@
+"""Watching a camera: the log of its failures, and the rate of looks."""
+
+import logging
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from modules.modality.visionio.photographs import make, photo
+from ravestate.errors import PlatformError
+from ravestate.modules import visionio
+from ravestate.modules.modality.visionio import watching
+from ravestate.modules.modality.visionio.watching import AGAIN, FAULTS, Watch
+from ravestate.testing import simulate
+
+LOG = logging.getLogger("test")
+
+
+class Blind:
+    """An eye whose camera fails a few times."""
+
+    def __init__(self, faults: int, live: bool) -> None:
+        self.faults, self.live = faults, live
+        self.ended, self.skipped, self.waited, self.reopened = False, 3, 0.0, 0
+
+    async def open(self, source: str, *, loop: bool = False) -> bool:
+        return self.live
+
+    async def look(self, *_: Any, **__: Any) -> dict[str, Any]:
+        self.faults -= 1
+        if self.faults >= 0:
+            raise PlatformError("visionio: the camera gives no more pictures: is it unplugged?")
+        return {"picture": [640, 480], "dark": True, "faces": []}
+
+    def reopen(self) -> None:
+        self.reopened += 1
+
+    def close(self) -> None:
+        pass
+
+
+async def watched(monkeypatch: pytest.MonkeyPatch, eye: Blind, looks: int) -> list[float]:
+    """Watch for some looks; return the seconds that the watch waited after each."""
+    monkeypatch.setattr(watching, "Eye", lambda _: eye)
+    watch = Watch(visionio.Settings(source="/dev/video0", fps=10, load=0.5), None, LOG)
+    waits: list[float] = []
+
+    async def sleep(seconds: float) -> None:
+        waits.append(seconds)
+
+    assert await watch.begin()
+    for _ in range(looks):
+        frame = await watch.next()
+        assert frame is True
+        await watch.look(["faces"], {}, 0.0, frame)
+        if not await watch.rest(0.02, sleep):
+            break
+    assert watch.skipped == 3
+    return waits
+
+
+def run(coroutine: Any) -> Any:
+    import asyncio
+
+    return asyncio.run(coroutine)
+
+
+def test_a_lost_camera_is_told_once_and_tried_again(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    eye = Blind(8, live=True)
+    caplog.set_level(logging.INFO)
+    waits = run(watched(monkeypatch, eye, 10))
+    assert waits[:8] == [AGAIN] * 8 and waits[8:] == pytest.approx([0.08, 0.08])
+    assert eye.reopened == 8
+    assert caplog.text.count("is it unplugged?") == 1 and caplog.text.count("sees again") == 1
+
+
+def test_a_file_that_fails_again_and_again_is_given_up(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    waits = run(watched(monkeypatch, Blind(100, live=False), 20))
+    assert len(waits) == FAULTS - 1
+    assert "gives up after 5 failures" in caplog.text
+
+
+def test_black_pictures_are_told_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    run(watched(monkeypatch, Blind(0, live=True), 70))
+    assert caplog.text.count("is the lens covered") == 1
+
+
+def test_a_slow_machine_looks_less_often() -> None:
+    async def waits() -> list[float]:
+        found: list[float] = []
+
+        async def sleep(seconds: float) -> None:
+            found.append(seconds)
+
+        watch = Watch(visionio.Settings(fps=10, load=0.5), None, LOG)
+        watch._eye = Blind(0, live=False)  # type: ignore[assignment]
+        for spent in (0.0, 0.04, 0.3):
+            await watch.rest(spent, sleep)
+        return found
+
+    assert run(waits()) == pytest.approx([0.1, 0.06, 0.3])
+
+
+def test_a_damaged_picture_in_a_folder_is_left_out(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    for number in (0, 1, 3, 4, 5):
+        (tmp_path / f"{number}.jpg").write_bytes(photo("hanks").read_bytes())
+    (tmp_path / "2.jpg").write_bytes(b"broken")
+    settings = {"visionio": {"source": str(tmp_path), "fps": 1}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    with simulate(visionio.module, settings=settings) as sim:
+        sim.advance(5.5)
+        assert len(sim.read(visionio.visitors)) == 1
+        assert sim.failures == []
+    assert caplog.text.count("2.jpg") == 1
+
+
+def test_a_platforms_pictures(tmp_path: Path) -> None:
+    """Only the newest is looked at; a closed camera means that everybody has left."""
+    frames = visionio.Frames()
+    settings = {"visionio": {"source": ""}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    data = photo("hanks").read_bytes()
+    with simulate(visionio.module, settings=settings) as sim:
+        sim.put(visionio.camera, frames)
+        for _ in range(3):
+            frames.put(b"older")
+            frames.put(data)
+            sim.advance(0.3)
+        assert len(sim.read(visionio.visitors)) == 1
+        frames.put(b"broken")
+        sim.advance(0.3)
+        assert frames.dropped == 3
+        sim.advance(10)  # the telephone's screen is locked
+        assert not sim.read(visionio.visitors)
+        for _ in range(3):
+            frames.put(data)
+            sim.advance(0.3)
+        assert len(sim.read(visionio.visitors)) == 1
+        frames.close()
+        sim.advance(10)
+        assert not sim.read(visionio.visitors) and sim.failures == []
+
+
+def test_a_rule_that_listens_to_poses_gets_them(tmp_path: Path) -> None:
+    heard: list[visionio.Pose] = []
+    dancer = rs.Module("dancer", requires=[visionio])
+
+    @dancer.rule(when=visionio.pose.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        heard.append(ctx.payload(visionio.pose))
+
+    pictures = tmp_path / "pictures"
+    pictures.mkdir()
+    (pictures / "0.jpg").write_bytes(photo("obama3").read_bytes())
+    make("cv2.imwrite(a[0], np.full((480, 640, 3), 128, np.uint8))", pictures / "1.png")
+    settings = {"visionio": {"source": str(pictures), "fps": 1}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    with simulate(dancer, settings=settings) as sim:
+        sim.advance(3.5)
+        assert sim.failures == []
+    body, nobody = heard[0].landmarks, heard[-1].landmarks
+    assert body is not None and len(body) == 33 and all(len(point) == 4 for point in body)
+    nose, hip = body[0], body[24]
+    assert nose[1] < hip[1] and nose[3] > 0.9  # upright, and in sight
+    assert nobody is None
+
+
+def test_black_frames_of_a_video(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    file = tmp_path / "black.mp4"
+    make(
+        """
+out = cv2.VideoWriter(a[0], cv2.VideoWriter_fourcc(*"mp4v"), 10, (320, 240))
+for _ in range(50):
+    out.write(np.zeros((240, 320, 3), np.uint8))
+out.release()
+""",
+        file,
+    )
+    seen: list[visionio.Look] = []
+    settings = {"visionio": {"source": str(file), "fps": 5}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    with simulate(visionio.module, settings=settings) as sim:
+        sim.advance(4.5)
+        seen = [
+            r.payload for r in sim.trace if getattr(r, "signal", "") == visionio.looked.name and hasattr(r, "payload")
+        ]
+    assert seen and all(look.dark and not look.tracks for look in seen)
+    assert caplog.text.count("is the lens covered") == 1

@@ -1,0 +1,28 @@
+"""The wish that the agent remember or forget a face."""
+
+import pytest
+
+from ravestate.modules.modality.visionio.wishes import wish_of
+
+pytestmark = pytest.mark.usefixtures("reader")
+
+
+@pytest.mark.parametrize(
+    ("text", "wish"),
+    [
+        ("forget my face", "forget"),
+        ("Could you please forget my face?", "forget"),
+        ("I want you to delete my face from your database.", "forget"),
+        ("Hey, forget what I look like.", "forget"),
+        ("remember my face", "remember"),
+        ("You should remember how I look!", "remember"),
+        ("Do you remember my face?", ""),
+        ("I never forget a face.", ""),
+        ("My face hurts.", ""),
+        ("forget my name", ""),
+        ("It looks like rain.", ""),
+        ("", ""),
+    ],
+)
+def test_wishes(text: str, wish: str) -> None:
+    assert wish_of(text) == wish

@@ -1,0 +1,19 @@
+"""One pipeline and one set of examples for all tests."""
+
+from __future__ import annotations
+
+import pytest
+
+from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.meta.nlp.analysis import MATCHERS
+from ravestate.modules.meta.nlp.pipeline import pipeline
+from ravestate.modules.skill.charades import understanding
+
+
+@pytest.fixture(scope="session")
+def reader() -> None:
+    """Load the pipeline and the examples."""
+    pipeline("").load()
+    understanding.load()
+    for name in (*MATCHERS, "answers"):
+        bundled_matcher(name).load()
