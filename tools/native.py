@@ -23,12 +23,11 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "ravestate"
 
+COLD = ("__init__", "events", "explain", "reasons", "snapshot", "trace")
+"""The modules of the engine that stay interpreted: they are for records and explanations."""
+
 MODULES = (
-    *(f"engine/{name}.py" for name in (
-        "activation", "agenda", "conflict_sets", "consent", "deadlines", "effects", "engine", "entries", "free", "group",
-        "halves", "holdings", "horizon", "loops", "matching", "outcomes", "refusal", "runs", "slots", "spike", "stalemate",
-        "standing", "state", "waits", "watch",
-    )),
+    *sorted(f"engine/{file.name}" for file in (SOURCE / "engine").glob("*.py") if file.stem not in COLD),
     *(f"policy/{name}.py" for name in ("causes", "components", "model")),
     *(f"runtime/{name}.py" for name in (
         "async_rules", "blocking", "clock", "eager_task", "listeners", "rule_context", "runner", "spares", "waits",

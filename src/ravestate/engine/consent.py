@@ -213,7 +213,7 @@ class Consent:
             rivals: dict[Clause, None] = {}
             for member in group.members:
                 rivals[member.clause] = None
-                for theirs in state.policy.causes.downstream(member.clause.rule):
+                for theirs in state.causes.downstream(member.clause.rule):
                     if theirs.base < last.base:
                         break  # the best clauses come first
                     rivals[theirs] = None
