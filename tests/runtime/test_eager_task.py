@@ -29,7 +29,7 @@ def make() -> EagerTask:
 
 
 class Host:
-    """Of a running context, a rule context needs nothing here."""
+    """A stand-in for a running context; these rules need nothing of it."""
 
 
 def context_of(coroutine: Coroutine[Any, Any, Any]) -> RuleContext:
