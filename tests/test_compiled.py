@@ -9,7 +9,9 @@ import pytest
 
 from ravestate import compiled
 
-PROBE = "from ravestate.compiled import build; from ravestate.engine import spike; print(build()); print(spike.__file__)"
+PROBE = (
+    "from ravestate.compiled import build; from ravestate.engine import spike; print(build()); print(spike.__file__)"
+)
 
 
 def probe(**environment: str) -> tuple[str, str]:

@@ -31,7 +31,7 @@ def drive() -> Generator[Any, Any, Any]:
     Each context comes by `send`. The generator yields all that the function's coroutine yields, and then `Done`. Thus the
     end of a coroutine needs no exception, which would cost more than many a rule.
     """
-    ctx = yield
+    ctx: Any = yield
     while True:
         result: Any = yield from ctx.rule.function(ctx)
         ctx = yield DONE if result is None else Done(result)
