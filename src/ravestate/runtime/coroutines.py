@@ -33,7 +33,7 @@ def drive() -> Generator[Any, Any, Any]:
     """
     ctx: Any = yield
     while True:
-        result: Any = yield from ctx.rule.function(ctx)
+        result = yield from ctx.rule.function(ctx)  # pyright: ignore[reportUnknownVariableType]  # it may be anything
         ctx = yield DONE if result is None else Done(result)
 
 
