@@ -264,7 +264,7 @@ def test_an_agent_file_that_explodes_ends_at_once(
 
 
 def test_a_setting_that_explodes_counts_as_text(capsys: Capture) -> None:
-    assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=1)
+    assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=2)
 
 
 def test_check_and_graph_first_name_the_python_code_that_an_agent_file_runs(folder: Path, capsys: Capture) -> None:
@@ -407,7 +407,7 @@ def test_one_message_has_all_unknown_settings(capsys: Capture) -> None:
     ],
 )
 def test_unfit_values_are_faults(text: str, fault: str, capsys: Capture) -> None:
-    assert fault in refused(capsys, "idle", "rawio", "--set", text, code=1)
+    assert fault in refused(capsys, "idle", "rawio", "--set", text, code=2)
 
 
 def test_an_agent_has_the_options_of_its_contexts() -> None:

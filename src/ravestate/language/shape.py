@@ -45,6 +45,11 @@ def shape(text: str) -> tuple[bool, bool, bool, int]:
     return *mentioned, 0
 
 
+def opens_question(text: str) -> bool:
+    """Return whether a plain text begins with a question word or an auxiliary verb, as questions do."""
+    return text.split(" ", 1)[0] in _QUESTION_WORDS | _AUXILIARIES
+
+
 def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float32]:
     """Return the weighted share of equal features: rows for `texts` (n, 4), columns for `others` (m, 4)."""
     import numpy as np

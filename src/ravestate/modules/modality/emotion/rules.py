@@ -41,7 +41,7 @@ def learn(ctx: rs.RuleContext) -> None:
 def be_moved(ctx: rs.RuleContext) -> None:
     """Raise the feeling that fits the user's words, or a spontaneous feeling.
 
-    For some utterances after words of sorrow, raise no cheerful feeling. The encoder takes a few milliseconds, so this
+    For some utterances after words of sorrow, raise no cheerful and no spontaneous feeling. The encoder takes a few milliseconds, so this
     rule runs in a thread. Without the encoder, only sentences that equal an example raise a feeling.
     """
     settings: Settings = ctx.settings
@@ -52,7 +52,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
     with contextlib.suppress(ModelMissing):  # `learn` reports the missing model
         feeling = recognise(text, names)
         left = SORROW_LASTS if sorrowful(text, names) else left
-    if feeling is None:
+    if feeling is None and not left:
         likely: dict[Feeling, float] = {name: getattr(settings, name) for name in OCCASIONS}
         said = [addressed(sentence, names) for sentence in heard(text, names)]
         feeling = by_chance(said, likely, ctx.random)

@@ -53,6 +53,7 @@ def respond_to(
     noted = {
         "touched": talk.touched | meaning.touched,
         "said": (*talk.said, *meaning.said)[-LONGEST:],
+        "words": talk.words if meaning.kind == "asked_words" else (*talk.words, *meaning.words)[-LONGEST:],
         "moved": meaning.moved,
     }
     heard = replace(user, talk=talk.listening(now, leave=meaning.leave, person=meaning.person, **noted))
@@ -78,6 +79,10 @@ def respond_to(
             return Response(None, heard, lambda memory: _mistaken(heard, memory, now))
         case "asked_told":
             return Response(say("recall", user.known, fact=joined([one.text for one in meaning.free])), heard)
+        case "asked_words" if meaning.words:
+            return Response(say("recall_words", user.known, words=meaning.words[0]), heard)
+        case "asked_words":
+            return _asked(meaning.facts[0], heard, now) if meaning.facts else Response(None, heard)
         case "declined" | "unsure":
             return Response(say(meaning.kind, user.known), _closing(heard, meaning.topic))
         case "mentioned":
@@ -294,7 +299,9 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
     said = (one for one in user.talk.said if one.key not in free and not any(v in one.text.lower() for v in values))
     if not gone and not meaning.free:
         return Response(say("strike_unknown", user.known), user)
-    user = replace(user, facts=left, talk=replace(user.talk.striking(gone), said=tuple(said)), told=told)
+    words = (one for one in user.talk.words if not any(v in one.lower() for v in values))
+    talk = replace(user.talk.striking(gone), said=tuple(said), words=tuple(words))
+    user = replace(user, facts=left, talk=talk, told=told)
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, None, memory)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -16,6 +17,7 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from .acquaintance import Acquaintance, Noted
 from .kinds import load as load_examples
 from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
+from .recollection import recollect
 from .response import respond_to
 from .talk import TRIES, Talk
 from .topics import NAME, due
@@ -113,7 +115,12 @@ async def listen(ctx: rs.RuleContext) -> None:
     if seen is None:
         return
     before = acquaintance_of(ctx)
-    meaning = understand(seen, before.talk, before.known, ctx.now, settings.within, before.told.values())
+    meaning = await asyncio.to_thread(
+        understand, seen, before.talk, before.known, ctx.now, settings.within, tuple(before.told.values())
+    )
+    if meaning.kind == "asked_words":
+        words = await asyncio.to_thread(recollect, seen.text, before.talk.words)
+        meaning = replace(meaning, words=(words,) if words else ())
     moment = datetime.now(UTC)
     meaning = replace(meaning, free=tuple(replace(one, by=before.name or "", at=moment) for one in meaning.free))
     response = respond_to(meaning, before, ctx.now, ctx.random, confirm=settings.confirm)

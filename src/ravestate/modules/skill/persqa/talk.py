@@ -96,6 +96,8 @@ class Talk:
 
     said: tuple[Told, ...] = ()
     """The user's last statements of any kind, oldest first."""
+    words: tuple[str, ...] = ()
+    """The user's last sentences, as they were written, oldest first; without questions."""
     turns: int = 0
     moved: bool = False
     """Whether the user's last utterance shows a feeling or is a joke."""

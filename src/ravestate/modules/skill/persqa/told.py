@@ -146,7 +146,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
             or (one.verb == asked.triple.predicate and len(words) > 1 and _covers(one, filter(None, subjects), known))
         )
     ]
-    if exact:
+    if exact and (sure or reader.words & _REMINDING or kind != nlp.QuestionWord.OBJECT):
         return [max(exact, key=lambda one: (one.verb == asked.triple.predicate, told.index(one)))]
     parts = [part for part in (reader.tree.text, *reader.tree.text.split(",")) if len(part.split()) > 3]
     if not mine or not fit or not parts:

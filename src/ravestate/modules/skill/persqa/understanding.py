@@ -15,6 +15,7 @@ from ravestate.modules import nlp
 from . import kinds
 from .answers import answer, correction, may_stand_alone, spelled_out
 from .reading import Reader
+from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
 from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
@@ -35,6 +36,7 @@ Kind = Literal[
     "mentioned",  # the user mentioned a relative without a name
     "asked",  # the user asked about themselves
     "asked_told",  # the user asked about something that they said earlier, and that no topic covers
+    "asked_words",  # as before, but perhaps the user's own words hold the answer
     "vouched",  # the user answered the question that tests who they are
     "identified",  # the user said "it's me", perhaps with a name
     "mistaken",  # the user is not the person that the agent takes them for
@@ -64,6 +66,8 @@ class Meaning:
     person: str = ""
     """The topic of the relative whom the user mentions."""
     said: tuple[Told, ...] = ()
+    words: tuple[str, ...] = ()
+    """The sentences of the utterance. If the kind is ``asked_words``: the sentence that answers the question."""
     moved: bool = False
     """Whether the user shows a feeling, or jokes."""
 
@@ -77,7 +81,9 @@ def understand(
     relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
     person = next((topic for topic in map(hearing.reader.relative, relatives) if topic), "")
     said = told_in(hearing.reader, talk.said)[1]
-    return replace(hearing.meaning(), touched=touched, person=person, said=tuple(said), moved=hearing.moved)
+    words = tuple(one for one in seen.sentences if not one.rstrip().endswith("?")) if seen.question is None else ()
+    meaning = hearing.meaning()
+    return replace(meaning, touched=touched, person=person, said=tuple(said), words=words, moved=hearing.moved)
 
 
 class _Hearing:
@@ -118,12 +124,17 @@ class _Hearing:
             return Meaning("declined", topic=topic, aloud=not asks and not self.sum)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
-        if (asks and (not seen.advised or self.reader.asks())) or "ask_everything" in self.acts:
+        told = asks and (not seen.advised or self.reader.asks() or asks_for_words(seen))
+        if told or "ask_everything" in self.acts:
             inquiry = self.inquiry()
-            if inquiry and (not inquiry.facts[0].topic or inquiry.facts[0].topic in (EVERYTHING, *self.known)):
+            if self.talk.words and asks_to_repeat(seen):
+                return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
+            if inquiry and self.is_known(inquiry.facts[0].topic):
                 return inquiry
             if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
                 return Meaning("asked_told", free=tuple(found))
+            if self.talk.words and asks_for_words(self.seen):
+                return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
             if inquiry:
                 return inquiry
         facts = self.reader.facts(self.known)
@@ -154,6 +165,13 @@ class _Hearing:
         if (relative := self.reader.without_name()) and not self.known.get(relative):
             return Meaning("mentioned", topic=relative)
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
+
+    def is_known(self, topic: str) -> bool:
+        """Return whether a question about a topic can be answered from the facts, if only by the nearest fact."""
+        if topic in ("", EVERYTHING, *self.known):
+            return True
+        near = {*TOPICS[topic].besides, *(["origin"] if topic == "home" else [])}
+        return any(self.known.get(one) for one in near)
 
     def of_speakers(self) -> bool:
         """Return whether the utterance is about the user and the agent, not about others."""

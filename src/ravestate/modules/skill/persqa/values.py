@@ -103,6 +103,8 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
             if re.search(r"['’]s\b", text):
                 return False
             parts = {word.pos for word in seen.tree.words if word.text in text.split()}
+            if text.islower() and seen.normal.original[:1].isupper() and parts & {"ADJ", "NUM"}:
+                return False  # "The name is ordinary", "She is three": this user writes names with a capital
             capital = text[:1].isupper() and not text.isupper() and not labels
             if not parts & {*_CLOSED, "ADJ"} and ("PERSON" in labels or capital):
                 return True

@@ -25,6 +25,7 @@ from .small_talk import (
     follow_up,
     gate_for,
     heard_in,
+    is_known,
     is_open,
     learn_all,
     listen,
@@ -252,13 +253,13 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=nlp.analysis.changed.where(needs_comfort),
+    when=nlp.analysis.changed.where(is_known) | nlp.analysis.changed.where(needs_comfort),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
     weight=4.0,  # outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Console a sad user before any rule answers the rest of their words."""
+    """Console a sad user, or answer well-known words, before any rule answers a fact in the same words."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None or not isinstance(ctx[model], ListeningBackend):
         return rs.Resign("a language model answers")

@@ -64,6 +64,11 @@ def needs_comfort(seen: nlp.Analysis | None) -> bool:
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
 
 
+def is_known(seen: nlp.Analysis | None) -> bool:
+    """Return whether the listening skill has a reply to almost the same words."""
+    return seen is not None and seen.question is None and listener().knows(seen)
+
+
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
     """Return the answer of the listening skill, and remember it."""
     state = up_to_date(ctx, heard.text)

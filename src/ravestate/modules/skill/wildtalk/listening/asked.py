@@ -17,7 +17,8 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
-from .material import Line, Material, Moment
+from .material import Material
+from .moment import Line, Moment
 from .roles import turned
 from .state import State
 

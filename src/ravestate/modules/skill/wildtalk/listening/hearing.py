@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
@@ -18,7 +18,9 @@ from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
 from .asked import Asked, asked_in
-from .material import Material, Moment
+from .bank import DARK, Found
+from .material import Material
+from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
@@ -41,10 +43,20 @@ FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
 """Short sentences resemble many others. The maximum number of words in one, and the confidences that it needs."""
 PLAINLY = 12
 """The maximum number of words in a statement about one thing."""
+BRIEFLY = 5
+"""The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
+ALIKE, SIMILAR = 0.87, 0.82
+"""The least similarity of an entry of the bank that decides the answer, and of one that is better than a stock answer."""
+WHOLE = 30
+"""The maximum number of words of an utterance that is compared with the bank as a whole."""
+CROSSED = 0.08
+"""The loss of similarity of an entry whose mood does not suit the talk."""
+BESIDE = 4
+"""The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 _ASKING = word_set(
     "who what when where why which how whose do does did is are was can could will would should may have"
 )
@@ -92,6 +104,8 @@ class Hearing:
     thing: str = ""
     """The thing about which the user asks the agent's opinion."""
     asked: Asked | None = None
+    near: list[Found] = field(default_factory=list[Found])
+    """The entries of the bank that resemble the utterance, the most similar first."""
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
@@ -127,6 +141,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
+    found.near = near_in(phrases, seen, asking, state, feeling)
+    similarity = found.near[0].score if found.near else 0.0
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
     low = {word.low for word in seen.tree.words}
@@ -147,6 +163,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
         "sure": score >= SURE,
+        "alike": similarity >= (EXACT if score >= EXACT or (feeling and roles.being and size <= BRIEFLY) else ALIKE),
+        "similar": similarity >= SIMILAR,
         "others": others,
         "asserting": verb and others,
         "called": called != "",
@@ -292,6 +310,25 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
+
+
+def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None) -> list[Found]:
+    """Return the entries of the bank that resemble an utterance or one of its sentences, the most similar first.
+
+    If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk.
+    """
+    sentences = seen.sentences[:6]
+    longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
+    texts = [asking] if asking else list(longer or sentences)
+    if len(seen.tree.words) <= WHOLE:
+        texts.append(seen.text)
+    mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
+    ranked: list[Found] = []
+    for one in phrases.bank.similar(texts):
+        tone = one.moment.tone
+        loss = CROSSED * ((tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad"))
+        ranked.append(replace(one, score=one.score - loss))
+    return sorted(ranked, key=lambda one: -one.score)
 
 
 def kind_of(sentence: str) -> str:

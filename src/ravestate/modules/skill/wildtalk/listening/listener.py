@@ -14,8 +14,9 @@ from dataclasses import dataclass, replace
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .games import GUESSER, HOLDER, Played, Turn, named
-from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
-from .material import Line, Material, Moment, material
+from .hearing import ALIKE, ASKED, SIMILAR, Heard, Hearing, feeling_of, hear, is_living, near_in
+from .material import Material, material
+from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 
@@ -71,6 +72,7 @@ class Listener:
         """
         for matcher in self._phrases.matchers:
             matcher.load()
+        self._phrases.bank.index.load()
 
     def performs(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance asks for a performance or belongs to it. No language model should answer it."""
@@ -92,6 +94,11 @@ class Listener:
         size = len(heard.text.split())
         short = size < 4 and not has_verb(seen) and not (seen.acts.keys() - {"contradiction"})
         return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
+
+    def knows(self, seen: Analysis) -> bool:
+        """Return whether the bank has almost the same words."""
+        near = near_in(self._phrases, seen, "", State(), None)
+        return bool(near) and near[0].score >= ALIKE
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
@@ -209,6 +216,13 @@ class Listener:
                 past = {"past"} & hearing.tags
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
             yield _Source(moment.lines(*groups, "say", "again"), moment)
+
+    def _bank(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the entries of the bank that resemble the utterance, the most similar first."""
+        least = ALIKE if "alike" in hearing.tags else SIMILAR
+        for one in hearing.near:
+            if one.score >= least:
+                yield _Source(one.moment.lines("say"), one.moment)
 
     def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question or request, by its kind and its area of life."""

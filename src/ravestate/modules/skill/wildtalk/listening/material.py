@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -14,57 +13,14 @@ from ravestate.language.examples import bundled
 from ravestate.language.matcher import Matcher
 from ravestate.yaml_text import compose_yaml
 
+from .bank import Bank, read_bank
+from .moment import Line, Moment, roles_in
 from .state import LASTING
 
-ROLE = re.compile(r"\{(\w+)\}")
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
 """The files of situations in a talk. Each situation names the moves for which it may answer."""
 _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """A phrase with *roles*, its placeholders, in braces."""
-
-    text: str
-    roles: frozenset[str]
-    """The roles whose values must be known, in lower case."""
-    then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    """The kind of the user's answer (``yes``, ``no``, ``unsure`` or ``any``) → the agent's reactions to it."""
-    start: str = ""
-    """The kind of performance that begins if the user answers yes."""
-
-    @property
-    def asks(self) -> bool:
-        """Whether the phrase ends with a question."""
-        return self.text.endswith("?")
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """A situation in a talk, and the phrases for it in groups."""
-
-    name: str
-    groups: Mapping[str, tuple[Line, ...]]
-    tone: str = ""
-    lasts: int = LASTING
-    """The number of turns for which its tone lasts."""
-    examples: tuple[str, ...] = ()
-    words: frozenset[str] = frozenset()
-    """The nouns or verbs that are typical of the situation."""
-    moves: frozenset[str] = frozenset()
-    """The moves of a listener (language/moves.py) for which its phrases fit."""
-    after: str = ""
-    """A tag that the utterance needs, such as ``shown``: the agent has just told a joke."""
-    least: float = 0.0
-    """The least confidence in a move at which the phrases may be used."""
-    heads: str = ""
-    """The name of a list in heads.yaml. The utterance must have a word of this list."""
-
-    def lines(self, *groups: str) -> list[Sequence[Line]]:
-        """Return the groups with these names, without the names that it lacks."""
-        return [self.groups[name] for name in groups if name in self.groups]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +51,7 @@ class Material:
             for moments in files.values()
         ]
         """One matcher per file. Several small matchers learn faster than one with all examples."""
+        self.bank: Bank = read_bank()
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
         self.asked, self.areas = _moments("asked"), _moments("areas")
@@ -118,11 +75,6 @@ class Material:
 def material() -> Material:
     """Return the phrases."""
     return Material()
-
-
-def roles_in(text: str) -> frozenset[str]:
-    """Return the roles of a phrase."""
-    return frozenset(role.lower() for role in ROLE.findall(text))
 
 
 def _row(row: Mapping[str, str]) -> Row:

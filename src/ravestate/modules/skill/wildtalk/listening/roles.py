@@ -11,7 +11,8 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.statement import Statement
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
-from .material import AGREEING, ROLE, Material
+from .material import AGREEING, Material
+from .moment import ROLE
 from .state import Being
 
 LONGEST = 32

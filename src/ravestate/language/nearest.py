@@ -1,0 +1,94 @@
+"""Find the example that a sentence resembles most: by meaning, and by the persons that it mentions.
+
+A `Matcher` learns classes of many examples. `Nearest` compares with thousands of single examples, and learns nothing.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from .encoder import Encoder
+from .matcher import shared_encoder
+from .normal import plain
+from .shape import likeness, opens_question, shape
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+SHAPE = 0.12
+"""The share of their similarity that two sentences lose if their shapes have nothing in common."""
+ASKING = 0.05
+"""The share of their similarity that a question and a statement lose."""
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """An example that resembles a sentence."""
+
+    score: float
+    """The similarity: 1 for equal sentences; about 0.5 for sentences that have nothing in common."""
+    place: int
+    """The place of the example in the list of examples."""
+    text: str
+    """The sentence."""
+
+
+class Nearest:
+    """An index of example sentences. Thread-safe. Until `load` is called, it finds only examples word for word."""
+
+    def __init__(self, examples: Sequence[str], encoder: Encoder | None = None) -> None:
+        """Take the examples, and load nothing yet. `encoder`: by default the shared one."""
+        self._examples = [plain(text) for text in examples]
+        self._exact = {text: place for place, text in reversed([*enumerate(self._examples)])}
+        self._encoder = encoder or shared_encoder()
+        self._lock = threading.Lock()
+        self._learnt: _Learnt | None = None
+
+    def load(self) -> None:
+        """Load the encoder and the vectors of the examples, once.
+
+        Raises:
+            PlatformError: The sentence model is missing or broken. The message says how to mend that.
+        """
+        with self._lock:
+            if self._learnt is None:
+                self._encoder.load()
+                self._learnt = _Learnt(self._examples, self._encoder)
+
+    def nearest(self, sentences: Sequence[str], most: int = 5) -> list[Near]:
+        """Return the `most` examples that resemble one of the sentences, the most similar first."""
+        texts = {plain(sentence): sentence for sentence in sentences}
+        if self._learnt is None:
+            return [Near(1.0, self._exact[text], texts[text]) for text in texts if text in self._exact][:most]
+        return self._learnt.nearest(texts, most) if texts else []
+
+
+class _Learnt:
+    """The vectors and shapes of the examples."""
+
+    def __init__(self, examples: Sequence[str], encoder: Encoder) -> None:
+        import numpy as np
+
+        self._encoder = encoder
+        self._meanings = encoder.encode_lasting(examples)
+        self._shapes = np.array([shape(text) for text in examples], dtype=np.int8).reshape(-1, 4)
+        self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
+
+    def nearest(self, texts: dict[str, str], most: int) -> list[Near]:
+        """Return the nearest examples of plain texts, each with its sentence as it was written."""
+        import numpy as np
+
+        plains = list(texts)
+        shapes = np.array([shape(text) for text in plains], dtype=np.int8)
+        scores: NDArray[Any] = self._encoder.encode(plains) @ self._meanings.T
+        scores *= 1 + SHAPE * (likeness(shapes, self._shapes) - 1)
+        asks = np.array([texts[text].rstrip().endswith("?") or opens_question(text) for text in plains])
+        scores *= 1 - ASKING * (asks[:, None] != self._asks[None, :])
+        found: list[Near] = []
+        for text, row in zip(plains, scores, strict=True):
+            order = np.argsort(-row, kind="stable")[:most]
+            found += [Near(float(row[place]), int(place), texts[text]) for place in order]
+        return sorted(found, key=lambda near: -near.score)[:most]

@@ -1,0 +1,69 @@
+"""Find the user's own sentence that answers their question: *what may I not eat?*."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cache
+
+from ravestate.errors import PlatformError
+from ravestate.language.contractions import word_set
+from ravestate.language.reranker import Reranker
+from ravestate.modules import nlp
+
+CLEARLY = 1.5
+"""The least lead of the best sentence over the second best, in logits. The scores themselves differ by question."""
+LEAST = -9.0
+"""The least score of an answer, in logits."""
+LONGEST = 160
+"""The maximum length of a sentence to quote, in characters."""
+SHORTEST = 3
+"""The minimum number of words of a sentence to quote."""
+
+_MINE = word_set("i my me mine we our us")
+_REMINDING = word_set("remember recall told said tell say mention mentioned")
+_ADVICE = re.compile(
+    r"\bhow (?:do|can|could|would|might) (?:i|we)\b|\b(?:should|shall|ought|may|might|can|could|do|would) (?:i|we)\b(?! not)"
+    r"|\b(?:i|we) (?:should|ought|could)\b|\b(?:do|would|are|can|could|will) you\b(?! (?:still )?(?:remember|recall|know))",
+    re.IGNORECASE,
+)
+"""Questions for advice, a favour or an opinion, not for memories."""
+
+_SAID = re.compile(
+    r"\b(?:did|was) (?:i|we) (?:just |already |been )?(?:say|said|tell|telling|told|mention)", re.IGNORECASE
+)
+
+
+def asks_to_repeat(seen: nlp.Analysis) -> bool:
+    """Return whether the user asks for their own words: *what sum did I say?*."""
+    return seen.question is not None and _SAID.search(seen.text) is not None
+
+
+def asks_for_words(seen: nlp.Analysis) -> bool:
+    """Return whether the user asks for something that they may have told in this conversation."""
+    question = next((one for one in reversed(seen.sentences) if one.rstrip().endswith("?")), seen.text)
+    words = set(re.findall(r"[a-z]+", question.lower()))
+    if seen.question is None or (seen.question == nlp.QuestionWord.YES_NO and not words & _REMINDING):
+        return False
+    reminding = words & _REMINDING and words & {"i", "you"}
+    return bool(reminding or words & _MINE) and (bool(words & {"remember", "recall"}) or not _ADVICE.search(question))
+
+
+def recollect(question: str, sentences: Sequence[str]) -> str:
+    """Return the sentence that answers a question; empty if none clearly does. Takes about 3 ms per sentence."""
+    known = [one for one in dict.fromkeys(sentences) if len(one) <= LONGEST and len(one.split()) >= SHORTEST]
+    if not known:
+        return ""
+    try:
+        scores = _reranker().score(question, known)
+    except PlatformError:  # without the model, only statements with the same words are found
+        return ""
+    ranked = sorted(zip(scores.tolist(), known, strict=True), reverse=True)
+    second = ranked[1][0] if len(ranked) > 1 else LEAST
+    best, text = ranked[0]
+    return text.strip() if best >= LEAST and best - second >= CLEARLY else ""
+
+
+@cache
+def _reranker() -> Reranker:
+    return Reranker()

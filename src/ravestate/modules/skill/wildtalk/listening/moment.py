@@ -1,0 +1,60 @@
+"""Phrases of the listening skill, and the situations in a talk that they answer."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from .state import LASTING
+
+ROLE = re.compile(r"\{(\w+)\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A phrase with *roles*, its placeholders, in braces."""
+
+    text: str
+    roles: frozenset[str]
+    """The roles whose values must be known, in lower case."""
+    then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """The kind of the user's answer (``yes``, ``no``, ``unsure`` or ``any``) → the agent's reactions to it."""
+    start: str = ""
+    """The kind of performance that begins if the user answers yes."""
+
+    @property
+    def asks(self) -> bool:
+        """Whether the phrase ends with a question."""
+        return self.text.endswith("?")
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A situation in a talk, and the phrases for it in groups."""
+
+    name: str
+    groups: Mapping[str, tuple[Line, ...]]
+    tone: str = ""
+    lasts: int = LASTING
+    """The number of turns for which its tone lasts."""
+    examples: tuple[str, ...] = ()
+    words: frozenset[str] = frozenset()
+    """The nouns or verbs that are typical of the situation."""
+    moves: frozenset[str] = frozenset()
+    """The moves of a listener (language/moves.py) for which its phrases fit."""
+    after: str = ""
+    """A tag that the utterance needs, such as ``shown``: the agent has just told a joke."""
+    least: float = 0.0
+    """The least confidence in a move at which the phrases may be used."""
+    heads: str = ""
+    """The name of a list in heads.yaml. The utterance must have a word of this list."""
+
+    def lines(self, *groups: str) -> list[Sequence[Line]]:
+        """Return the groups with these names, without the names that it lacks."""
+        return [self.groups[name] for name in groups if name in self.groups]
+
+
+def roles_in(text: str) -> frozenset[str]:
+    """Return the roles of a phrase."""
+    return frozenset(role.lower() for role in ROLE.findall(text))

@@ -1,0 +1,61 @@
+"""The bank of utterances with replies."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from typing import Any
+
+import pytest
+
+from ravestate.errors import DeclarationError
+from ravestate.language.normal import plain
+from ravestate.modules.skill.wildtalk.listening.bank import TONES, Bank
+from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.moment import Moment
+
+ROLES = {"who", "they", "them", "their", "are", "were", "have", "do", "user"}
+
+
+def entries() -> list[Moment]:
+    return material().bank.moments
+
+
+def test_every_entry_has_a_reply_that_needs_no_role() -> None:
+    lacking = [one.name for one in entries() if all(line.roles for line in one.groups["say"])]
+    assert not lacking
+
+
+def test_replies_use_known_roles_and_agree_with_them() -> None:
+    lines = [(one.name, line) for one in entries() for line in one.groups["say"]]
+    assert not [place for place, line in lines if line.roles - ROLES]
+    assert not [place for place, line in lines if re.search(r"\b(?:was|is|does|has) \{they\}", line.text)]
+
+
+def test_no_utterance_stands_twice() -> None:
+    said = Counter(plain(text) for one in entries() for text in one.examples)
+    assert not [text for text, times in said.items() if times > 1]
+
+
+def test_similar_words_find_the_entry(talk: Any) -> None:
+    bank = material().bank
+    bank.index.load()
+    best = bank.similar(["my dads number is still saved in my phone"])[0]
+    assert "his number is still in my phone" in best.moment.examples
+    assert talk.say("my dads number is still saved in my phone") in [line.text for line in best.moment.groups["say"]]
+
+
+def test_until_the_model_is_loaded_only_equal_words_are_found() -> None:
+    bank = Bank([("own.tsv:1", "-\tthe kettle sings | it boils\tThen tea.")])
+    assert [found.moment.name for found in bank.similar(["The kettle sings!"])] == ["own.tsv:1"]
+    assert bank.similar(["the kettle is singing"]) == []
+
+
+@pytest.mark.parametrize("row", ["happy\ta\tb", "-\tonly two columns", "-\ta\t"])
+def test_a_broken_row_is_refused_with_its_place(row: str) -> None:
+    with pytest.raises(DeclarationError, match=r"own\.tsv:7"):
+        Bank([("own.tsv:7", row)])
+
+
+def test_the_tones_are_those_of_a_talk() -> None:
+    assert {one.tone for one in entries()} <= {*TONES, ""}
