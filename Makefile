@@ -38,16 +38,16 @@ help: ## this list
 # ------------------------------------------------------------------------------------------------ to use
 
 .PHONY: demo
-demo: $(DONE)/demo $(DONE)/sentences ## set up and open a page with the agent, and what goes on inside it
+demo: $(DONE)/demo $(DONE)/sentences native ## set up and open a page with the agent, and what goes on inside it
 	@$(MAKE) $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
 	@$(BIN)/ravestate board $(ARGS)
 
 .PHONY: chat
-chat: $(DONE)/chat $(DONE)/sentences ## set up and talk with the agent on the console
+chat: $(DONE)/chat $(DONE)/sentences native ## set up and talk with the agent on the console
 	@$(BIN)/ravestate chat $(ARGS)
 
 .PHONY: voice
-voice: $(DONE)/voice $(DONE)/sentences ## set up and talk with the agent by microphone and loudspeaker
+voice: $(DONE)/voice $(DONE)/sentences native ## set up and talk with the agent by microphone and loudspeaker
 	@$(BIN)/ravestate chat voiceio $(ARGS)
 
 .PHONY: eyes
@@ -62,6 +62,11 @@ robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page wi
 ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, where there is none
 	@$(BIN)/ravestate ros check $(ARGS)
 
+# RAVESTATE_PURE=1 leaves the sources as they are, and runs them as pure Python.
+.PHONY: native
+native: $(DONE)/build ## compile the engine, unless it is compiled; without a C compiler it runs as pure Python
+	@[ -n "$${RAVESTATE_PURE:-}" ] || $(BIN)/python tools/native.py --try
+
 .PHONY: bench
 bench: setup ## measure speed against the peers and the floor
 	@$(BIN)/python -m benchmarks $(ARGS)
@@ -73,7 +78,7 @@ quality: setup ## measure how well text is understood
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
-setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech ## make the environment for development, run nothing
+setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## make the environment for development, run nothing
 	@:
 
 # Three processes on two cores: tests with a browser or a server often wait.
@@ -139,7 +144,7 @@ constraints: setup ## renew constraints.txt: the newest versions of everything
 
 .PHONY: clean
 clean: ## remove the environment and everything built
-	@rm -rf .venv .venvs .bench build dist site htmlcov .coverage .coverage.* frontend/node_modules \
+	@rm -rf .venv .venvs .bench build dist site src/ravestate/native htmlcov .coverage .coverage.* frontend/node_modules \
 		.pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
@@ -158,7 +163,7 @@ $(DONE)/python:
 	@touch $@
 
 $(DONE)/build: $(DONE)/python constraints.txt
-	@$(PIP) pip hatchling hatch-fancy-pypi-readme editables
+	@$(PIP) pip hatchling hatch-fancy-pypi-readme editables mypy setuptools
 	@touch $@
 
 $(DONE)/chat: $(DONE)/build pyproject.toml

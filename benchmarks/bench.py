@@ -44,6 +44,10 @@ class Bench(contextlib.ExitStack):
         """Return a process of CLIPS."""
         return self._started(Child.peer(environments.clips(self.progress), "clips_rules.py"))
 
+    def peer(self, script: str) -> Child:
+        """Return a process of a further peer, by its file in ``peers``."""
+        return self._started(Child.peer(environments.peers(self.progress), script))
+
     def reference(self) -> Child:
         """Return a process of the reference implementation."""
         return self._started(Child.peer(environments.reference(self.progress), "reference.py"))

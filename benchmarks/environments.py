@@ -11,13 +11,16 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-__all__ = ["clips", "reference"]
+__all__ = ["clips", "peers", "reference"]
 
 ROOT = Path(__file__).resolve().parent.parent / ".bench"
 
 # The reference is installed without dependencies: what it declares is long gone from PyPI or not needed here.
 REFERENCE = ["--no-deps", "ravestate==0.7.0.post1", "reggol==0.2.0", "pyyaml==6.0.3", "pyyaml-include==1.3.2"]
 CLIPS = ["clipspy==1.0.6"]
+# experta asks for a frozendict that does not run on the Pythons of today.
+PEERS = ["--no-deps", "durable_rules==2.0.28", "experta==1.9.4", "frozendict==2.4.6", "py_trees==2.6.0", "pydot==4.0.1",
+         "pyparsing==3.3.3", "schema==0.7.7"]  # fmt: skip
 
 
 def reference(progress: Callable[[str], None]) -> Path:
@@ -28,6 +31,11 @@ def reference(progress: Callable[[str], None]) -> Path:
 def clips(progress: Callable[[str], None]) -> Path:
     """Return the interpreter that has CLIPS."""
     return _interpreter("clips", CLIPS, progress)
+
+
+def peers(progress: Callable[[str], None]) -> Path:
+    """Return the interpreter that has further rule engines, and behaviour trees."""
+    return _interpreter("peers", PEERS, progress)
 
 
 def _interpreter(name: str, requirements: list[str], progress: Callable[[str], None]) -> Path:

@@ -6,14 +6,16 @@ import os
 import platform
 from pathlib import Path
 
+from ravestate.compiled import build
+
 __all__ = ["describe"]
 
 
 def describe() -> str:
-    """Return the processor, cores, system and interpreter; no names of hosts or people."""
+    """Return the processor, cores, system, interpreter and build; no names of hosts or people."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     python = f"{platform.python_implementation()} {platform.python_version()}"
-    return f"{_processor()}, {cores} cores, {platform.system()} {platform.machine()}, {python}"
+    return f"{_processor()}, {cores} cores, {platform.system()} {platform.machine()}, {python}, {build()}"
 
 
 def _processor() -> str:

@@ -6,11 +6,12 @@ import sys
 import pytest
 
 import ravestate as rs
+from ravestate import compiled
 
 
 def test_the_package_runs_as_a_module() -> None:
     run = subprocess.run([sys.executable, "-m", "ravestate", "--version"], capture_output=True, text=True, check=False)
-    assert (run.returncode, run.stdout.strip()) == (0, f"ravestate {rs.__version__}")
+    assert (run.returncode, run.stdout.strip()) == (0, f"ravestate {rs.__version__} ({compiled.build()})")
 
 
 INTERRUPTED = """

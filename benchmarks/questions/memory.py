@@ -17,7 +17,7 @@ from benchmarks.figures import Figure, measured
 from benchmarks.peers.ours import Agent
 from benchmarks.peers.wire import serve
 
-LIMIT = 20_000
+LIMIT = 5_000
 """Bytes that a context at rest may hold."""
 
 AGED = 6.0
@@ -66,7 +66,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
             f"a context at rest, {k + 2 + unrelated:,} rules",
             values,
             unit="B",
-            target="< 20 kB",
+            target="< 5 kB",
             reach=lambda value: value < LIMIT,
         )
 

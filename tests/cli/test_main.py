@@ -9,6 +9,7 @@ import pytest
 
 import ravestate as rs
 from cli.examples import HELLO, call, complaints, write
+from ravestate import compiled
 from ravestate.cli import COMMANDS, main
 from ravestate.modules import BUILT_IN
 
@@ -43,7 +44,7 @@ def test_help_lists_the_built_in_modules_and_imports_none(arguments: tuple[str, 
 
 
 def test_it_prints_the_version(capsys: Capture) -> None:
-    assert call(capsys, "--version") == (0, f"ravestate {rs.__version__}\n", "")
+    assert call(capsys, "--version") == (0, f"ravestate {rs.__version__} ({compiled.build()})\n", "")
 
 
 @pytest.mark.parametrize("arguments", [(), ("rnu",), ("run", "--nonsense", "idle"), ("run", "idle", "--seed", "x")])

@@ -29,10 +29,10 @@ def test_a_step_in_the_table_happens_and_any_other_is_an_error(state: State, ste
     if expected is None:
         with pytest.raises(EngineError, match=f"activation 7 of m:r0: {step.name} in state {state.name}"):
             activation.step(step)
-        assert activation.state is state
+        assert activation.state == state
     else:
         activation.step(step)
-        assert activation.state is expected
+        assert activation.state == expected
 
 
 def test_every_state_but_the_last_can_be_reached_and_left() -> None:

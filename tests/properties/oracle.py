@@ -100,7 +100,7 @@ class Exclusion:
         for other in engine.state.waiting:
             if (
                 other is not activation
-                and other.state is State.WAITING
+                and other.state == State.WAITING
                 and not other.clause.rule.slotset.isdisjoint(rule.slotset)
                 and any(group in groups for group in other.firm_groups())
                 and engine.state.effective(other.clause) > engine.state.effective(clause)
@@ -118,7 +118,7 @@ def waits_for_a_reason(play: Play) -> None:
     if due is not None:
         assert due >= engine.now, f"a deadline at {due} s is past at {engine.now} s"
     for waiter in list(engine.state.waiting):
-        assert waiter.state is State.WAITING
+        assert waiter.state == State.WAITING
         assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
         assert engine.agenda.consent.ask(waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
     assert not stalemate(engine.agenda.consent, engine.state.waiting), "activations wait for each other alone"
@@ -128,7 +128,7 @@ def joined(play: Play) -> None:
     """Assert that no activation lacks a live spike that is younger, fits, and is of the right group (L12)."""
     engine = play.engine
     for activation in play.active():
-        if activation.state is not State.GATHERING:
+        if activation.state != State.GATHERING:
             continue
         for need in activation.clause.needs:
             if not need.bit & activation.missing or need.detached:
@@ -164,7 +164,7 @@ def consistent(engine: Any) -> None:
     for activation in activations:
         clause = activation.clause
         state = activation.state
-        assert state is not State.ENDED, f"{activation} has ended, and is kept"
+        assert state != State.ENDED, f"{activation} has ended, and is kept"
         for need in clause.needs:
             spike = activation.spikes[need.index]
             assert (spike is None) == bool(activation.missing & need.bit), f"{activation} misses {need}?"
@@ -175,7 +175,7 @@ def consistent(engine: Any) -> None:
                 if state < State.RUNNING:
                     assert spike in engine.state.live.get(spike.signal.index, ()), f"{activation} holds dead {spike}"
         assert activation.missing != clause.all_bits, f"{activation} holds nothing"
-        assert (state is State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
+        assert (state == State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
         assert (state >= State.RUNNING) == (engine.state.running.get(activation.id) is activation)
         for group in activation.firm_groups():
             count = sum(
@@ -185,7 +185,7 @@ def consistent(engine: Any) -> None:
             )
             assert group.members.get(activation) == count, f"{group} counts {activation} wrongly"
             for member in group.members:
-                assert member.state is not State.ENDED, f"{member} has ended, and is in {group}"
+                assert member.state != State.ENDED, f"{member} has ended, and is in {group}"
             for waiter in group.interested:
                 assert waiter in engine.state.waiting, f"{waiter} does not wait, and is in {group}"
             for slot, holders in group.taken.items():

@@ -27,7 +27,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
     copy.mkdir()
     for name in ("pyproject.toml", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(ROOT / name, copy)
-    shutil.copytree(ROOT / "src", copy / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(ROOT / "src", copy / "src", ignore=shutil.ignore_patterns("__pycache__", "native"))
     run = subprocess.run(
         [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps", "--no-build-isolation",
          "--disable-pip-version-check", "--wheel-dir", str(place), str(copy)],
@@ -44,7 +44,7 @@ def test_wheel_has_every_file_of_the_package(wheel: zipfile.ZipFile) -> None:
     wanted = {
         file.relative_to(source).as_posix()
         for file in (source / "ravestate").rglob("*")
-        if file.is_file() and file.suffix not in NOT_SHIPPED and "__pycache__" not in file.parts
+        if file.is_file() and file.suffix not in NOT_SHIPPED and not {"__pycache__", "native"} & set(file.parts)
     }
     shipped = {name for name in wheel.namelist() if ".dist-info/" not in name}
     assert shipped == wanted

@@ -4,6 +4,7 @@ import asyncio
 import logging
 import re
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import pytest
 
@@ -22,6 +23,9 @@ class Machine:
     computed: float = 0.0
     chosen: int = 0
     forced: int = 0
+
+    def usage(self, who: int) -> SimpleNamespace:
+        return SimpleNamespace(ru_nvcsw=self.chosen, ru_nivcsw=self.forced)
 
     def compute(self, seconds: float) -> None:
         self.time += seconds
@@ -45,7 +49,8 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
     machine = Machine()
     monkeypatch.setattr(blocking, "perf_counter", lambda: machine.time)
     monkeypatch.setattr(blocking, "thread_time", lambda: machine.computed)
-    monkeypatch.setattr(blocking, "_sleeps", lambda: (machine.chosen, machine.forced))
+    usage = SimpleNamespace(RUSAGE_THREAD=1, getrusage=machine.usage)
+    monkeypatch.setattr(blocking, "resource", usage)
     return machine
 
 

@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.runtime import async_rules
+from ravestate.runtime import async_rules, runner
 from ravestate.runtime.async_rules import GRACE
+from ravestate.runtime.runner import SETTLES
 from ravestate.runtime.workers import SHARE
 from ravestate.testing import simulate
 from runtime.on_loop import on_loop, turns
@@ -196,6 +197,46 @@ async def test_several_may_wait_for_the_same() -> None:
         await turns(1)
         context.emit(number, 0)
         assert await asyncio.gather(*waiting) == [0, 0, 0]
+
+
+@on_loop
+async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)  # a slow machine would give the loop its turn earlier
+    async with rs.Context(policy) as context:
+        ran: list[str] = []
+        asyncio.get_running_loop().call_soon(ran.append, "the loop")
+        context.put(heard, "hi")
+        assert await context.next(said.changed) == "HI" and ran == []
+
+
+@on_loop
+async def test_the_loop_has_its_turn_although_every_spike_comes_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)
+    async with rs.Context(policy) as context:
+        ran: list[int] = []
+        asyncio.get_running_loop().call_soon(ran.append, 0)
+        for number in range(SETTLES + 1):
+            context.put(heard, f"hi {number}")
+            await context.next(said.changed)
+            assert number == SETTLES or ran == []
+        assert ran == [0]
+
+
+@on_loop
+async def test_rules_that_start_at_once_run_outside_the_task_that_waits() -> None:
+    own = rs.Module("own")
+    asked, answered = own.signal("asked"), own.signal("answered")
+    tasks: list[object] = []
+
+    @own.rule(when=asked, emits=answered)
+    async def answer(ctx: rs.RuleContext) -> None:
+        tasks.append(asyncio.current_task())
+        ctx.emit(answered)
+
+    async with rs.Context(own) as context:
+        context.emit(asked)
+        await context.next(answered)
+    assert tasks != [asyncio.current_task()] and asyncio.current_task() is not None
 
 
 @on_loop

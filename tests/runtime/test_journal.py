@@ -1,14 +1,16 @@
 """A journal of a real run, fed to a fresh engine, gives the same effects (L24)."""
 
 import asyncio
+from typing import Any
 
 import ravestate as rs
-from ravestate.engine.effects import Cancel, Effect, Run
+from ravestate.engine.effects import Cancel, Effect, Ended, Run
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Emit, Finish, Start, Stop, Write
 from ravestate.engine.trace import Record
 from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Entry, Journal, Taken, replay
+from ravestate.runtime.listeners import Hooks
 from runtime.on_loop import on_loop, turns
 
 m = rs.Module("m")
@@ -97,6 +99,53 @@ async def test_replay_calls_nothing_and_gives_the_same_effects_each_time() -> No
     second = shape(replay(Engine(policy, patience=0.01), entries))
     assert first == second
     assert any("m:answer" in effect for effect in first)
+
+
+quick = rs.Module("quick")
+asked, told, sure = quick.slot("asked", "", always=True), quick.slot("told", "", always=True), quick.signal("sure")
+
+
+@quick.rule(when=asked.changed, emits=sure)
+async def judge(ctx: rs.RuleContext) -> rs.Resign | None:
+    if ctx.payload(asked.changed) == "never":
+        return rs.Resign("not sure")
+    ctx.emit(sure)
+    return None
+
+
+@quick.rule(when=sure, writes=told, cooldown=1000.0, timeout=1000.0)
+async def tell(ctx: rs.RuleContext) -> None:
+    ctx[told] = "yes"
+
+
+@quick.rule(when=asked.changed, writes=told, until=sure)
+async def doubt(ctx: rs.RuleContext) -> None:
+    ctx[told] = "perhaps"
+    await asyncio.sleep(0)
+
+
+@on_loop
+async def test_a_recorded_or_traced_run_decides_the_same_as_a_quick_one() -> None:
+    """Only a run that nobody records reaches the engine without event records (L25)."""
+
+    async def ends(**options: Any) -> list[Ended]:
+        found: list[Ended] = []
+        context = rs.Context(quick, **options)
+        await context.start(Hooks(on_ended=found.append))
+        for text in ("well", "never", "well", "so", "never", "never"):
+            context.put(asked, text)
+            await context.quiet()
+        await context.stop()
+        return found
+
+    told_short = await ends()
+    assert len({end.outcome for end in told_short}) > 1
+    assert (
+        told_short
+        == await ends(journal=Journal())
+        == await ends(trace=True)
+        == await ends(journal=Journal(), trace=True)
+    )
 
 
 @on_loop

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.engine.agenda import Agenda
-from ravestate.engine.trace import Settled
+from ravestate.engine.trace import Record, Settled, Started
 from ravestate.runtime import runner as runner_file
 from ravestate.runtime.async_rules import GRACE
 from ravestate.testing import simulate
@@ -809,18 +808,17 @@ async def test_slow_rules_in_a_loop_leave_the_loop_its_turns() -> None:
 
 
 @on_loop
-async def test_a_fault_of_the_engine_ends_the_context_with_an_error(
-    talk: Talk, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_a_fault_of_the_engine_ends_the_context_with_an_error(talk: Talk) -> None:
     async with rs.Context(talk.module) as context:
         await talk.ask(context)
         answer = asyncio.ensure_future(context.next(talk.said.changed))
         await turns(1)
 
-        def fail(*_: Any) -> None:
-            raise KeyError("a fault of our own")
+        def fail(record: Record) -> None:
+            if isinstance(record, Started):
+                raise KeyError("a fault of our own")
 
-        monkeypatch.setattr(Agenda, "consent_round", fail)
+        context.observe(fail)
         context.put(talk.heard, "hello")
         for waiting in (answer, context.until_stopped()):
             with pytest.raises(rs.RavestateError, match=r"the engine has failed.*a fault of our own"):

@@ -39,7 +39,7 @@ COMMANDS = {
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line (by default with the arguments of the process), and return the exit code."""
-    from ravestate import __version__
+    from ravestate import __version__, compiled
 
     parser = argparse.ArgumentParser(
         prog="ravestate",
@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--version", action="version", version=f"ravestate {__version__}")
+    parser.add_argument("--version", action="version", version=f"ravestate {__version__} ({compiled.build()})")
     parser.add_argument("-v", "--verbose", action="count", default=0, help="log more; repeat it to log everything")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     arguments = sys.argv[1:] if argv is None else list(argv)

@@ -11,3 +11,7 @@ An event takes one way through the parts of an `Engine`, which share one `State`
 
 To see why a rule waits, read the `Refusal` of its activation; `explain` puts it into words.
 """
+
+from ravestate.compiled import prefer
+
+prefer(__path__)

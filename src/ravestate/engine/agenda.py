@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable
+from typing import Final
 
 from ravestate.engine.activation import READY, WAITING, Activation
 from ravestate.engine.consent import Consent
@@ -22,7 +23,7 @@ from ravestate.engine.slots import Slots
 from ravestate.engine.stalemate import stalemate
 from ravestate.engine.state import State
 
-BATCH = 100
+BATCH: Final = 100
 """The number of activations without consent that start before the events of their runs are received."""
 
 Turn = tuple[int, float, int, int, Activation]
@@ -88,7 +89,7 @@ class Agenda:
         while queue:
             turn = heapq.heappop(queue)
             activation = turn[4]
-            if places.get(activation) is not turn:
+            if places.get(activation) != turn:
                 continue  # it has another place by now
             del places[activation]
             if not self._may_ask(activation):
@@ -147,7 +148,7 @@ class Agenda:
         if activation.clause.guards and not self._is_open(activation):
             return False
         loops = self.state.loops
-        return not (loops.runs > MANY and activation.state is READY and loops.defer(activation))
+        return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _has_consent(self, activation: Activation) -> bool:
         """Return whether an activation has consent; if it has not, it waits."""

@@ -213,7 +213,7 @@ class Consent:
             rivals: dict[Clause, None] = {}
             for member in group.members:
                 rivals[member.clause] = None
-                for theirs in state.policy.causes.downstream(member.clause.rule):
+                for theirs in state.causes.downstream(member.clause.rule):
                     if theirs.base < last.base:
                         break  # the best clauses come first
                     rivals[theirs] = None
@@ -303,7 +303,7 @@ class Consent:
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                 found.setdefault(theirs, []).append(member)
         for rule in rules:
-            for theirs in self.state.policy.causes.downstream(rule):
+            for theirs in self.state.causes.downstream(rule):
                 if theirs.base < worth:
                     break  # the best clauses come first, and a cooldown only lowers a utility
                 if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):

@@ -11,7 +11,7 @@ from ravestate.declare.rule import Rule
 CancelReason = Literal["interrupted", "timeout", "wiped"]
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, init=False)
 class Run:
     """An order to call a rule's function, and to report its end by the event `Finish`.
 
@@ -25,7 +25,13 @@ class Run:
     run: int
     rule: Rule[Any, Any]
     payloads: Mapping[str, Any]
-    values: Mapping[str, Any]
+    values: dict[str, Any]
+
+    def __init__(self, run: int, rule: Rule[Any, Any], payloads: Mapping[str, Any], values: dict[str, Any]) -> None:
+        self.run = run
+        self.rule = rule
+        self.payloads = payloads
+        self.values = values
 
 
 @dataclass(slots=True)
@@ -41,15 +47,19 @@ class Failed:
     """An order to log a rule's failure once, with its traceback."""
 
     rule: str
-    exception: BaseException
+    exception: Any  # a BaseException; mypyc 2.4 cannot read this name in a dataclass
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, init=False)
 class Spiked:
     """A report of a new spike of a watched signal."""
 
     signal: str
     payload: Any
+
+    def __init__(self, signal: str, payload: Any) -> None:
+        self.signal = signal
+        self.payload = payload
 
 
 @dataclass(slots=True)

@@ -25,7 +25,7 @@ from ravestate.engine.group import Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.matching import Matching
-from ravestate.engine.outcomes import KINDS, RETIRED
+from ravestate.engine.outcomes import DONE, KINDS, RETIRED
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import ABSENT, Slots
 from ravestate.engine.spike import Spike
@@ -83,6 +83,14 @@ class Engine:
             UndeclaredError: The event names a signal or slot that the policy does not have.
             EngineError: The event comes from a run that is over.
         """
+        self.pass_time(now)
+        handler = HANDLERS.get(type(event))
+        if handler is None:
+            raise EngineError(f"{event!r} is not an event: see ravestate.engine.events")
+        handler(self, event)
+
+    def pass_time(self, now: float) -> None:
+        """Let time pass until `now` (seconds), before an event; an earlier time counts as the latest time."""
         state = self.state
         if now > state.now:
             self.holdings.waits.pass_time()
@@ -91,10 +99,6 @@ class Engine:
             state.now = now
         elif now != now:  # NaN is neither before nor after
             raise EngineError("the time is not a number of seconds: it is NaN")
-        handler = HANDLERS.get(type(event))
-        if handler is None:
-            raise EngineError(f"{event!r} is not an event: see ravestate.engine.events")
-        handler(self, event)
 
     def advance(self, now: float) -> None:
         """Let time pass until `now` (seconds), deadline by deadline. A repeated or early call changes nothing."""
@@ -140,17 +144,31 @@ class Engine:
         state.acts = False
         return out
 
+    # ------------------------------------------------------------------------------------ the commonest events
+    # The runner calls these, after `pass_time`, if nothing records the events.
+
+    def write(self, slot: str, value: Any, run: int | None) -> None:
+        """Handle the event `Write` at the present time."""
+        self.slots.write(self._slot(slot), value, None if run is None else self._run(run))
+
+    def emit(self, signal: str, payload: Any, run: int | None) -> None:
+        """Handle the event `Emit` at the present time."""
+        self.matching.emit(self._signal(signal), payload, None if run is None else self._run(run))
+
+    def done(self, run: int) -> None:
+        """Handle the event `Finish` at the present time, for a run that is done."""
+        self.runs.finish(self._run(run), DONE, "", None)
+
     # ------------------------------------------------------------------------------------ events
 
     def on_start(self, event: events.Start) -> None:
-        self.matching.emit(self.state.policy.signal_of["core:startup"], None, None)
+        self.matching.emit(self.state.signal_of["core:startup"], None, None)
 
     def on_stop(self, event: events.Stop) -> None:
-        self.matching.emit(self.state.policy.signal_of["core:shutdown"], None, None)
+        self.matching.emit(self.state.signal_of["core:shutdown"], None, None)
 
     def on_write(self, event: events.Write) -> None:
-        slot = self._slot(event.slot)
-        self.slots.write(slot, event.value, None if event.run is None else self._run(event.run))
+        self.write(event.slot, event.value, event.run)
 
     def on_store(self, event: events.Store) -> None:
         slot = self._collection(event.slot)
@@ -161,14 +179,14 @@ class Engine:
         self.slots.store(slot, event.key, ABSENT, None if event.run is None else self._run(event.run))
 
     def on_emit(self, event: events.Emit) -> None:
-        signal = self._signal(event.signal)
-        self.matching.emit(signal, event.payload, None if event.run is None else self._run(event.run))
+        self.emit(event.signal, event.payload, event.run)
 
     def on_wipe(self, event: events.Wipe) -> None:
         signal = self._signal(event.signal)
         wiper = None if event.run is None else self._run(event.run)
         state = self.state
-        known = {spike for spikes in (*state.live.values(), state.watched_by) for spike in spikes}
+        tables: list[Iterable[Spike]] = [*state.live.values(), state.watched_by]
+        known = {spike for spikes in tables for spike in spikes}
         for spike in sorted((s for s in known if s.comes_from(signal.name)), key=lambda spike: spike.id):
             for holder in sorted(spike.holders, key=lambda holder: (holder.clause.index, holder.id)):
                 if holder.state == RUNNING and holder is not wiper and holder.clause.rule.interruptible:
@@ -281,13 +299,13 @@ class Engine:
         return self.state.read(slot)
 
     def _signal(self, name: str) -> SignalPlan:
-        signal = self.state.policy.signal_of.get(name)
+        signal = self.state.signal_of.get(name)
         if signal is None:
             raise UndeclaredError(_unknown("signal", name, self.state.policy.signals))
         return signal
 
     def _slot(self, name: str) -> SlotPlan:
-        slot = self.state.policy.slot_of.get(name)
+        slot = self.state.slot_of.get(name)
         if slot is None:
             raise UndeclaredError(_unknown("slot", name, self.state.policy.slots))
         return slot

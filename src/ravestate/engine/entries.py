@@ -111,7 +111,8 @@ class Entries:
         """Remove a spike from the table of live spikes."""
         live = self.state.live.get(spike.signal.index)
         if live is not None:
-            live.pop(spike, None)
+            if spike in live:
+                del live[spike]
             if not live:
                 del self.state.live[spike.signal.index]
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import GATHERING, NEVER, READY, WAITING, Activation
+from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, WAITING, Activation
 from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
 from ravestate.engine.refusal import Refusal
 from ravestate.engine.state import State
@@ -137,8 +137,8 @@ def _clause(state: State, clause: Clause) -> ClauseState:
 
 def _activation(state: State, activation: Activation) -> ActivationState:
     clause = activation.clause
-    name = activation.state.name.lower()
-    if activation.state is GATHERING and not activation.missing:
+    name = NAMES[activation.state]
+    if activation.state == GATHERING and not activation.missing:
         name = "gated" if activation in state.gated else "ripening"
     waits: list[tuple[str, float]] = []
     refusal = activation.refusal
@@ -148,7 +148,7 @@ def _activation(state: State, activation: Activation) -> ActivationState:
             theirs = max(state.effective(c) for c in state.policy.rule_plan(rival).clauses)
             waits.append((rival, max(0.0, theirs - mine)))
     bounds = [activation.ripens, min(activation.pressed.values(), default=NEVER), activation.deadline]
-    if activation.state is GATHERING:
+    if activation.state == GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)
         bounds += [spike.born + need.max_age for spike, need in held if spike is not None]
     until = min(bounds)

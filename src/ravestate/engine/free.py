@@ -30,7 +30,9 @@ class Free:
         new, line, between = self.new, self.line, self._between
         if len(new) == 1 and not line:
             activation = new.pop()
-            return activation if activation.state is READY else None
+            return activation if activation.state == READY else None
+        if not (new or line):
+            return None
         if line is None:
             line = self.line = deque[Place]()
         for activation in new:
@@ -42,9 +44,9 @@ class Free:
                 line.extend(sorted(between))
                 between.clear()
             activation = place[3]
-            if activation.place is place:  # else it was added again since
+            if activation.place == place:  # else it was added again since
                 activation.place = None
-                if activation.state is READY:
+                if activation.state == READY:
                     return activation
         return None
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.engine.spike import Spike
 
-NOTHING: Any = MappingProxyType[Any, Any]({})
+NOTHING: Final[dict[Any, Any]] = {}
+"""An empty table in the place of one that is made on first use. Nothing writes into it."""
 
 
 class Group:
@@ -33,11 +32,11 @@ class Group:
         self.into: Group | None = None  # the group into which this group has merged, if it has
         self.members: dict[Activation, int] = {}
         # Most groups never need the following tables, so each table is created on first use.
-        self.taken: Mapping[int, tuple[Activation, ...] | None] = NOTHING
-        self.interested: Mapping[Activation, None] = NOTHING
-        self.entries: Mapping[Spike, None] = NOTHING
+        self.taken: dict[int, tuple[Activation, ...] | None] = NOTHING
+        self.interested: dict[Activation, None] = NOTHING
+        self.entries: dict[Spike, None] = NOTHING
         self.pressed: dict[int, float] | None = None
-        self.answers: Mapping[int, tuple[str, int]] = NOTHING
+        self.answers: dict[int, tuple[str, int]] = NOTHING
 
     def root(self) -> Group:
         """Return the group to which this group belongs now: itself, unless it has merged into another."""
@@ -51,7 +50,7 @@ class Group:
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:
-            self.taken[slot] = holders  # type: ignore[index]  # `taken` is a dictionary by now
+            self.taken[slot] = holders
 
     def free(self, slot: int, holder: Activation) -> None:
         """Free a slot that a run holds."""
@@ -80,24 +79,24 @@ class Group:
         if self.interested is NOTHING:
             self.interested = {activation: None}
         else:
-            self.interested[activation] = None  # type: ignore[index]  # a dict, as it is not NOTHING
+            self.interested[activation] = None
 
     def forget(self, activation: Activation) -> None:
         """Remove an activation that no longer waits from `interested`."""
         if activation in self.interested:
-            self.interested.pop(activation)  # type: ignore[attr-defined]  # a dict: NOTHING is empty
+            self.interested.pop(activation)
 
     def enter(self, spike: Spike) -> None:
         """Note that a half holds a spike of the group."""
         if self.entries is NOTHING:
             self.entries = {spike: None}
         else:
-            self.entries[spike] = None  # type: ignore[index]  # a dict, as it is not NOTHING
+            self.entries[spike] = None
 
     def leave(self, spike: Spike) -> None:
         """Note that no half holds the spike any more."""
         if spike in self.entries:
-            self.entries.pop(spike)  # type: ignore[attr-defined]  # a dict: NOTHING is empty
+            self.entries.pop(spike)
 
     def absorb(self, other: Group) -> None:
         """Make `other` part of this group. A slot that is taken for good in either group stays taken."""
@@ -112,8 +111,8 @@ class Group:
         for spike in other.entries:
             self.enter(spike)
         if other.pressed:
-            mine = self.pressed or {}
-            self.pressed = {**mine, **{c: min(until, mine.get(c, until)) for c, until in other.pressed.items()}}
+            own = self.pressed or {}
+            self.pressed = {**own, **{c: min(until, own.get(c, until)) for c, until in other.pressed.items()}}
         for activation in self.members:
             until = activation.pressed.get(other)
             if until is not None:

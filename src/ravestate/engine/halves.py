@@ -130,10 +130,10 @@ class Halves:
             return False
         free = not need.clause.rule.slots
         if need.kin != need.bit:
-            found = sorted((s for s in group.entries if state.keeps(partner, s)), key=waiting.__getitem__)
+            found: list[Spike] = sorted((s for s in group.entries if state.keeps(partner, s)), key=waiting.__getitem__)
         else:
-            found = (s for s in waiting if state.keeps(partner, s))
-            found = [*islice(found, 1)] if free else [*found]
+            kept = (s for s in waiting if state.keeps(partner, s))
+            found = [*islice(kept, 1)] if free else [*kept]
         for first in found[:1] if free else found:
             activation = self._make(partner, first)
             self.holdings.acquire(activation, need, spike)

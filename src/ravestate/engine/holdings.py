@@ -108,7 +108,7 @@ class Holdings:
         """Let a detached need hold another spike."""
         self._release(activation, need, "")
         self.acquire(activation, need, spike)
-        if activation.state is GATHERING:
+        if activation.state == GATHERING:
             self.update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
@@ -182,7 +182,7 @@ class Holdings:
     def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in list(spike.holders):
-            if holder.state is GATHERING:
+            if holder.state == GATHERING:
                 old = [need for need in _of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self.lose(holder, old, "age")
         for half in self.state.halves_of(spike):
@@ -255,12 +255,12 @@ class Holdings:
                     del state.lacking[need]
             else:
                 self._release(activation, need, reason, by)
-        if before is GATHERING:
+        if before == GATHERING:
             state.gated.pop(activation, None)
             activation.ripens = NEVER
-        elif before is READY:
+        elif before == READY:
             state.asking.pop(activation, None)
-        elif before is WAITING:
+        elif before == WAITING:
             state.asking.pop(activation, None)
             self.waits.end(activation)
         else:
@@ -292,12 +292,12 @@ class Holdings:
             count = group.members.get(activation, 0)
             if count > 1:
                 group.members[activation] = count - 1
-            else:
-                group.members.pop(activation, None)
+            elif count:
+                del group.members[activation]
             if group.interested:
                 state.dirty[group] = None
         if spike not in activation.spikes:
-            spike.holders.pop(activation, None)
+            del spike.holders[activation]
             if not (spike.holders or spike.entries):
                 self.entries.forget(spike)
         if reason and state.tracer is not None:

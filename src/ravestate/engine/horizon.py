@@ -22,7 +22,7 @@ the steps whose strengths it needs, and `_solve` keeps those that wait on a stac
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence, Set
-from typing import Any
+from typing import Any, Final
 
 from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.group import Group
@@ -31,7 +31,9 @@ from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need
 
-NO, SPECULATIVE, FIRM = 0, 1, 2
+NO: Final = 0
+SPECULATIVE: Final = 1
+FIRM: Final = 2
 
 Slots = frozenset[int]
 Step = Generator[Any, int, int]
@@ -126,7 +128,7 @@ class Horizon:
         if clause.apart:
             return 0  # any spike that it lacks must come from the group that it stands on
         reach = self._rules(group).keys()
-        ancestors = self.state.policy.causes.ancestors
+        ancestors = self.state.causes.ancestors
         bits = 0
         for need in clause.needs:
             if not need.detached and not reach.isdisjoint(ancestors(need.signal.index)):
@@ -143,7 +145,7 @@ class Horizon:
             one
             for one in self.state.active.get(clause.rule.index, ())
             if one.clause is clause
-            and one.state is GATHERING
+            and one.state == GATHERING
             and one.missing & open_bits
             and not self.is_still(one)
             and one not in group.members
@@ -183,17 +185,17 @@ class Horizon:
                 answered |= need.kin
                 kin = [n for n in clause.needs if n.bit & need.kin & missing]
                 held = activation.held(need.kin) if activation is not None and need.kin != need.bit else None
-                home = None if held is None else held.group.root()
+                own = None if held is None else held.group.root()
                 mine = other = NO
-                if home is None or home is group:
+                if own is None or own is group:
                     mine = yield from self._all(kin, group, slots)
                 for there in others:
                     if mine == FIRM or other == FIRM:
                         break
-                    if home is None or home is there:
+                    if own is None or own is there:
                         strength = yield from self._all(kin, there, slots)
                         other = max(other, strength)
-                if max(mine, other) == NO and home is None and all(self._outside(n, group) for n in kin):
+                if max(mine, other) == NO and own is None and all(self._outside(n, group) for n in kin):
                     other = SPECULATIVE
             if mine == NO and other == NO:
                 del self.roots[mark:]
@@ -243,7 +245,7 @@ class Horizon:
         if (signal, group) in self._path:
             self._cuts += 1
             return NO
-        if self._rules(group).keys().isdisjoint(self.state.policy.causes.ancestors(signal)):
+        if self._rules(group).keys().isdisjoint(self.state.causes.ancestors(signal)):
             return NO
         known = self._known.get((signal, group, slots))
         if known is None:
@@ -257,7 +259,7 @@ class Horizon:
         by_rule, retired = self._by_rule[group], self.state.retired
         self._path.add((signal, group))
         best = NO
-        for rule in self.state.policy.causes.causes[signal]:
+        for rule in self.state.causes.causes[signal]:
             if not rule.slotset.isdisjoint(slots) or rule.index in retired:
                 continue
             inner = slots | rule.slotset if rule.slots else slots
@@ -273,8 +275,8 @@ class Horizon:
                 for clause in rule.clauses:
                     ways += [(clause, activation) for activation in self.elsewhere(clause, group)]
                     ways.append((clause, None))
-                for clause, activation in ways:
-                    strength = yield self._viable(clause, activation, group, inner)
+                for clause, helper in ways:
+                    strength = yield self._viable(clause, helper, group, inner)
                     best = max(best, strength)
                     if best == FIRM:
                         break
@@ -299,7 +301,7 @@ class Horizon:
         signal = need.signal
         if signal.input:
             return True
-        causes = self.state.policy.causes
+        causes = self.state.causes
         wide = causes.wide_ancestors(signal.index)
         if wide:
             hope = (OUTSIDE, signal.index)
@@ -320,7 +322,7 @@ class Horizon:
         if self._still is None:
             self._still = {}
             for activation in self.still:
-                if activation.state is not ENDED and not self._is_idle(activation):
+                if activation.state != ENDED and not self._is_idle(activation):
                     number = activation.clause.rule.index
                     self._still[number] = self._still.get(number, 0) + 1
         count = self._still.get(rule, 0)

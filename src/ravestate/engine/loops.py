@@ -13,9 +13,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from operator import attrgetter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ravestate.engine.activation import READY
 
@@ -23,14 +22,13 @@ if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.policy.model import RulePlan
 
-MANY = 500
+MANY: Final = 500
 """The number of runs in one instant before the engine traces further runs; most instants have fewer."""
 
-TURNS = 500
+TURNS: Final = 500
 """The number of turns in one instant that start like any other run. `MANY` and `TURNS` make the 1,000 runs of L23."""
 
 
-@dataclass(slots=True, eq=False)
 class Loop:
     """All runs that one run has triggered within an instant.
 
@@ -40,9 +38,12 @@ class Loop:
         rules: The rules of these further turns.
     """
 
-    instant: int
-    turns: int = 0
-    rules: dict[RulePlan, None] = field(default_factory=dict["RulePlan", None])
+    __slots__ = ("instant", "rules", "turns")
+
+    def __init__(self, instant: int) -> None:
+        self.instant = instant
+        self.turns = 0
+        self.rules: dict[RulePlan, None] = {}
 
 
 class Lineage(NamedTuple):
@@ -97,7 +98,7 @@ class Loops:
         """Remove the oldest deferred activation that is still ready, and return it; None if there is none."""
         while self.deferred:
             activation = self.deferred.popleft()
-            if activation.state is READY:
+            if activation.state == READY:
                 self.late += any(line.loop.turns >= TURNS for line in self._lines(activation))
                 self._next = activation
                 return activation

@@ -86,7 +86,7 @@ class Matching:
         state, holdings = self.state, self.holdings
         offers: list[tuple[int, int, int, Activation, Spike]] = []
         for activation in group.members:
-            if activation.state is not GATHERING or not activation.missing:
+            if activation.state != GATHERING or not activation.missing:
                 continue
             for need in activation.clause.needs:
                 if need.bit & activation.missing and need.kin != need.bit and not need.detached:
@@ -97,7 +97,7 @@ class Matching:
                     ]
         for _, _, index, activation, spike in sorted(offers, key=_birth_order):
             need = activation.clause.needs[index]
-            if activation.state is not GATHERING or not need.bit & activation.missing:
+            if activation.state != GATHERING or not need.bit & activation.missing:
                 continue  # an earlier offer has met the need
             if holdings.is_coherent(activation, need, spike) and state.fits(need, spike):
                 holdings.acquire(activation, need, spike)

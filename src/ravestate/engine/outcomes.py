@@ -7,11 +7,15 @@ slots. After any other end the slots are free, and the next best rule may answer
 
 from __future__ import annotations
 
-from typing import get_args
+from typing import Final, get_args
 
 from ravestate.engine import events
 
-DONE, RESIGNED, FAILED, RETIRED = KINDS = get_args(events.OutcomeKind)
+DONE: Final = "done"
+RESIGNED: Final = "resigned"
+FAILED: Final = "failed"
+RETIRED: Final = "retired"
+KINDS = get_args(events.OutcomeKind)
 INTERRUPTED, TIMEOUT, WIPED = "interrupted", "timeout", "wiped"
 
 End = tuple[str, bool]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ravestate.engine.activation import NEVER, Activation
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group
 
-RULE, OUTSIDE, SEEN = range(3)
+RULE: Final = 0
+OUTSIDE: Final = 1
+SEEN: Final = 2
 """Kinds of hope: an activation of a rule elsewhere; a live rule that may raise a signal; a new spike to look at."""
 
 
@@ -33,7 +34,7 @@ class Refusal:
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
-        self.hopes: Mapping[tuple[int, int], int] = {}
+        self.hopes: dict[tuple[int, int], int] = {}
         self.names: dict[str, None] = {}
         self.blockers: dict[Activation, None] = {}
         self.firm: list[tuple[Activation, ...]] = []

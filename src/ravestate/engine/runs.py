@@ -14,7 +14,7 @@ from ravestate.engine.effects import Cancel, CancelReason, Ended, Run
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.loops import MANY, TURNS
-from ravestate.engine.outcomes import FAILED, RESIGNED, verdict
+from ravestate.engine.outcomes import DONE, FAILED, RESIGNED, verdict
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.engine.watch import Watch
@@ -137,7 +137,7 @@ class Runs:
         state = self.state
         del state.running[run.id]
         rule = run.clause.rule
-        outcome, fired = verdict(run.told, kind, run.wrote)
+        outcome, fired = verdict(run.told, kind, run.wrote) if run.told or kind != DONE else (DONE, True)
         if run.told == "timeout":
             late = f"rule {rule.name} took longer than its timeout of {rule.timeout:g} s ({rule.rule.origin})"
             exception = RuleTimeout(late)

@@ -13,7 +13,7 @@ from ravestate.engine.matching import Matching
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.errors import RuleError, UndeclaredError
-from ravestate.policy.model import SlotPlan
+from ravestate.policy.model import SignalPlan, SlotPlan
 
 
 class Slots:
@@ -83,7 +83,7 @@ class Slots:
         if state.tracer is None:
             state.unseen[slot.index] = items
         changed, added, removed = slot.signals
-        raised = (changed,)
+        raised: tuple[SignalPlan, ...] = (changed,)
         if item is ABSENT:
             items.pop(key, None)
             raised = (changed, removed)

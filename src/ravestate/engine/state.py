@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import copy
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -55,6 +55,7 @@ class State:
         "asking",
         "blamed",
         "busy",
+        "causes",
         "deadlines",
         "dirty",
         "dropped",
@@ -79,6 +80,8 @@ class State:
         "reordered",
         "retired",
         "running",
+        "signal_of",
+        "slot_of",
         "spikes",
         "standing",
         "stirred",
@@ -94,6 +97,9 @@ class State:
 
     def __init__(self, policy: Policy, patience: float) -> None:
         self.policy = policy
+        self.signal_of = policy.signal_of
+        self.slot_of = policy.slot_of
+        self.causes = policy.causes
         self.activity = policy.slot_of["core:activity"]
         self.pressure = policy.slot_of["core:pressure"]
         self.patience = patience
@@ -176,13 +182,17 @@ class State:
     def adopt(self, policy: Policy) -> None:
         """Replace the policy by one that begins with the same rules in the same order, and has more."""
         self.policy = policy
+        self.signal_of = policy.signal_of
+        self.slot_of = policy.slot_of
+        self.causes = policy.causes
         self.activity = policy.slot_of["core:activity"]
         self.pressure = policy.slot_of["core:pressure"]
         clauses, signals = policy.clause_plans, policy.signal_plans
         for activations in self.active.values():
             for activation in activations:
                 activation.clause = clauses[activation.clause.index]
-        for spikes in (*self.live.values(), self.watched_by):
+        tables: list[Iterable[Spike]] = [*self.live.values(), self.watched_by]
+        for spikes in tables:
             for spike in spikes:
                 spike.signal = signals[spike.signal.index]
         self.lacking = {clauses[n.clause.index].needs[n.index]: lacking for n, lacking in self.lacking.items()}

@@ -82,7 +82,7 @@ class Waits:
             elif (
                 kind == OUTSIDE
                 and others <= state.hope_counts[hope]
-                and rule.index in state.policy.causes.wide_ancestors(number)
+                and rule.index in state.causes.wide_ancestors(number)
             ):
                 state.stirred[hope] = None
 

@@ -2,3 +2,7 @@
 
 This package uses no third-party code.
 """
+
+from ravestate.compiled import prefer
+
+prefer(__path__)

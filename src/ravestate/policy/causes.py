@@ -10,7 +10,6 @@ intersections are fast.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cached_property
 
 from ravestate.policy.components import components
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
@@ -44,6 +43,7 @@ class Causes:
         self.direct = [tuple(found) for found in direct]
         self.components = components(self.direct)
         self._roots = self._find_roots()
+        self._closures: list[int] | None = None  # the closure of each component
         self._ancestors: dict[int, frozenset[int]] = {}
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
@@ -74,10 +74,11 @@ class Causes:
 
     def closure(self, signal: int) -> int:
         """Return the signals on a signal's pathways, as bits: the signal itself, and all that lead to it undetached."""
+        if self._closures is None:
+            self._closures = self._find_closures()
         return self._closures[self.components.of[signal]]
 
-    @cached_property
-    def _closures(self) -> list[int]:
+    def _find_closures(self) -> list[int]:
         """Return the closure of each component. All signals of a component have the same closure."""
         of = self.components.of
         found: list[int] = []

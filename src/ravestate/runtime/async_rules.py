@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import contextvars
 import functools
 import logging
 from collections.abc import Callable
 from typing import Any
 
 from ravestate.declare.rule import Rule
-from ravestate.runtime.blocking import StepTimer
 from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
+from ravestate.runtime.spares import Spares
 
 GRACE = 5.0  # the seconds that a cancelled rule has to clean up before its run counts as ended
 
@@ -42,30 +43,47 @@ class AsyncRules:
         self._finish = finish
         self._give_up = give_up
         self._proceed = proceed
-        self._timer = StepTimer()
+        self._variables = contextvars.copy_context()
+        self._spares: Spares | None = Spares.join(loop)
         self._tasks: dict[RuleContext, EagerTask] = {}
         self._grace: dict[RuleContext, asyncio.TimerHandle] = {}
         self._spare: EagerTask | None = None
 
     def start(self, ctx: RuleContext) -> None:
-        """Run a function up to its first ``await`` that suspends it. A task continues from there."""
-        task = self._spare
+        """Run a function up to its first ``await`` that suspends it. A task continues from there.
+
+        No task may be current on the loop. `rest` follows when no function is to start for now.
+        """
+        task, self._spare = self._spare, None  # the function may start others
         if task is None:
-            task = self._spare = EagerTask(self._loop, self._timer)
+            assert self._spares is not None  # no function starts after `close`
+            task = self._spares.take(self._variables)
         try:
-            task.first_step(ctx.rule.function(ctx), ctx.rule)
-        except StopIteration as stop:
-            self._finish(ctx, stop.value, None)
+            end = task.first_step(ctx)
         except BaseException as exception:  # a rule may raise anything
+            self._keep(task)
             self._finish(ctx, None, exception)
             if isinstance(exception, KeyboardInterrupt):
                 raise
-        else:
-            self._spare = None
+            return
+        if end is None:
             self._tasks[ctx] = task
             task.task.add_done_callback(functools.partial(self._done, ctx))
-        if task is self._spare and task.spoilt:
+        else:
+            self._keep(task)
+            self._finish(ctx, end.result, None)
+
+    def _keep(self, task: EagerTask) -> None:
+        """Keep a spare task for the next function, unless a function has spoilt it."""
+        if self._spare is None and not task.spoilt:
+            self._spare = task
+        else:
             task.close()
+
+    def rest(self) -> None:
+        """Let other contexts have the spare task."""
+        if self._spare is not None and self._spares is not None:
+            self._spares.give(self._spare)
             self._spare = None
 
     def cancel(self, ctx: RuleContext, reason: str) -> None:
@@ -93,8 +111,10 @@ class AsyncRules:
             if not at_once and not ctx.ended:
                 _warn(ctx.rule)
             task.abandon()
-        if self._spare is not None:
-            self._spare.close()
+        self.rest()
+        if self._spares is not None:
+            self._spares.leave()
+            self._spares = None
         for timer in self._grace.values():
             timer.cancel()
 

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import logging
 from time import perf_counter, thread_time
-from typing import Any
+from typing import Any, Final
 
 from ravestate.declare.rule import Rule
 
+resource: Any
 try:
     import resource
 except ImportError:  # Windows
     resource = None
 
-BLOCKING = 0.1
+BLOCKING: Final = 0.1
 """The seconds that one step of an async rule may take before a warning names the rule: nothing else runs meanwhile."""
 
-FRESH = 0.01  # the seconds for which one reading of the thread's CPU time serves as the start time of further steps
+FRESH: Final = (
+    0.01  # the seconds for which one reading of the thread's CPU time serves as the start time of further steps
+)
 
 ASLEEP = 0.05
 """A step counts as sleeping if its sleeps are longer than this on average (seconds). A thread that waits for the

@@ -16,7 +16,7 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.declare.wording import spelt
 from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
-from ravestate.engine.events import Emit, Event, Start, Stop, Wipe, Write
+from ravestate.engine.events import Event, Start, Stop, Wipe
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
@@ -63,6 +63,11 @@ class Context:
         'HELLO'
     """
 
+    __slots__ = (
+        "__dict__", "__weakref__", "_is_to_stop", "_journal", "_observers", "_patience", "_policy", "_runner", "_seed",
+        "_stopping", "_trace", "settings",
+    )  # fmt: skip
+
     def __init__(
         self,
         *modules: Module | ModuleType | Policy,
@@ -77,17 +82,17 @@ class Context:
         )
         _check_seconds(patience)
         self.settings = load_settings(policy.modules, settings)
-        self.trace: deque[Record] = deque(maxlen=TRACE_LIMIT)
-        """The latest records of the trace; empty unless the argument `trace` is True."""
         self._policy = policy.with_settings(self.settings)
         self._seed = seed
         self._patience = patience
+        self._trace: deque[Record] | None = None
         self._observers: list[Callable[[Record], None]] = []
         if trace:
             self._observers.append(self.trace.append if trace is True else trace)
         self._journal = journal
         self._runner: Runner | None = None
-        self._stopping: asyncio.Event | None = None
+        self._is_to_stop = False
+        self._stopping: asyncio.Event | None = None  # made for the first task that waits for the end
 
     # ------------------------------------------------------------------------------------ life
 
@@ -108,7 +113,6 @@ class Context:
             raise EngineError("a context runs once: make another one of the same policy")
         hooks = hooks or Hooks()
         engine = Engine(self._policy, patience=self._patience, report_ends=hooks.on_ended is not None)
-        self._stopping = asyncio.Event()
         loop = asyncio.get_running_loop()
         self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop, hooks, self._journal)
         self._attach()
@@ -141,9 +145,14 @@ class Context:
 
         The context keeps running until its ``async with`` ends.
         """
-        if self._runner is not None and self._stopping is not None:
+        if self._runner is not None:
             with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
-                self._runner.loop.call_soon_threadsafe(self._stopping.set)
+                self._runner.loop.call_soon_threadsafe(self._note_stop)
+
+    def _note_stop(self) -> None:
+        self._is_to_stop = True
+        if self._stopping is not None:
+            self._stopping.set()
 
     async def until_stopped(self) -> None:
         """Wait until a rule (``ctx.stop()``) or other code (`ask_to_stop`) has asked the context to end.
@@ -153,8 +162,10 @@ class Context:
             EngineError: The engine has failed, which is a bug in this library.
         """
         runner = self._running()
-        assert self._stopping is not None  # created together with the runner
-        await self._stopping.wait()
+        if not self._is_to_stop:
+            if self._stopping is None:
+                self._stopping = asyncio.Event()
+            await self._stopping.wait()
         if runner.fault is not None:
             raise runner.fault
 
@@ -206,7 +217,7 @@ class Context:
         """
         self._known(slot, self.policy.slots, "slot")
         slot.check(value, "context.put")
-        self._running().receive(Write(slot.name, value))
+        self._running().write(slot.name, value, None)
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
         """Raise a signal from outside. Any thread may call this. After the context's end it does nothing.
@@ -215,7 +226,7 @@ class Context:
             UndeclaredError: The policy does not have the signal.
         """
         self._known(signal, self.policy.signals, "signal")
-        self._running().receive(Emit(signal.name, payload))
+        self._running().emit(signal.name, payload, None)
 
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal, and all that they have caused (L20). Any thread may call this."""
@@ -234,6 +245,9 @@ class Context:
 
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """Wait for the next spike of a signal, and return its payload.
+
+        The call first performs the effects that are due. If the spike comes from these, other tasks get no turn meanwhile.
+        After 64 such calls the event loop gets its turn.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.
@@ -273,6 +287,13 @@ class Context:
                 self._attach()
 
         return leave
+
+    @property
+    def trace(self) -> deque[Record]:
+        """The latest records of the trace; empty unless the argument `trace` is True."""
+        if self._trace is None:
+            self._trace = deque(maxlen=TRACE_LIMIT)
+        return self._trace
 
     def _attach(self) -> None:
         observers = tuple(self._observers)

@@ -10,117 +10,113 @@ from __future__ import annotations
 
 import asyncio
 import contextvars
-import types
-from collections.abc import Coroutine, Generator
-from typing import Any
+from asyncio.tasks import _enter_task, _leave_task  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
+from collections.abc import Callable, Generator
+from typing import Any, Final
 
 from ravestate.declare.rule import Rule
 from ravestate.runtime.blocking import StepTimer
+from ravestate.runtime.coroutines import DONE, Done, drive, host, main
+from ravestate.runtime.rule_context import RuleContext
+
+ENTER: Final = _enter_task  # the compiled build finds a constant at once, and looks an import up each time
+LEAVE: Final = _leave_task
+END: Final = DONE
+KIND: Final = Done
 
 
 class EagerTask:
-    """A spare task. Once it has adopted the coroutine of a rule, it is the rule's task; the timer measures each step."""
+    """A spare task. Once it has adopted the coroutine of a rule, it is the rule's task; the timer measures each step.
+
+    The coroutine has the context variables `variables`, and its own changes.
+
+    Attributes:
+        task: The task.
+        rule: The rule whose coroutine the task has adopted, if it has adopted one.
+        driver: The generator that runs the coroutine (`drive`).
+        first: The object that the adopted coroutine has yielded in its first step.
+        wake: Done when the task has adopted a coroutine.
+        abandoned: Whether the task is to end although its coroutine does not end.
+    """
 
     __slots__ = (
-        "_abandoned", "_clean", "_context", "_coroutine", "_first", "_loop", "_rule", "_timer", "_wake", "task",
-    )  # fmt: skip
+        "_clean",
+        "_context",
+        "_loop",
+        "_send",
+        "abandoned",
+        "driver",
+        "first",
+        "rule",
+        "task",
+        "timer",
+        "wake",
+    )
 
-    def __init__(self, loop: asyncio.AbstractEventLoop, timer: StepTimer) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, timer: StepTimer, variables: contextvars.Context) -> None:
         self._loop = loop
-        self._timer = timer
-        self._rule: Rule[Any, Any] | None = None
-        self._coroutine: Coroutine[Any, Any, Any] | None = None
-        self._first: Any = None
-        self._abandoned = False
-        self._wake: asyncio.Future[None] = loop.create_future()
-        self._context = contextvars.copy_context()
-        self._clean = self._context.copy()
-        host = self._main()
-        host.send(None)  # from now on, a cancellation reaches the host even before the task's first step
-        self.task: asyncio.Task[Any] = loop.create_task(host, context=self._context)
+        self.timer = timer
+        self.rule: Rule[Any, Any] | None = None
+        self.first: Any = None
+        self.abandoned = False
+        self.wake: asyncio.Future[None] = loop.create_future()
+        self._context = variables.copy()
+        self._clean = variables
+        self._renew()
+        waiting: Any = host(self)
+        waiting.send(None)  # from now on, a cancellation reaches the host even before the task's first step
+        self.task: asyncio.Task[Any] = loop.create_task(main(waiting), context=self._context)
 
-    def first_step(self, coroutine: Coroutine[Any, Any, Any], rule: Rule[Any, Any]) -> None:
-        """Run a coroutine to its end or to its first suspension. If it suspends, the task adopts it.
+    def _renew(self) -> None:
+        driver: Any = drive()
+        driver.send(None)
+        self.driver: Generator[Any, Any, Any] = driver
+        self._send: Callable[[RuleContext], Any] = driver.send
+
+    def first_step(self, ctx: RuleContext) -> Done | None:
+        """Run a rule's function to its end or to its first suspension; no task may be current on the loop.
+
+        Returns:
+            The end of the function; the spare task is free for another function, unless it is `spoilt`. Or None: the
+            function's coroutine is suspended, and the task has adopted it.
 
         Raises:
-            StopIteration: The coroutine has ended. The spare task is free for another coroutine, unless it is `spoilt`.
-            BaseException: The coroutine has failed with this exception. The spare task is free, as above.
+            BaseException: The function has failed with this exception. The spare task is free, as above.
         """
-        around = asyncio.current_task(self._loop)  # a task may have called `step` on a paused context
-        if around is not None:
-            asyncio.tasks._leave_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
-        asyncio.tasks._enter_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
-        began = self._timer.begin()
+        rule = ctx.rule
+        ENTER(self._loop, self.task)
+        began = self.timer.begin()
         try:
-            self._first = self._context.run(coroutine.send, None)
+            first = self._context.run(self._send, ctx)
+        except BaseException:
+            self._renew()
+            raise
         finally:
-            asyncio.tasks._leave_task(self._loop, self.task)  # pyright: ignore[reportPrivateUsage]
-            if around is not None:
-                asyncio.tasks._enter_task(self._loop, around)  # pyright: ignore[reportPrivateUsage]
-            self._timer.end(rule, began)
-        self._coroutine = coroutine
-        self._rule = rule
-        if not self._wake.done():
-            self._wake.set_result(None)
+            LEAVE(self._loop, self.task)
+            self.timer.end(rule, began)
+        if first is END or type(first) is KIND:
+            return first
+        self.first = first
+        self.rule = rule
+        if not self.wake.done():
+            self.wake.set_result(None)
+        return None
 
     @property
     def spoilt(self) -> bool:
-        """Whether the last coroutine has cancelled its task, or has set a context variable."""
+        """Whether the last function has cancelled its task, or has set a context variable."""
         return self.task.cancelling() > 0 or self._context != self._clean
+
+    def suits(self, variables: contextvars.Context) -> bool:
+        """Return whether the task has these context variables."""
+        return self._clean is variables or self._clean == variables
 
     def close(self) -> None:
         """End the spare task, unless it has adopted a coroutine."""
-        if self._coroutine is None:
+        if self.rule is None:
             self.task.cancel()
 
     def abandon(self) -> None:
         """End the task although its coroutine does not end: close the coroutine where it is."""
-        self._abandoned = True
+        self.abandoned = True
         self.task.cancel()
-
-    async def _main(self) -> Any:
-        return await self._host()  # a task needs a coroutine, and the host must be free to yield anything
-
-    @types.coroutine
-    def _host(self) -> Generator[Any, Any, Any]:
-        error: BaseException | None = None
-        try:
-            yield  # the task's first step continues here
-            if self._coroutine is None:
-                yield from self._wake
-        except asyncio.CancelledError as cancelled:
-            error = cancelled
-        if self._coroutine is None:
-            return None
-        coroutine, rule = self._coroutine, self._rule
-        assert rule is not None  # set together with the coroutine
-        pending = self._first
-        self._first = None
-        if error is not None and pending is not None and pending.cancel():
-            error = None  # the awaited future raises the cancellation, as in any task
-        while True:
-            value = None
-            if error is None:
-                try:
-                    value = yield pending
-                except GeneratorExit:
-                    coroutine.close()
-                    raise
-                except BaseException as thrown:  # the loop throws this into the coroutine below
-                    error = thrown
-            if self._abandoned:
-                coroutine.close()
-                return None
-            began = self._timer.begin()
-            try:
-                if error is None:
-                    pending = coroutine.send(value)
-                else:
-                    thrown, error = error, None
-                    pending = coroutine.throw(thrown)
-            except StopIteration as stop:
-                return stop.value
-            except SystemExit as exit:  # if raised here, SystemExit would end the loop and all other rules
-                return exit
-            finally:
-                self._timer.end(rule, began)

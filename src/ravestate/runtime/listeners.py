@@ -10,33 +10,61 @@ from typing import Any
 from ravestate.engine.effects import Ended, Spiked
 
 
+class Waiter:
+    """A task that waits for the spike of a signal; the future wakes it, if the spike does not come at once."""
+
+    __slots__ = ("done", "error", "future", "payload")
+
+    def __init__(self) -> None:
+        self.done = False
+        self.error: BaseException | None = None
+        self.payload: Any = None
+        self.future: asyncio.Future[None] | None = None
+
+
 class Listeners:
     """The listeners of one context: functions and waiting tasks, each for one signal.
 
-    This class fills `watched`, the engine's table of the signals whose spikes it reports.
+    This class fills `watched`, the engine's table of the signals whose spikes it reports. Before a task waits, this class
+    calls `settle`, which may make the spike come at once.
     """
 
-    def __init__(self, watched: dict[str, int], functions: Mapping[str, Callable[[Any], None]]) -> None:
+    __slots__ = ("_functions", "_settle", "_waiters", "_watched")
+
+    def __init__(
+        self,
+        watched: dict[str, int],
+        functions: Mapping[str, Callable[[Any], None]],
+        settle: Callable[[], None] = lambda: None,
+    ) -> None:
         self._watched = watched
         self._functions = functions
-        self._futures: dict[str, list[asyncio.Future[Any]]] = {}
+        self._settle = settle
+        self._waiters: dict[str, list[Waiter]] = {}
         watched.update(dict.fromkeys(functions, 1))
 
     async def next(self, signal: str) -> Any:
         """Wait for the next spike of a signal, and return its payload."""
-        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        self._futures.setdefault(signal, []).append(future)
+        waiter = Waiter()
+        self._waiters.setdefault(signal, []).append(waiter)
         self._watched[signal] = 1
         try:
-            return await future
+            self._settle()
+            if waiter.error is not None:
+                raise waiter.error
+            if not waiter.done:
+                waiter.future = asyncio.get_running_loop().create_future()
+                await waiter.future
+            return waiter.payload
         finally:
-            waiting = self._futures.get(signal, [])
-            if future in waiting:
-                waiting.remove(future)
-                if not waiting:
-                    del self._futures[signal]
-                    if signal not in self._functions:
-                        self._watched.pop(signal, None)
+            if not waiter.done:
+                waiting = self._waiters.get(signal, [])
+                if waiter in waiting:
+                    waiting.remove(waiter)
+                    if not waiting:
+                        del self._waiters[signal]
+                        if signal not in self._functions:
+                            self._watched.pop(signal, None)
 
     def tell(self, spiked: Spiked) -> None:
         """Call the function of a spike's signal, and wake the tasks that wait for the signal."""
@@ -45,17 +73,20 @@ class Listeners:
             self._watched.pop(spiked.signal, None)
         else:
             function(spiked.payload)
-        for future in self._futures.pop(spiked.signal, ()):
-            if not future.done():
-                future.set_result(spiked.payload)
+        for waiter in self._waiters.pop(spiked.signal, ()):
+            waiter.done = True
+            waiter.payload = spiked.payload
+            if waiter.future is not None and not waiter.future.done():
+                waiter.future.set_result(None)
 
     def fail(self, error: Callable[[str], BaseException]) -> None:
         """Wake all waiting tasks with an error; the function `error` makes it from the name of the task's signal."""
-        for signal, futures in self._futures.items():
-            for future in futures:
-                if not future.done():
-                    future.set_exception(error(signal))
-        self._futures.clear()
+        for signal, waiters in self._waiters.items():
+            for waiter in waiters:
+                waiter.error = error(signal)
+                if waiter.future is not None and not waiter.future.done():
+                    waiter.future.set_exception(waiter.error)
+        self._waiters.clear()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

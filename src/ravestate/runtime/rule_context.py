@@ -13,7 +13,7 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Collection, Slot
 from ravestate.declare.wording import spelt
 from ravestate.engine.effects import Run
-from ravestate.engine.events import Discard, Emit, Event, Store, Wipe, Write
+from ravestate.engine.events import Discard, Event, Store, Wipe
 from ravestate.errors import RavestateError, RuleError, RunEnded, UndeclaredError, nearest
 from ravestate.policy.policy import Policy
 from ravestate.runtime.clock import Clock
@@ -26,12 +26,15 @@ class Host(Protocol):
     """The part of a running context (`Runner`) that its rule contexts use."""
 
     settings: Mapping[str, Any]
-    random: random.Random
     clock: Clock
 
     @property
+    def random(self) -> random.Random: ...
+    @property
     def policy(self) -> Policy: ...
     def receive(self, event: Event) -> None: ...
+    def emit(self, signal: str, payload: Any, run: int | None) -> None: ...
+    def write(self, slot: str, value: Any, run: int | None) -> None: ...
     def add_rule(self, rule: Rule[Any, Any]) -> None: ...
     def stop(self, failure: RavestateError | None) -> None: ...
     async def quiet(self) -> None: ...
@@ -101,7 +104,7 @@ class RuleContext:
         elif slot.kind == "flag":
             value = bool(value)  # type: ignore[assignment]  # the kind of the slot proves the type
         self._values[slot.name] = value
-        self._host.receive(Write(slot.name, value, self.run))
+        self._host.write(slot.name, value, self.run)
 
     @overload
     def payload(self, signal: Signal[T]) -> T: ...
@@ -140,7 +143,7 @@ class RuleContext:
             self._refuse("emitted", "emits", signal, self.rule.emits)
         if self.ended:
             self._alive()
-        self._host.receive(Emit(signal.name, payload, self.run))
+        self._host.emit(signal.name, payload, self.run)
 
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal, and all spikes that they have caused (L20)."""

@@ -6,17 +6,17 @@ import asyncio
 import contextlib
 import logging
 import random
-import threading
-from collections import deque
+from asyncio.tasks import _enter_task, _leave_task  # pyright: ignore[reportPrivateUsage]  # documented for task implementations
 from collections.abc import Callable, Mapping
+from threading import get_ident
 from time import perf_counter
-from typing import Any
+from typing import Any, Final
 
 from ravestate.declare.rule import Rule
 from ravestate.declare.wording import said, short
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
-from ravestate.engine.events import AddRule, Event, Finish
+from ravestate.engine.events import AddRule, Emit, Event, Finish, Write
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnded
 from ravestate.policy.policy import Policy
@@ -31,12 +31,17 @@ from ravestate.runtime.waits import Waits
 
 ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
 
-BATCH = 512
+BATCH: Final = 512
 """The number of rounds of effects after which the loop gets a turn, so that a busy agent still takes input."""
 
-TURN = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
+TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
+
+SETTLES: Final = 64
+"""How often a task may wait for a signal without a turn of the loop (`Runner.settle`), until the loop gets a turn."""
 
 ENDED = "the context has ended"
+
+THREAD: Final = get_ident  # the compiled build finds a constant at once, and looks an import up each time
 
 log = logging.getLogger("ravestate")
 
@@ -61,9 +66,8 @@ class Runner:
     ) -> None:
         self.loop = loop
         self.settings = settings
-        self.random = random.Random(seed)
         self.clock = Clock(loop)
-        self.listeners = Listeners(engine.watched, hooks.listeners)
+        self.listeners = Listeners(engine.watched, hooks.listeners, self.settle)
         self.waits = Waits(engine, self._is_busy, self._schedule)
         self.closed = False
         self.fault: RavestateError | None = None
@@ -73,17 +77,21 @@ class Runner:
         self._hooks = hooks
         self._journal = journal
         self._is_virtual = hooks.on_endless is not None
-        self._thread = threading.get_ident()
-        self._contexts: dict[int, RuleContext] = {}
+        self._home = get_ident()  # the number of the loop's thread
+        self._seed = seed
+        self._random: random.Random | None = None
+        self._contexts: dict[int, RuleContext] = {}  # the runs that did not end at once
         self._async = AsyncRules(loop, self._finish, self._drop, self._pump)
-        self._plain = PlainRules(loop, self._finish)
-        self._todo: deque[Effect] = deque()
-        self._scheduled = False
+        self._plain: PlainRules | None = None  # made for the first plain function
+        self._todo: list[Effect] = []  # the effects that are still to be performed, the next one last
+        self._due = False  # whether the engine may have effects
+        self._scheduled = False  # whether the loop will call `_turn`
+        self._settled = 0  # how often `settle` has spared the loop a turn since the last one
         self._pumping = False
         self._closing = False
         self._instant = -1.0
         self._rounds = 0  # how many rounds of effects there were in the current instant
-        self._last_run = ""
+        self._last_run: Rule[Any, Any] | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._timer_due = 0.0
 
@@ -99,9 +107,41 @@ class Runner:
         """The engine's policy, with the rules that were added to it."""
         return self._engine.policy
 
+    @property
+    def random(self) -> random.Random:
+        """Random numbers from the context's seed."""
+        if self._random is None:
+            self._random = random.Random(self._seed)
+        return self._random
+
+    def emit(self, signal: str, payload: Any, run: int | None) -> None:
+        """Raise a signal for a run, or for code outside (None). Any thread may call this."""
+        if self._takes_the_short_way():
+            self._engine.emit(signal, payload, run)
+        else:
+            self.receive(Emit(signal, payload, run))
+
+    def write(self, slot: str, value: Any, run: int | None) -> None:
+        """Write a slot for a run, or for code outside (None). Any thread may call this."""
+        if self._takes_the_short_way():
+            self._engine.write(slot, value, run)
+        else:
+            self.receive(Write(slot, value, run))
+
+    def _takes_the_short_way(self) -> bool:
+        """Prepare the engine for an event without a record, and return True; or return False, for `receive`."""
+        if self._journal is not None or self.closed or THREAD() != self._home:
+            return False
+        if self._pumping:
+            self._engine.pass_time(self._instant)
+        else:
+            self._engine.pass_time(self.clock.now())
+            self._schedule()
+        return True
+
     def receive(self, event: Event) -> None:
         """Give the engine an event. Any thread may call this."""
-        if threading.get_ident() != self._thread:
+        if get_ident() != self._home:
             with contextlib.suppress(RuntimeError):  # the context has ended, and its loop is closed
                 self.loop.call_soon_threadsafe(self._receive_late, event)
             return
@@ -126,7 +166,7 @@ class Runner:
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
         """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy."""
-        if threading.get_ident() == self._thread:
+        if get_ident() == self._home:
             self.receive(AddRule(self.policy.with_rule(rule, self.settings)))
             return
         added = asyncio.run_coroutine_threadsafe(self._add_rule_late(rule), self.loop)
@@ -142,12 +182,29 @@ class Runner:
     # ------------------------------------------------------------------------------------ effects out
 
     def _schedule(self) -> None:
+        self._due = True
         if not self._scheduled:
             self._scheduled = True
-            self.loop.call_soon(self._pump)
+            self.loop.call_soon(self._turn)
+
+    def _turn(self) -> None:
+        self._scheduled = False
+        self._settled = 0
+        if self._due:
+            self._pump()
+
+    def settle(self) -> None:
+        """Perform the effects at once that the loop's next turn would perform; a task is about to wait for them.
+
+        Other tasks get no turn meanwhile, so after `SETTLES` calls it is the loop's turn. In virtual time, and inside a
+        rule, it always is.
+        """
+        if self._due and self._settled < SETTLES and not (self._pumping or self._is_virtual):
+            self._settled += 1
+            self._pump()
 
     def _pump(self) -> None:
-        self._scheduled = False
+        self._due = False
         if self.closed or self.clock.halted:
             return
         self._work_off(BATCH)
@@ -157,11 +214,13 @@ class Runner:
 
     def _is_busy(self) -> bool:
         """Whether some effects have not been performed yet."""
-        return bool(self._scheduled or self._pumping or self._todo or self._async.cleaning)
+        return bool(self._due or self._pumping or self._todo or self._async.cleaning)
 
     def _held(self) -> bool:
         """Whether effects must wait: for a plain function in virtual time, or for rules that were just cancelled."""
-        return bool((self._is_virtual and self._plain.runs) or (self._async.cleaning and not self.clock.halted))
+        if self._is_virtual and self._plain is not None and self._plain.runs:
+            return True
+        return bool(self._async.cleaning) and not self.clock.halted
 
     def _work_off(self, rounds: int) -> bool:
         """Take and perform the engine's effects, for at most `rounds` rounds; return whether there were any effects."""
@@ -172,29 +231,34 @@ class Runner:
         self._instant = began
         if self._hooks.on_endless is not None and (self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20):
             self.closed = True
-            self._hooks.on_endless(self._last_run)
+            self._hooks.on_endless("" if self._last_run is None else self._last_run.name)
             return False
         some = False
         self._pumping = True
         turn_ends = perf_counter() + TURN
+        around = asyncio.current_task(self.loop)
+        if around is not None:  # rules start outside any task
+            _leave_task(self.loop, around)
+        todo = self._todo
         try:
             for _ in range(rounds):
                 if (self._is_virtual or cleaning) and self._held():
                     break  # the end of these functions or rules schedules the next call
                 self._rounds += 1
-                if not self._todo:
+                if not todo:
                     if self._journal is not None:
                         self._journal(Taken(), engine.now)
                     try:
-                        self._todo.extend(engine.effects())
+                        todo += engine.effects()
                     except Exception as error:
                         self._break(error)
                         return False
-                    if not self._todo:
+                    if not todo:
                         break
+                    todo.reverse()
                 some = True
-                while self._todo and not ((self._is_virtual or cleaning) and self._held()):
-                    self._perform(self._todo.popleft())
+                while todo and not ((self._is_virtual or cleaning) and self._held()):
+                    self._perform(todo.pop())
                 if not self._is_virtual and perf_counter() > turn_ends:
                     self._schedule()
                     break
@@ -205,6 +269,9 @@ class Runner:
             raise
         finally:
             self._pumping = False
+            self._async.rest()
+            if around is not None:
+                _enter_task(self.loop, around)
         return some
 
     def _perform(self, effect: Effect) -> None:
@@ -322,23 +389,31 @@ class Runner:
     def _run(self, effect: Run) -> None:
         if self._closing:
             return
-        rule = effect.rule
-        self._last_run = rule.name
-        ctx = self._contexts[effect.run] = RuleContext(self, effect)
+        rule = self._last_run = effect.rule
+        ctx = RuleContext(self, effect)
         if rule.is_async:
             self._async.start(ctx)
+            if not ctx.ended:
+                self._contexts[effect.run] = ctx
         else:
+            self._contexts[effect.run] = ctx
+            if self._plain is None:
+                self._plain = PlainRules(self.loop, self._finish)
             self._plain.start(ctx)
 
     def _finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
         """Report to the engine how a run has ended (L18)."""
-        known = self._contexts.pop(ctx.run, None)
-        if known is not None and not self.closed:
+        if ctx.run in self._contexts:
+            del self._contexts[ctx.run]
+        if not (ctx.ended or self.closed):
             ctx.ended = "the function has returned"
-            outcome = result if exception is None else exception
-            if ctx.cancelled and isinstance(outcome, asyncio.CancelledError):
-                outcome = None
-            self.receive(ending(ctx.run, ctx.rule, outcome, exception is not None))
+            if result is None and exception is None and self._takes_the_short_way():
+                self._engine.done(ctx.run)
+            else:
+                outcome = result if exception is None else exception
+                if ctx.cancelled and isinstance(outcome, asyncio.CancelledError):
+                    outcome = None
+                self.receive(ending(ctx.run, ctx.rule, outcome, exception is not None))
         if self._is_virtual and not ctx.rule.is_async:
             self._schedule()
 
@@ -355,12 +430,13 @@ class Runner:
         if ctx.rule.is_async:
             self._async.cancel(ctx, effect.reason)
         else:
+            assert self._plain is not None  # the run has started
             self._plain.abandon(ctx)
             self._drop(ctx, effect.reason)
 
     def plain_functions(self) -> list[str]:
         """Return the names of the rules whose plain functions are running, one for each run."""
-        return [ctx.rule.name for ctx in self._plain.runs]
+        return [] if self._plain is None else [ctx.rule.name for ctx in self._plain.runs]
 
     # ------------------------------------------------------------------------------------ the end
 
@@ -381,7 +457,8 @@ class Runner:
         for ctx in self._contexts.values():
             ctx.ended = ENDED
         self._contexts.clear()
-        self._plain.close()
+        if self._plain is not None:
+            self._plain.close()
         if self._timer is not None:
             self._timer.cancel()
         self.listeners.fail(lambda signal: EngineError(f"the context ended before there was a {signal}"))

@@ -150,8 +150,7 @@ def test_the_end_of_input_ends_the_agent_after_a_farewell(keys: Keys, end: BaseE
         assert sim.said == ["Bye!"]
         assert dict(sim.read(interloc.users)) == {}
         assert sim.read(conio.screen) is None
-        assert sim.context._stopping is not None
-        assert sim.context._stopping.is_set()
+        assert sim.context._is_to_stop
     assert not sim.failures
 
 

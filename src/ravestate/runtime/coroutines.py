@@ -1,0 +1,88 @@
+"""The generators behind an eager task. They stay interpreted in the compiled build: a task needs real generators."""
+
+from __future__ import annotations
+
+import asyncio
+import types
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ravestate.runtime.eager_task import EagerTask
+
+
+class Done:
+    """The end of a coroutine, with its result."""
+
+    __slots__ = ("result",)
+
+    def __init__(self, result: Any) -> None:
+        self.result = result
+
+
+DONE = Done(None)
+"""The end of a coroutine without a result."""
+
+
+@types.coroutine
+def drive() -> Generator[Any, Any, Any]:
+    """Run the functions of rule contexts, one after another.
+
+    Each context comes by `send`. The generator yields all that the function's coroutine yields, and then `Done`. Thus the
+    end of a coroutine needs no exception, which would cost more than many a rule.
+    """
+    ctx: Any = yield
+    while True:
+        result = yield from ctx.rule.function(ctx)  # pyright: ignore[reportUnknownVariableType]  # it may be anything
+        ctx = yield DONE if result is None else Done(result)
+
+
+async def main(host: Generator[Any, Any, Any]) -> Any:
+    """Run a `host`; a task needs a coroutine, and the host must be free to yield anything."""
+    return await host  # type: ignore[misc]  # it is decorated with types.coroutine
+
+
+@types.coroutine
+def host(eager: EagerTask) -> Generator[Any, Any, Any]:
+    """Wait until an eager task adopts a coroutine, and then run the coroutine to its end."""
+    error: BaseException | None = None
+    try:
+        yield  # the task's first step continues here
+        if eager.rule is None:
+            yield from eager.wake
+    except asyncio.CancelledError as cancelled:
+        error = cancelled
+    rule, driver = eager.rule, eager.driver
+    if rule is None:
+        return None
+    pending = eager.first
+    eager.first = None
+    if error is not None and pending is not None and pending.cancel():
+        error = None  # the awaited future raises the cancellation, as in any task
+    while True:
+        value = None
+        if error is None:
+            try:
+                value = yield pending
+            except GeneratorExit:
+                driver.close()
+                raise
+            except BaseException as thrown:  # the loop throws this into the coroutine below
+                error = thrown
+        if eager.abandoned:
+            driver.close()
+            return None
+        began = eager.timer.begin()
+        try:
+            if error is None:
+                pending = driver.send(value)
+            else:
+                raised, error = error, None
+                pending = driver.throw(raised)
+        except SystemExit as exit:  # if raised here, SystemExit would end the loop and all other rules
+            return exit
+        finally:
+            eager.timer.end(rule, began)
+        if type(pending) is Done:
+            driver.close()
+            return pending.result

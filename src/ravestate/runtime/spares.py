@@ -1,0 +1,58 @@
+"""The spare task of a loop: all contexts that run on the loop share it, one at a time."""
+
+from __future__ import annotations
+
+import asyncio
+import contextvars
+from weakref import WeakKeyDictionary
+
+from ravestate.runtime.blocking import StepTimer
+from ravestate.runtime.eager_task import EagerTask
+
+
+class Spares:
+    """Lends a spare task of one loop. The last context that leaves ends the spare task."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self.timer = StepTimer()
+        self._loop = loop
+        self._spare: EagerTask | None = None
+        self._users = 0
+
+    @staticmethod
+    def join(loop: asyncio.AbstractEventLoop) -> Spares:
+        """Return the spares of a loop, for one more context."""
+        spares = ALL.get(loop)
+        if spares is None:
+            spares = ALL[loop] = Spares(loop)
+        spares._users += 1
+        return spares
+
+    def leave(self) -> None:
+        """Note that a context has ended."""
+        self._users -= 1
+        if not self._users:
+            ALL.pop(self._loop, None)
+            if self._spare is not None:
+                self._spare.close()
+                self._spare = None
+
+    def take(self, variables: contextvars.Context) -> EagerTask:
+        """Return a spare task with these context variables. `give` takes it back if it is still free."""
+        spare, self._spare = self._spare, None
+        if spare is not None:
+            if spare.suits(variables) and not spare.task.done():
+                return spare
+            spare.close()
+        return EagerTask(self._loop, self.timer, variables)
+
+    def give(self, spare: EagerTask) -> None:
+        """Take back a spare task that has adopted no coroutine."""
+        if self._spare is None and self._users and not spare.spoilt:
+            self._spare = spare
+        else:
+            spare.close()
+
+
+ALL: WeakKeyDictionary[asyncio.AbstractEventLoop, Spares] = WeakKeyDictionary()
+"""Loop → its spares."""

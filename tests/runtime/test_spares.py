@@ -1,0 +1,68 @@
+"""The spare task of a loop: shared by contexts, one at a time."""
+
+import asyncio
+import contextvars
+
+import ravestate as rs
+from ravestate.runtime.spares import Spares
+from runtime.on_loop import on_loop, turns
+
+shade = contextvars.ContextVar("shade", default="none")
+
+m = rs.Module("m")
+asked, answered = m.signal("asked"), m.signal("answered", payload=object)
+
+
+@m.rule(when=asked, emits=answered)
+async def answer(ctx: rs.RuleContext) -> None:
+    ctx.emit(answered, (asyncio.current_task(), shade.get()))
+
+
+async def ask(context: rs.Context) -> tuple[object, str]:
+    """Return the task that counts as current in a rule, and a context variable there."""
+    context.emit(asked)
+    found = await context.next(answered)
+    assert isinstance(found, tuple)
+    return found[0], found[1]
+
+
+@on_loop
+async def test_contexts_share_one_spare_task() -> None:
+    async with rs.Context(m) as one, rs.Context(m) as other:
+        first, _ = await ask(one)
+        assert (await ask(other))[0] is first and (await ask(one))[0] is first
+
+
+@on_loop
+async def test_a_rule_has_the_context_variables_of_its_context_s_start() -> None:
+    async with rs.Context(m) as one:
+        shade.set("blue")
+        async with rs.Context(m) as other:
+            assert [(await ask(context))[1] for context in (one, other, one)] == ["none", "blue", "none"]
+
+
+@on_loop
+async def test_the_last_context_ends_the_spare_task() -> None:
+    async with rs.Context(m) as one:
+        async with rs.Context(m) as other:
+            await ask(other)
+        spare, _ = await ask(one)
+        assert isinstance(spare, asyncio.Task) and not spare.done()
+    await turns()
+    assert spare.done()
+
+
+@on_loop
+async def test_a_spare_task_that_is_in_use_is_not_lent_twice() -> None:
+    spares = Spares.join(asyncio.get_running_loop())
+    variables = contextvars.copy_context()
+    one, other = spares.take(variables), spares.take(variables)
+    assert one is not other
+    spares.give(one)
+    spares.give(other)
+    await turns()
+    assert other.task.done() and spares.take(variables) is one
+    spares.give(one)
+    spares.leave()
+    await turns()
+    assert one.task.done()
