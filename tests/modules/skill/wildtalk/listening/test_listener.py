@@ -3,6 +3,7 @@
 import itertools
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from ravestate.modules.skill.wildtalk.listening import Heard, State
 from ravestate.modules.skill.wildtalk.listening.hearing import SURE, Hearing, asking_sentence, hear, likely, moment_of
 from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
+from ravestate.modules.skill.wildtalk.listening.state import Pending
 
 from .conftest import seen
 
@@ -193,6 +195,12 @@ def test_an_answer_to_its_question_is_answered_in_turn(begin: Callable[[int], An
             replies.add(talk.say("yes"))
     assert replies
     assert replies <= {"That's good. Nobody should be ill all alone.", "I'm glad she has company."}
+
+
+def test_a_short_answer_to_any_question_is_taken(talk: Any) -> None:
+    talk.state = replace(talk.state, pending=Pending("Who makes the tea?"), said=("Who makes the tea?",))
+    took = [line.text for line in lines_of(material().plain["took"])]
+    assert talk.say("my aunt") in took
 
 
 def test_it_never_asks_three_times_in_a_row_if_there_is_something_else_to_say(begin: Callable[[int], Any]) -> None:

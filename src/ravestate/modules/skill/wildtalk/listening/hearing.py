@@ -49,7 +49,7 @@ SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-ALIKE, SIMILAR = 0.87, 0.82
+ALIKE, SIMILAR = 0.87, 0.84
 """The least similarity of an entry of the bank that decides the answer, and of one that is better than a stock answer."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
