@@ -57,7 +57,7 @@ def test_the_types_that_come_with_it_are_complete() -> None:
     types = types_of(ontology.Settings())
     assert {
         "Thing", "Agent", "Person", "Robot", "Animal", "Place", "City", "Country", "Organisation", "Company",
-        "Institution", "University", "Hobby", "Occupation", "Subject", "Ability", "Remark", "Account",
+        "Institution", "University", "Hobby", "Occupation", "Subject", "Ability", "Remark", "Account", "Face",
     } == set(types)  # fmt: skip
     assert types.properties("Person")["name"] == "text"
     for relation, source, target in (

@@ -377,7 +377,7 @@ async def store(ctx: rs.RuleContext) -> None:
     ctx[verbaliser.intent] = Intent(meant, {"name": name}, __package__)
 
 
-@module.rule(when=refused, reads=visitors, writes=verbaliser.intent, weight=2.0)
+@module.rule(when=refused, reads=visitors, writes=verbaliser.intent, weight=1.9)
 async def respect(ctx: rs.RuleContext) -> None:
     """Accept that a person does not want the agent to remember their face."""
     one = ctx[visitors].get(ctx.payload(refused))

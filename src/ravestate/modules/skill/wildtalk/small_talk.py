@@ -65,8 +65,10 @@ def needs_comfort(seen: nlp.Analysis | None) -> bool:
 
 
 def is_known(seen: nlp.Analysis | None) -> bool:
-    """Return whether the listening skill has a reply to almost the same words."""
-    return seen is not None and seen.question is None and listener().knows(seen)
+    """Return whether the listening skill has a reply to almost the same words. Other skills answer hello and goodbye."""
+    if seen is None or seen.question is not None or {"greeting", "farewell"} & seen.acts.keys():
+        return False
+    return listener().knows(seen)
 
 
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
