@@ -50,9 +50,10 @@ chat: $(DONE)/chat $(DONE)/sentences native ## set up and talk with the agent on
 voice: $(DONE)/voice $(DONE)/sentences native ## set up and talk with the agent by microphone and loudspeaker
 	@$(BIN)/ravestate chat voiceio $(ARGS)
 
+# `ravestate board` sees and hears as soon as eyes and speech are set up.
 .PHONY: eyes
-eyes: $(DONE)/chat $(DONE)/sentences $(DONE)/apart-eyes ## set up and talk with an agent that sees you, knows your face and plays charades
-	@$(BIN)/ravestate chat visionio charades $(ARGS)
+eyes: $(DONE)/apart-eyes ## set up and open a page with an agent that sees you, knows your face and plays charades
+	@$(MAKE) demo
 
 .PHONY: robot
 robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page with a robot's face, and the agent behind it

@@ -11,6 +11,7 @@ from pathlib import Path
 from benchmarks.bench import Bench
 from benchmarks.figures import Figure
 from benchmarks.machine import describe
+from benchmarks.plot import plot
 from benchmarks.questions import QUESTIONS
 from benchmarks.table import as_table, write_json, write_page
 
@@ -29,6 +30,9 @@ def main() -> int:
         write_json(options.json, machine, figures)
     if options.page:
         write_page(options.page, machine, figures)
+        picture = options.page.with_suffix(".svg")
+        if f"({picture.name})" in options.page.read_text(encoding="utf-8"):
+            picture.write_text(plot(figures), encoding="utf-8")
     print(as_table(figures))
     print(f"\n{machine}. {time.monotonic() - begin:.0f} s{' (--quick)' if options.quick else ''}.")
     print("Medians over repetitions in which all contestants take turns; ratio = ours / theirs (quartiles).")
@@ -61,7 +65,12 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("question", nargs="*", help="which to ask; all by default")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions: a first look in about a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures to a file as well")
-    parser.add_argument("--page", type=Path, metavar="FILE", help="put the table into a page that has a place for it")
+    parser.add_argument(
+        "--page",
+        type=Path,
+        metavar="FILE",
+        help="put the table into a page that has a place for it, and draw the picture that the page shows",
+    )
     options = parser.parse_args()
     for name in options.question:
         if name not in QUESTIONS:

@@ -41,7 +41,7 @@ class Child:
     @classmethod
     def peer(cls, interpreter: Path | str, script: str) -> Child:
         """Start a script of a peer with the peer's interpreter."""
-        return cls(str(interpreter), str(PEERS / script))
+        return cls(str(interpreter), "-E", str(PEERS / script))  # PYTHONPATH may lead to this checkout
 
     def ask(self, call: str, timeout: float = 600.0, /, **arguments: Any) -> Any:
         """Call a function of the contestant.

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from benchmarks.figures import Figure, Spread
 
-__all__ = ["as_table", "write_json", "write_page"]
+__all__ = ["as_table", "value_text", "write_json", "write_page"]
 
 HEAD = ("question", "measured", "ours", "against", "theirs", "ratio", "target", "reached")
 
@@ -54,9 +54,9 @@ def _row(figure: Figure) -> tuple[str, ...]:
     return (
         figure.question,
         figure.what,
-        _value(figure.ours, figure.unit),
+        value_text(figure.ours, figure.unit),
         figure.against,
-        _value(figure.theirs, figure.unit),
+        value_text(figure.theirs, figure.unit),
         _ratio(figure.ratio),
         figure.target,
         verdict,
@@ -67,7 +67,8 @@ def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
     return "| " + " | ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)) + " |"
 
 
-def _value(spread: Spread | None, unit: str) -> str:
+def value_text(spread: Spread | None, unit: str) -> str:
+    """Return a median with its unit."""
     if spread is None:
         return ""
     value = spread.median

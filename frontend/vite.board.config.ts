@@ -1,26 +1,4 @@
-// Raveboard: a page of its own, which ships with the room that serves it.
-import { fileURLToPath } from "node:url";
-import { svelte } from "@sveltejs/vite-plugin-svelte";
-import { defineConfig } from "vite";
+// Raveboard.
+import { page } from "./vite.page.ts";
 
-export default defineConfig({
-  root: "src/board",
-  base: "./",
-  publicDir: "public",
-  plugins: [svelte({ configFile: fileURLToPath(new URL("svelte.config.js", import.meta.url)) })],
-  build: {
-    outDir: fileURLToPath(new URL("../src/ravestate/board/page", import.meta.url)),
-    emptyOutDir: true,
-    target: "es2022",
-    assetsInlineLimit: 0,
-    license: { fileName: "assets/script-licences.md" }, // of the bundled packages
-    modulePreload: { polyfill: false },
-    rolldownOptions: {
-      output: {
-        entryFileNames: "assets/board.js",
-        chunkFileNames: "assets/[name].js",
-        assetFileNames: (asset) => `assets/${asset.names[0]?.endsWith(".css") ? "board" : "[name]"}[extname]`,
-      },
-    },
-  },
-});
+export default page("board", "board/page");

@@ -51,7 +51,7 @@ FILES = {
     "frontend/src/lib/protocol.ts": Source(
         ("ravestate.modules.platform.webio.frames", "ravestate.modules.platform.webio.fields"),
         types={"ClientFrame": "CLIENT", "ServerFrame": "SERVER"},
-        constants=("VERSION", "LONGEST_TEXT", "CLOSING_CODES"),
+        constants=("VERSION", "LONGEST_TEXT", "LONGEST_PICTURE", "CLOSING_CODES"),
         checked="ServerFrame",
     ),
     "frontend/src/board/protocol.ts": Source(

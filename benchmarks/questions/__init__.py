@@ -6,6 +6,7 @@ QUESTIONS = {
     "unrelated": "what do unrelated rules cost?",
     "competing": "how long to decide among a thousand rules for one slot?",
     "live_spikes": "what does a spike cost when many are alive?",
+    "load": "how evenly are many contexts served at half load?",
     "growing": "what does ten times as much work cost?",
     "memory": "how much memory does one more context hold?",
     "importing": "how long does the import take, and which packages does it load?",

@@ -42,6 +42,12 @@ def test_a_movement_is_taught_and_then_guessed(tmp_path: Path, folder: str, caps
     assert capsys.readouterr().out.strip().endswith("nordic skiing")
     assert main(["activity", "list", "--folder", folder]) == 0
     assert "nordic skiing  (taught)" in capsys.readouterr().out
+    assert main(["activity", "forget", "nordic sking", "--folder", folder]) == 2
+    assert "did you mean 'nordic skiing'?" in capsys.readouterr().err
+    assert main(["activity", "forget", "Nordic skiing", "--folder", folder]) == 0
+    assert capsys.readouterr().out == "forgot nordic skiing: 2 demonstrations\n"
+    assert main(["activity", "guess", file, "--folder", folder]) == 0
+    assert capsys.readouterr().out.strip().endswith("unknown")
 
 
 @pytest.mark.parametrize(
@@ -73,3 +79,11 @@ def test_people_who_walk_in_a_real_video_are_seen_and_not_taken_for_an_activity(
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) >= 3
     assert all(line.endswith("unknown") for line in lines), lines
+
+
+def test_demonstrations_that_would_not_be_recognised_are_told(folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """In this video, people come and go."""
+    assert main(["activity", "teach", "walking about", str(VIDEO), "--folder", folder]) == 0
+    seen = capsys.readouterr()
+    assert "learnt walking about" in seen.out
+    assert "demonstrations would not be recognised" in seen.err and "forget 'walking about'" in seen.err

@@ -14,6 +14,8 @@ from websockets.sync.client import connect
 
 from board.test_trace_file import recorded
 from ravestate.cli import board, main
+from ravestate.errors import PlatformError
+from ravestate.modules.modality.visionio import places
 from ravestate.modules.platform.voiceio import models as speech_models
 from ravestate.modules.skill.wildtalk import found_models, local_servers
 from ravestate.runtime.agent import Agent
@@ -125,6 +127,34 @@ def test_the_complete_agent_hears_where_speech_is_set_up(
     monkeypatch.setattr(speech_models, "whisper_models", lambda: iter([("base", Path())] if models else []))
     assert main(["board", *arguments]) == 0
     assert ("voiceio" in [module.name for module in served[0].policy.modules]) is has
+
+
+@pytest.mark.parametrize(
+    ("arguments", "there", "seen"),
+    [
+        ([], True, {"visionio", "charades"}),
+        ([], False, set()),
+        (["--without", "visionio"], True, set()),
+        (["--without", "charades"], True, {"visionio"}),
+    ],
+)
+def test_the_complete_agent_sees_where_eyes_are_set_up(
+    monkeypatch: pytest.MonkeyPatch, arguments: list[str], there: bool, seen: set[str]
+) -> None:
+    served: list[Agent] = []
+
+    async def serve(made: Agent, *_: Any) -> None:
+        served.append(made)
+
+    def eyes(_: object = None) -> str:
+        if not there:
+            raise PlatformError("visionio needs the packages of the eyes")
+        return "python"
+
+    monkeypatch.setattr(board, "_serve", serve)
+    monkeypatch.setattr(places, "eyes_python", eyes)
+    assert main(["board", *arguments]) == 0
+    assert {module.name for module in served[0].policy.modules} & {"visionio", "charades"} == seen
 
 
 def test_a_recorded_trace_needs_no_agent(tmp_path: Path) -> None:

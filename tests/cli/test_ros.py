@@ -71,10 +71,10 @@ def test_check_says_what_is_bound_and_how_to_mend_it(
     (tmp_path / "agent.py").write_text(AGENT)
     assert ros(bus, "check", str(tmp_path / "agent.py")) == 1
     assert capsys.readouterr().out.splitlines() == [
-        "ok       agent:chat    subscriber of /chat (std_msgs/String): 1 publishers",
+        "ok       agent:chat    subscriber of /chat (std_msgs/String): 1 publisher",
         "FAULT    agent:number  subscriber of /chat (std_msgs/Int32): the other end has std_msgs/msg/String: write "
         "type='std_msgs/String'",
-        "ok       agent:lamp    service of /lamp (std_srvs/SetBool): 1 servers",
+        "ok       agent:lamp    service of /lamp (std_srvs/SetBool): 1 server",
         "FAULT    agent:lost    publisher of /lost (std_msgs/String): no subscribers; of this type there is /chat: write "
         "remap or another name",
         "FAULT    agent:own     publisher of /own (own_msgs/Thing): there is no definition of own_msgs/msg/Thing: install "
@@ -82,11 +82,20 @@ def test_check_says_what_is_bound_and_how_to_mend_it(
     ]
 
 
+def test_check_looks_for_each_part_of_a_robot(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["ros", "check", "roboyio", "--set", "roboyio.robot=turtlebot", "--set", f"roboyio.bus={bus}"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[1] for line in lines] == [
+        f"roboyio:{part}" for part in ("hear", "direction", "people", "speak", "express", "yaw")
+    ]
+    assert "roboyio:speak      publisher of /speech/say (std_msgs/String): no subscribers" in lines[3]
+
+
 def test_topics_lists_what_there_is(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert ros(bus, "topics", "--version", "2") == 0
     assert capsys.readouterr().out.splitlines() == [
-        "topic    /chat  std_msgs/msg/String  1 > 0",
-        "service  /lamp  std_srvs/srv/SetBool  1 offer it",
+        "topic    /chat  std_msgs/msg/String  1 publisher, 0 subscribers",
+        "service  /lamp  std_srvs/srv/SetBool  1 server",
     ]
 
 

@@ -30,8 +30,8 @@ def rows(text: str) -> list[tuple[str, str, str]]:
 
 def test_who_learn_and_forget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))
-    code, out, _ = call(capsys, "vision", "who", *memory, str(photo("obama")))
-    assert code == 0 and rows(out) == [("unknown", "-", "obama")]
+    code, out, errors = call(capsys, "vision", "who", *memory, str(photo("obama")))
+    assert code == 0 and rows(out) == [("unknown", "-", "obama")] and "there is no memory in" in errors
     assert not (tmp_path / "memory.lbug").exists()
     code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")), str(photo("obama2")))
     assert (code, out) == (0, "learnt 2 views of Barack\n")
@@ -41,6 +41,8 @@ def test_who_learn_and_forget(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert [float(distance) <= 0.45 for _, distance, _ in rows(out)] == [True, *[False] * 7]
     code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")))
     assert (code, out) == (0, "learnt 0 views of Barack\n")  # it tells nothing new
+    code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))  # two names for one face
+    assert code == 1 and "memory knows this face as Barack" in errors and "memory forget" in errors
     code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
     assert (code, out) == (0, "forgot 3\n")
     code, out, _ = call(capsys, "vision", "who", *memory, str(photo("obama")))

@@ -133,7 +133,7 @@ def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_in_order(folder: Path) -> None:
-    """A thread takes real time, else the virtual clock would reach the end before the signal comes."""
+    """A thread that waits for input holds the virtual clock, else it would reach the end before the signal comes."""
     (folder / "slow.py").write_text(
         STORYTELLER
         + """
@@ -147,14 +147,14 @@ async def wait(ctx):
 
 @module.rule(when=rs.startup.detached())
 async def keep(ctx):
-    import asyncio, time
-    while True:
-        await asyncio.to_thread(time.sleep, 0.05)
+    import asyncio, sys
+    await asyncio.to_thread(sys.stdin.readline)
 """
     )
     wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
     command = [str(Path(sys.executable).parent / "ravestate"), "voice", "talk", "in.wav", "-o", "out.wav", "./slow.py"]
-    with subprocess.Popen([*command, *TINY], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    pipe = subprocess.PIPE
+    with subprocess.Popen([*command, *TINY], stdin=pipe, stdout=pipe, stderr=pipe, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "begun\n"
         process.send_signal(signal.SIGINT)

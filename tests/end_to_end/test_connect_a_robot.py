@@ -99,13 +99,16 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
     }  # fmt: skip
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    monkeypatch.setattr(
-        "ravestate.modules.platform.ros.checking.LOOKS", 1
-    )  # the patrol waits for nodes that are not there
+    # The patrol waits for nodes that are not there.
+    monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 12)
     made = Reader(tmp_path, capsys, network.start_master)
+    before = set(sys.modules)
     yield made
     made.kill()
     network.stop()
+    for name in set(sys.modules) - before:
+        if str(tmp_path) in str(getattr(sys.modules[name], "__file__", "")):
+            del sys.modules[name]
 
 
 @contextlib.contextmanager

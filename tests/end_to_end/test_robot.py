@@ -69,8 +69,13 @@ async def test_a_visitor_talks_with_the_robot(stage: Stage, tmp_path: Path) -> N
             await page.get_by_role("button", name="Come into view").click()
             await expect(page.get_by_role("button", name="Leave")).to_be_visible()
             await expect(page.locator("svg[role=img] rect[rx='13']")).to_have_count(1)  # the waving arm
-    head = (folder / "robot.png").read_bytes()[:24]
-    assert struct.unpack(">II", head[16:24]) == (SIZE["width"], SIZE["height"])
+            context.emit(emotion.surprised)
+            await expect(face).to_have_attribute("data-face", "surprised")
+            await page.wait_for_timeout(500)  # the arm is up
+            await page.screenshot(path=folder / "robot-waves.png")
+    for picture in ("robot.png", "robot-waves.png"):
+        head = (folder / picture).read_bytes()[:24]
+        assert struct.unpack(">II", head[16:24]) == (SIZE["width"], SIZE["height"])
 
 
 @on_stage

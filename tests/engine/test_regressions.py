@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from properties.fuzz import difference
 from properties.oracle import Exclusion, bounded, empty
 from properties.worlds import Act, Gate, Play, RuleOf, SignalOf, SlotOf, Want, World
 from ravestate.engine.engine import Engine
@@ -682,3 +683,48 @@ def test_no_alternative_answers_a_cause_that_has_merged_with_an_answered_one() -
     inputs = ((0.0, ("emit", "s2", 1)), (1.0, ("emit", "s0", 3)))
     play = Play(World(S3, (SlotOf(), SlotOf()), rules, inputs)).play()
     assert runs(play) == ["r1", "r2", "r3"]
+
+
+def test_a_rival_that_takes_an_input_of_another_group_has_its_patience_from_that_moment() -> None:
+    # L16: r2 stands by when r1 puts it under pressure at 0 s. The activation that it then gets waits for r1's group in
+    # its place, and is under pressure at once. So both are over at 1 s.
+    rules = (
+        RuleOf(when=on("s1", "s2"), emits=("s0",)),
+        RuleOf(when=on("s2"), writes=("v0",)),
+        RuleOf(when=on("s0", "s3"), writes=("v0",)),
+    )
+    inputs = ((0.0, ("emit", "s2", 0)), (0.0, ("emit", "s3", 2)))
+    play = Play(World((*S3, SignalOf()), V1, rules, inputs)).play()
+    assert [line.split(" s <")[0] for line in play.heard if "< Run(" in line] == ["1"]
+
+
+def test_rules_that_share_a_half_may_give_its_spike_up_one_after_another() -> None:
+    # L16: r0, r1 and r2 come under pressure for the second s0 at different moments, while others wait for them. When the
+    # half judges them next, the patience of all is over, and the first of them was the last that kept the spike there.
+    odd = ((Want("s0"), Want("s1", where="odd")),)
+    rules = (
+        RuleOf(when=((Want("s0", max_age=None), Want("s1")),), writes=("v0",), acts=(Act(seconds=2.0),)),
+        RuleOf(when=odd, writes=("v0",), acts=(Act(seconds=2.0),), weight=0.5),
+        RuleOf(when=odd, writes=("v0",), acts=(Act(seconds=2.0, end="resigned"),)),
+        RuleOf(when=on("s0", "s1"), writes=("v0",), acts=(Act(end="resigned"),), weight=2.0),
+    )
+    inputs = (
+        (0.3, ("emit", "s1", 3)),
+        (0.0, ("emit", "s0", 1)),
+        (1.1, ("emit", "s0", 0)),
+        (1.0, ("wipe", "s1")),
+        (1.1, ("emit", "s1", 2)),
+    )
+    assert runs(Play(World(S3[:2], V1, rules, inputs)).play()) == ["r2", "r1", "r3", "r0"]
+
+
+def test_those_that_wait_for_the_same_rule_to_recover_ask_in_the_same_instant() -> None:
+    # L15: r0 recovers to the weight of r1 at 3.5 s. Two of its activations wait for this moment, from different times on.
+    ripe = ((Want("s0", min_age=1.0),),)
+    again = (Act(((0.0, ("emit", "s0", 2)),)),)
+    rules = (
+        RuleOf(when=on("s0"), writes=("v0",), cooldown=5.0),
+        RuleOf(when=ripe, writes=("v0",), emits=("s0",), acts=again, detached=True, weight=0.5),
+    )
+    inputs = ((1.0, ("emit", "s0", 0)), (0.0, ("emit", "s0", 2)), (1.5, ("emit", "s0", 2)))
+    assert difference(World(S3[:1], V1, rules, inputs)) == ""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 import ravestate as rs
 from laws.short import output, writer
 from ravestate.engine.standing import Standing
@@ -23,41 +25,51 @@ def standing(ran: dict[int, float], now: float, **options: dict[str, Any]) -> tu
 
 def test_of_equals_the_first_declared_goes_first() -> None:
     here, (one, other) = standing({}, 0.0, one={}, other={})
-    assert here.refuses(one, other)
-    assert not here.refuses(other, one)
+    assert here.is_ahead(one, other)
+    assert not here.is_ahead(other, one)
 
 
 def test_the_weight_of_rules_worth_nothing_counts() -> None:
     here, (one, other) = standing({}, 0.0, one={}, other={"weight": 2.0})
-    assert here.refuses(other, one)
-    assert not here.refuses(one, other)
+    assert here.is_ahead(other, one)
+    assert not here.is_ahead(one, other)
 
 
-def test_a_rule_that_recovers_faster_from_nothing_is_refused_by_none() -> None:
+def test_a_rule_that_recovers_faster_from_nothing_is_behind_none() -> None:
     here, (slow, fast) = standing({0: 5.0, 1: 5.0}, 5.0, slow={"cooldown": 20.0}, fast={"cooldown": 5.0})
-    assert not here.refuses(slow, fast)  # they are equal now, but not in the moment after
-    assert not here.refuses(fast, slow)  # and now the first declared goes first
+    assert not here.is_ahead(slow, fast)  # they are equal now, but not in the moment after
+    assert not here.is_ahead(fast, slow)  # and now the first declared goes first
     here.now = 6.0
-    assert here.refuses(fast, slow)
+    assert here.is_ahead(fast, slow)
 
 
 def test_the_order_changes_where_the_lines_cross() -> None:
     here, (one, other) = standing({0: 0.0}, 1.0, one={"cooldown": 10.0, "weight": 2.0}, other={})
-    assert here.refuses(other, one)
-    assert here.crossing(one, other) == here.crossing(other, one) == 5.0
+    assert here.is_ahead(other, one)
+    assert here.crossing(one, other) == here.crossing(other, one) == pytest.approx(5.0)
     here.now = 5.0
-    assert not here.refuses(other, one)
+    assert not here.is_ahead(other, one)
     here.now = 10.0
-    assert here.refuses(one, other)
+    assert here.is_ahead(one, other)
 
 
 def test_a_crossing_at_a_rounded_time_is_a_crossing() -> None:
     here, (one, other) = standing({0: 0.1}, 0.7, one={"cooldown": 0.9, "weight": 1.7}, other={"weight": 1.1})
     here.now = here.crossing(one, other)
-    assert not here.refuses(other, one)
+    assert not here.is_ahead(other, one)
 
 
 def test_a_rule_that_recovers_faster_from_nothing_overtakes_at_once() -> None:
     here, (slow, fast) = standing({0: 5.0, 1: 5.0}, 5.0, slow={"cooldown": 20.0}, fast={"cooldown": 5.0})
     assert here.overtakes(fast, slow)
     assert not here.overtakes(slow, fast)
+
+
+def test_a_crossing_is_the_same_moment_whenever_one_asks_for_it() -> None:
+    here, (one, other) = standing({0: 0.1, 1: 0.3}, 0.3, one={"cooldown": 9.0, "weight": 1.7}, other={"cooldown": 11.0})
+    found: set[float] = set()
+    for number in range(50):
+        here.now = 0.3 + number / 997
+        found.add(here.crossing(one, other))
+        found.add(here.crossing(other, one))
+    assert len(found) == 1, found

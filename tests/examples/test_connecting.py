@@ -1,9 +1,8 @@
-"""The ROS 2 platform that the documentation shows, with a stand-in for ROS; and its mouth, with a program."""
+"""The robot that the documentation connects, on the built-in bus; and its mouth, with a program."""
 
 import asyncio
 import os
 import sys
-import threading
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -11,8 +10,10 @@ from pathlib import Path
 import pytest
 
 import ravestate as rs
-from ravestate.modules import rawio
-from repo.snippets import STAND_INS, blocks_in, save
+from modules.platform.ros.networks import until
+from ravestate.modules import rawio, ros2
+from ravestate.modules.platform.ros import Bus, quality
+from repo.snippets import blocks_in, save
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "connect-speech-or-a-robot.md"
 
@@ -22,37 +23,36 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The page's files, to be imported."""
     for block in blocks_in(PAGE):
         save(block, tmp_path)
-    monkeypatch.setattr(sys, "path", [str(tmp_path), str(STAND_INS), *sys.path])
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     before = set(sys.modules)
     yield
     for name in set(sys.modules) - before:
-        if str(getattr(sys.modules[name], "__file__", "")).startswith((str(tmp_path), str(STAND_INS))):
+        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(tmp_path)):
             del sys.modules[name]
 
 
 def test_a_robot_is_heard_and_told_what_to_say() -> None:
     robot, storyteller = import_module("robot"), import_module("storyteller")
-    rclpy, string = import_module("rclpy"), import_module("std_msgs.msg").String
+    qos = quality(None, depth=10, latch=False)
 
-    async def talk() -> list[str]:
+    async def talk() -> None:
         said: list[str] = []
-        async with rs.Context(storyteller, robot) as context:
-            await context.next(robot.publisher.changed, timeout=10)
-            node = rclpy.create_node("listener")
-            node.create_subscription(string, "say", lambda message: said.append(message.data), 10)
-            for _ in range(2):
-                answer = asyncio.ensure_future(context.next(robot.rawio.output.changed, timeout=10))
-                await asyncio.sleep(0)  # it waits
-                node.create_publisher(string, "heard", 10).publish(string(data="Enough."))
-                await answer
-            await context.quiet()
-        with pytest.raises(import_module("rclpy.executors").ExternalShutdownException):
-            rclpy.spin(node)
-        return said
+        async with Bus(0) as bus, asyncio.timeout(20):
+            settings = {"backend": "bus", "bus": bus.address}
+            node = ros2.make_node(ros2.Settings.model_validate(settings))
+            node.subscribe("/say", "std_msgs/String", lambda message: said.append(message.data), latest=False, qos=qos)
+            ears = node.advertise("/heard", "std_msgs/String", qos=qos)
+            async with rs.Context(storyteller, robot, settings={"ros2": settings}) as context:
+                await until(lambda: bus.find("subscriber", "/heard") and bus.find("subscriber", "/say"))
+                for number in (1, 2):
+                    answer = asyncio.ensure_future(context.next(rawio.output.changed))
+                    ears.publish("Enough.")
+                    assert await answer == "Good night."
+                    await until(lambda: len(said) == number)  # noqa: B023
+            await node.close()
+        assert said == ["Good night.", "Good night."]
 
-    assert asyncio.run(talk()) == ["Good night.", "Good night."]
-    assert "ros" not in [thread.name for thread in threading.enumerate()]
-    assert asyncio.run(talk()) == ["Good night.", "Good night."]  # it may be begun again
+    asyncio.run(talk())
 
 
 def test_the_telephone_is_a_whole_line() -> None:

@@ -247,8 +247,13 @@ class Model:
         """Return when a clause that is behind overtakes another, if both go on as they do."""
         (far, fast), (their_far, their_fast) = self.recovery(mine.rule), self.recovery(theirs.rule)
         closing = mine.base * fast - theirs.base * their_fast
-        behind = theirs.base * their_far - mine.base * far
-        return self.now + behind / closing if closing > 0 and behind > 0 else inf
+        if closing <= 0 or theirs.base * their_far <= mine.base * far:
+            return inf
+        # Counted from the last run: a moment of the plan must not depend on the moment at which it is computed.
+        began = max(self.ran[c.rule.index] for c, speed in ((mine, fast), (theirs, their_fast)) if speed)
+        far = (began - self.ran[mine.rule.index]) * fast if fast else far
+        their_far = (began - self.ran[theirs.rule.index]) * their_fast if their_fast else their_far
+        return began + (theirs.base * their_far - mine.base * far) / closing
 
     # ------------------------------------------------------------------------------- consent
 
@@ -723,5 +728,5 @@ class Model:
         if outcome == "failed":
             failure = exception or RuleError("failed")
             self.out.append(Failed(rule.name, failure))
-            if not (event.kind == "failed" and "core:error" in heard):
+            if "core:error" not in heard:
                 self.failures.append(RuleFailure(rule.name, failure))

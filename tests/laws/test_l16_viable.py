@@ -544,6 +544,23 @@ def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_anoth
         assert moments(sim, out) == [(0.9, "fuse"), (1.4, "alone"), (1.8, "alone")]
 
 
+def test_an_old_activation_with_a_new_spike_spares_the_younger_activation_of_that_spike_its_wait(play: Any) -> None:
+    m = rs.Module("m")
+    point, speech, out = m.signal("point"), m.signal("speech", limit=2), output(m)
+    writer(m, "fuse", point & speech, out, after=2.0)
+    writer(m, "plain", speech, out, cooldown=9.0)
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.emit(point)  # the first run begins; the point's other activation takes the next speech, and waits
+        sim.emit(speech)
+        sim.advance(0.3)
+        sim.emit(speech)
+        sim.emit(speech)  # the limit withdraws the speech that it held, so it takes the next one
+        sim.advance(1.1)
+        sim.emit(point)
+        assert started(sim)[-1] == (1.4, "fuse")  # the third speech was still there for it
+
+
 def test_a_derivation_may_be_deeper_than_the_interpreter_nests_calls(
     play: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 from properties.shrinking import compiles
 from properties.worlds import Act, Op, RuleOf, SignalOf, SlotOf, Want, World
@@ -19,10 +20,14 @@ def pair_world_of(seed: int) -> World:
 def _world(chance: random.Random) -> World:
     signals = [f"s{n}" for n in range(chance.randint(2, 4))]
     slots = [f"v{n}" for n in range(chance.randint(1, 2))]
+    rules = [_rule(chance, signals, slots) for _ in range(chance.randint(2, 6))]
+    if chance.random() < 0.25:  # each rule is the only writer of its slot
+        slots = [f"v{n}" for n in range(len(rules))]
+        rules = [replace(rule, writes=(slot,), cooldown=0.0) for rule, slot in zip(rules, slots, strict=True)]
     return World(
         signals=tuple(SignalOf(limit=chance.choice((100, 100, 100, 2)), input=chance.random() < 0.3) for _ in signals),
         slots=tuple(SlotOf() for _ in slots),
-        rules=tuple(_rule(chance, signals, slots) for _ in range(chance.randint(2, 6))),
+        rules=tuple(rules),
         inputs=tuple(
             (chance.choice((0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 1.1, 2.5)), _op(chance, signals))
             for _ in range(chance.randint(3, 12))

@@ -10,7 +10,7 @@ from properties.oracle import empty
 from properties.strategies import worlds
 from properties.worlds import Act, Play, RuleOf, SignalOf, SlotOf, Want, World
 from ravestate.engine.activation import Activation
-from ravestate.engine.group import Group
+from ravestate.engine.group import NO_NUMBERS, NOTHING, Group
 from ravestate.engine.spike import Spike
 from ravestate.engine.watch import Watch
 
@@ -54,6 +54,7 @@ def test_a_burst_of_ten_thousand_spikes_is_handled_once_each_and_leaves_nothing(
     assert count() == before
     empty(play)
     assert play.engine.state.dropped == {}
+    assert not NOTHING and not NO_NUMBERS  # what all engines share stays empty
 
 
 @settings(max_examples=15)

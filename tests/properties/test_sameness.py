@@ -84,7 +84,9 @@ def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> 
         same = more.clause_plans[index]
         same.base, same.utility = clause.base, clause.utility
     for old, new in zip(policy.signal_plans, more.signal_plans, strict=True):
-        new.contests = tuple(tuple(more.clause_plans[clause.index] for clause in clauses) for clauses in old.contests)
+        new.conflict_sets = tuple(
+            tuple(more.clause_plans[clause.index] for clause in clauses) for clauses in old.conflict_sets
+        )
     changed.engine.receive(AddRule(more), changed.now)
     changed.pump()
     assert changed.play().heard == plain.play().heard

@@ -32,9 +32,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-STAND_INS = Path(__file__).with_name("stand_ins")
-"""Stand-ins for packages that no test environment has (ROS), as far as the documentation uses them. Real packages take
-precedence."""
 FENCE = re.compile(r"(?P<indent>[ \t]*)(?P<fence>`{3,}|~{3,})[ \t]*(?P<info>[^`]*)")
 NOT_RUN = re.compile(r"\s*<!--\s*not run:\s*(?P<reason>.*?)\s*-->\s*")
 APART = re.compile(r"\s*<!--\s*in:\s*(?P<environment>\w+)\s*-->\s*")
@@ -178,7 +175,6 @@ class Page:
         before, path, known = Path.cwd(), list(sys.path), set(sys.modules)
         os.chdir(self.folder)
         sys.path.insert(0, str(self.folder))
-        sys.path.append(str(STAND_INS))
         try:
             yield
         finally:
@@ -186,7 +182,7 @@ class Page:
             sys.path[:] = path
             for name in set(sys.modules) - known:
                 origin = getattr(sys.modules[name], "__file__", None) or ""
-                if origin.startswith((str(self.folder), str(STAND_INS))):
+                if origin.startswith(str(self.folder)):
                     del sys.modules[name]
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from importlib import import_module
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
+SVG = "{http://www.w3.org/2000/svg}"
 QUESTIONS = sorted(file.stem for file in (ROOT / "benchmarks" / "questions").glob("[!_]*.py"))
 
 
@@ -32,3 +34,18 @@ def test_a_page_gets_the_tables_that_it_has_a_place_for(tmp_path: Path, monkeypa
     page.write_text("no place", encoding="utf-8")
     with pytest.raises(ValueError, match="has no comment"):
         table.write_page(page, "Two cores", found)
+
+
+def test_the_picture_of_a_comparison_has_a_bar_for_each_contestant(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT))
+    compare, plot = import_module("benchmarks.figures").compare, import_module("benchmarks.plot").plot
+    times = {"one": 2e-3, "other": 3e-5, "slow & steady": 0.4, "floor: 2 callbacks": 6e-6}
+    found = [compare("answer", "k=1", [1e-5], name, [seconds]) for name, seconds in times.items()]
+    picture = ElementTree.fromstring(plot([*found, compare("answer", "alone", [1.0], "one", [2.0])]))
+    bars = {bar.get("class"): float(bar.get("width", 0)) for bar in picture.iter(f"{SVG}rect") if bar.get("x")}
+    assert sorted(bars) == ["floor", "ours", "theirs"] and bars["floor"] < bars["ours"] < bars["theirs"]
+    words = [text.text for text in picture.iter(f"{SVG}text")]
+    assert [word for word in words if word in {"floor", "Ravestate", *times}] == [
+        "floor", "Ravestate", "other", "one", "slow & steady",
+    ]  # fmt: skip  # the shortest time first
+    assert "400 ms" in words and "alone" not in words

@@ -52,7 +52,11 @@ def known() -> dict[str, Path]:
     files = [*ROOT.glob("src/**/*.yaml"), *ROOT.glob("examples/**/*.yaml"), *ROOT.glob("tests/**/*.yaml")]
     files += [*ROOT.glob("tests/**/*.tsv"), *ROOT.glob("tests/**/*.py"), *ROOT.glob("src/**/*.py")]
     seen = (file for file in files if BLIND not in file.parents)
-    return {plain(sentence): file for file in seen for sentence in _sentences(file)}
+    found = {plain(sentence): file for file in seen for sentence in _sentences(file)}
+    for file in ROOT.glob("src/**/bank/*.tsv"):
+        for line in file.read_text(encoding="utf-8").splitlines():
+            found |= {plain(said): file for said in line.split("\t")[1].split("|")}
+    return found
 
 
 def _asked(name: str) -> list[str]:

@@ -121,7 +121,7 @@ async def tell(ctx: rs.RuleContext) -> None:
 @quick.rule(when=asked.changed, writes=told, until=sure)
 async def doubt(ctx: rs.RuleContext) -> None:
     ctx[told] = "perhaps"
-    await asyncio.sleep(0)
+    await ctx.sleep(0.001)
 
 
 @on_loop

@@ -111,6 +111,26 @@ async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(error
             assert await talk.ask(context) == "fallback"  # and the conversation goes on
 
 
+def test_an_error_handler_that_takes_too_long_causes_no_further_error() -> None:
+    module = rs.Module("m")
+    begin = module.signal("begin", input=True)
+    seen: list[str] = []
+
+    @module.rule(when=begin)
+    async def fail(ctx: rs.RuleContext) -> None:
+        raise ValueError("broken")
+
+    @module.rule(when=rs.error, timeout=0.5)
+    async def report(ctx: rs.RuleContext) -> None:
+        seen.append(ctx.payload(rs.error).rule)
+        await ctx.sleep(10.0)
+
+    with simulate(module) as sim:
+        sim.emit(begin)
+        sim.advance(5.0)
+    assert seen == ["m:fail"]
+
+
 def test_the_trace_has_the_line_in_which_a_rule_failed() -> None:
     module = rs.Module("m")
     go, slow = module.signal("go"), module.signal("slow")

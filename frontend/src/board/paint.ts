@@ -3,6 +3,8 @@ import { paintVoice } from "./sound-paint";
 import type { Bar, Lane, Phase, Spike, Trace } from "./trace";
 import { from } from "./trace";
 import { label, step, type View } from "./view";
+import { BODY, FACES, type Stretch } from "./vision";
+import { paintVision } from "./vision-paint";
 
 export const LANE = 26;
 export const AXIS = 26;
@@ -111,6 +113,7 @@ export function paint(context: CanvasRenderingContext2D, scene: Scene): void {
     const lane = scene.trace.lanes.get(name);
     if (lane !== undefined) paintLane(context, scene, lane, top);
     if (name === USER || name === AGENT) paintVoice(context, scene, name, top, LANE, shortened);
+    if (name === FACES || name === BODY) paintVision(context, scene, name, top, LANE, shortened);
   }
   const places = new Map(scene.lanes.map((name, i) => [name, AXIS + i * LANE - scene.scroll + LANE / 2]));
   paintSpikes(context, scene, places);
@@ -495,12 +498,15 @@ function paintGaps(context: CanvasRenderingContext2D, scene: Scene): void {
   }
 }
 
-/** Return the spike at a place, or else the bar; in the lane of a voice, the stretch of speech and the mark. */
+/**
+ * Return the spike at a place, or else the bar; in the lane of a voice, the stretch of speech and the mark; in a lane of
+ * the camera, what was seen.
+ */
 export function at(
   scene: Scene,
   x: number,
   y: number,
-): { spike?: Spike; bar?: Bar; band?: Band; mark?: Mark } {
+): { spike?: Spike; bar?: Bar; band?: Band; mark?: Mark; seen?: Stretch[] } {
   const index = Math.floor((y - AXIS + scene.scroll) / LANE);
   const name = scene.lanes[index];
   if (y < AXIS || name === undefined) return {};
@@ -508,6 +514,10 @@ export function at(
   const reach = (7 / width) * view.span;
   const time = view.time(x, width);
   if (name === USER || name === AGENT) return trace.sound.at(name, time, reach, scene.now);
+  if (name === FACES || name === BODY) {
+    const seen = trace.vision.at(name, time, reach);
+    return seen.length > 0 ? { seen } : {};
+  }
   const middle = AXIS + index * LANE - scene.scroll + LANE / 2;
   // The context's own dots are below the others.
   const below = name === OUTSIDE && y > middle + OWN / 2;

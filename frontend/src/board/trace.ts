@@ -1,5 +1,6 @@
 import type { Alive, Rendered, Settled, TraceRecord } from "./protocol";
 import { Sound } from "./sound";
+import { Vision } from "./vision";
 
 /** The state of an activation. */
 export type State = "gathering" | "complete" | "waiting" | "running";
@@ -76,6 +77,7 @@ export class Trace {
   gaps: Gap[] = [];
   /** The voices of a spoken conversation. */
   sound = new Sound();
+  vision = new Vision();
   /** The runs that failed. */
   failures: Settled[] = [];
   /** The last time of each signal (seconds). */
@@ -222,6 +224,7 @@ export class Trace {
     this.records.push(record);
     this.last = Math.max(this.last, record.time);
     this.sound.add(record);
+    this.vision.add(record);
     switch (record.kind) {
       case "born": {
         const spike: Spike = {
@@ -362,6 +365,7 @@ export class Trace {
     this.first = this.records[0]?.time ?? 0;
     const gone = (time: number) => time < this.first;
     this.sound.forget(this.first);
+    this.vision.forget(this.first);
     for (const spike of this.spikes) if (gone(spike.time)) this.#spikes.delete(spike.id);
     this.spikes = this.spikes.filter((spike) => !gone(spike.time));
     this.gaps = this.gaps.filter((gap) => !gone(gap.time));

@@ -46,7 +46,7 @@ const OPEN = 1;
 const MOST_WAITING = 64_000;
 
 /** Frames that the server does not answer. */
-const UNANSWERED = new Set(["writing", "played", "hush"]);
+const UNANSWERED = new Set(["writing", "played", "hush", "camera", "picture"]);
 
 /** Milliseconds without a frame from the server, by what the page waits for. */
 const TIMEOUTS = {
@@ -100,6 +100,13 @@ export class Connection {
     const socket = this.#socket;
     if (this.#status === "open" && socket?.readyState === OPEN && socket.bufferedAmount < MOST_WAITING)
       socket.send(sound);
+  }
+
+  /** Send a picture, the answer to `look` number `n`, if there is a connection; return whether there was one. */
+  sendPicture(n: number, picture: ArrayBuffer): boolean {
+    if (!this.send({ type: "picture", n })) return false;
+    this.#socket?.send(picture);
+    return true;
   }
 
   /** Check the connection: the network may be back, or the user looks at the page again. */

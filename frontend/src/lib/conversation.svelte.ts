@@ -1,5 +1,6 @@
 import { Connection, type Options, type Status } from "./connection";
 import { type Message, type Say, type ServerFrame, VERSION } from "./protocol";
+import { Sight, type Options as SightOptions } from "./sight.svelte";
 import { announce, isSeen, type Kept, keep, markSeen, recall, tokenOfLink } from "./store";
 import { Voice, type Options as VoiceOptions } from "./voice.svelte";
 
@@ -43,6 +44,7 @@ export class Conversation {
   /** The latest error of the server. */
   trouble = $state("");
   readonly voice: Voice;
+  readonly sight: Sight;
 
   #kept: Kept = recall();
   #outbox: Say[];
@@ -54,7 +56,12 @@ export class Conversation {
   #told = Number.NEGATIVE_INFINITY; // the time of the last `writing`
   #connection: Connection;
 
-  constructor(options: Pick<Options, "open" | "backoff"> & { devices?: VoiceOptions["open"] } = {}) {
+  constructor(
+    options: Pick<Options, "open" | "backoff"> & {
+      devices?: VoiceOptions["open"];
+      camera?: SightOptions["open"];
+    } = {},
+  ) {
     const token = tokenOfLink();
     if (token !== undefined) this.#keep({ token });
     this.#outbox = (this.#kept.outbox ?? []).map(({ id, text }) => ({ type: "say", id, text }));
@@ -74,14 +81,23 @@ export class Conversation {
         this.status = status;
         if (status === "open" || status === "silent") return;
         this.typing = this.paused = false;
-        if (status !== "lost" && status !== "connecting") this.voice.pause("");
+        if (status !== "lost" && status !== "connecting") {
+          this.voice.pause("");
+          this.sight.pause("");
+        }
         this.voice.disconnected();
+        this.sight.disconnected();
       },
     });
     this.voice = new Voice({
       send: (frame) => this.#connection.send(frame),
       sendSound: (sound) => this.#connection.sendSound(sound),
       ...(options.devices === undefined ? {} : { open: options.devices }),
+    });
+    this.sight = new Sight({
+      send: (frame) => this.#connection.send(frame),
+      sendPicture: (n, picture) => this.#connection.sendPicture(n, picture),
+      ...(options.camera === undefined ? {} : { open: options.camera }),
     });
   }
 
@@ -92,6 +108,7 @@ export class Conversation {
 
   stop(): void {
     this.voice.pause("");
+    this.sight.pause("");
     this.#connection.stop();
   }
 
@@ -157,6 +174,7 @@ export class Conversation {
       this.inside = frame.inside === undefined ? "" : this.#linkInside(frame.inside);
       this.partial = "";
       this.voice.connected(frame.voice === true);
+      this.sight.connected(frame.sight ?? "");
       for (const say of this.#outbox) this.#connection.send(say); // the server ignores those that it has
     } else if (frame.type === "renamed") this.agent = frame.agent;
     else if (frame.type === "message") this.#hear(frame);
@@ -170,7 +188,9 @@ export class Conversation {
     } else if (frame.type === "ended") {
       this.ending = frame.text;
       this.#forget();
-    } else this.voice.take(frame);
+    } else if (frame.type === "look" || frame.type === "faces" || frame.type === "unseen")
+      this.sight.take(frame);
+    else this.voice.take(frame);
   }
 
   #mark(n: number, heard: string): void {

@@ -6,6 +6,9 @@ export const VERSION = 1;
 /** The maximum number of characters in one utterance of a visitor. */
 export const LONGEST_TEXT = 10000;
 
+/** The maximum number of bytes of a picture. */
+export const LONGEST_PICTURE = 100000;
+
 /** Error code → the WebSocket's closing code; any other error closes with the code of `malformed`. */
 export const CLOSING_CODES = {
   ended: 1000,
@@ -80,6 +83,23 @@ export interface Hush {
   type: "hush";
 }
 
+/**
+ * The visitor's camera goes on or off in this window.
+ *
+ * At most one window of a conversation has it: the last one that turned it on.
+ */
+export interface Camera {
+  type: "camera";
+  on: boolean;
+}
+
+/** The answer to a `Look`: the next binary frame is the camera's newest picture, a JPEG. */
+export interface Picture {
+  type: "picture";
+  /** The number of the `Look`. */
+  n: number;
+}
+
 /** The answer to `Hello`. */
 export interface Welcome {
   type: "welcome";
@@ -105,6 +125,8 @@ export interface Welcome {
   note?: string;
   /** Whether the agent can hear and speak: the server accepts `Microphone` and sound. */
   voice?: boolean;
+  /** The notice to show before the camera goes on, if the agent can see; None if it cannot. */
+  sight?: string;
 }
 
 /** The agent's new name. */
@@ -183,6 +205,33 @@ export interface Taken {
   text: string;
 }
 
+/** The agent wants a picture of this window's camera. */
+export interface Look {
+  type: "look";
+  /** The number of this request. A `Picture` with an earlier number is ignored. */
+  n: number;
+}
+
+/** A face that the agent sees. */
+export interface Face {
+  /** x, y, width and height, in shares of the picture's size, from the upper left corner. */
+  box: [number, number, number, number];
+  /** The person's name; missing if the agent does not know it. */
+  name?: string;
+}
+
+/** All faces that the agent sees in this window's pictures now. */
+export interface Faces {
+  type: "faces";
+  faces: Face[];
+}
+
+/** This window no longer has the camera; `text` says why. */
+export interface Unseen {
+  type: "unseen";
+  text: string;
+}
+
 /** The conversation is over; `text` says why. The server then closes the connection. */
 export interface Ended {
   type: "ended";
@@ -205,7 +254,7 @@ export interface Pong {
   type: "pong";
 }
 
-export type ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush;
+export type ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush | Camera | Picture;
 
 export type ServerFrame =
   | Welcome
@@ -219,6 +268,9 @@ export type ServerFrame =
   | Flush
   | Listening
   | Taken
+  | Look
+  | Faces
+  | Unseen
   | Ended
   | Error
   | Pong;
@@ -263,6 +315,15 @@ export const FIELDS: Record<ServerFrame["type"], Record<string, string>> = {
   },
   listening: {},
   taken: {
+    text: "string",
+  },
+  look: {
+    n: "number",
+  },
+  faces: {
+    faces: "object",
+  },
+  unseen: {
     text: "string",
   },
   ended: {

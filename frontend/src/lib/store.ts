@@ -57,6 +57,26 @@ export function markSeen(note: string): void {
   }
 }
 
+const AGREED = "ravestate.camera";
+
+/** Return whether the visitor has agreed to this notice in this browser. */
+export function isAgreed(notice: string): boolean {
+  try {
+    return localStorage.getItem(AGREED) === notice;
+  } catch {
+    return false;
+  }
+}
+
+/** Remember that the visitor has agreed to a notice. */
+export function markAgreed(notice: string): void {
+  try {
+    localStorage.setItem(AGREED, notice);
+  } catch {
+    // then the page asks again
+  }
+}
+
 /** Return the token of the page's link (`#token=...`), and remove it from the address so that nobody shares it. */
 export function tokenOfLink(): string | undefined {
   const token = new URLSearchParams(location.hash.slice(1)).get("token");

@@ -67,7 +67,7 @@ function embed(page: URL, options: DOMStringMap): void {
     if (open && frame === null) {
       frame = document.createElement("iframe"); // only now: visitors who do not open it stay unconnected
       frame.title = options.title ?? "Talk with us";
-      frame.allow = "microphone; autoplay";
+      frame.allow = "microphone; camera; autoplay";
       frame.referrerPolicy = "origin"; // lets the server's log name a site without permission
       frame.addEventListener("load", () => setTimeout(complain, PATIENCE));
       frame.src =

@@ -37,6 +37,10 @@ COMMANDS = {
 }
 
 
+LAST_GRACE = 0.5
+"""The seconds for which the ended command waits for functions of rules that still run."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line (by default with the arguments of the process), and return the exit code."""
     from ravestate import __version__, compiled
@@ -91,13 +95,17 @@ def script() -> int:
     """Run the command ``ravestate``, and end the process.
 
     The interpreter stops the remaining threads in the middle of their work. In a C++ library, such as a model that is
-    still loading, this aborts the process. So the process ends here, after everything else has been cleaned up.
+    still loading, this aborts the process. So the process ends here, after everything else has been cleaned up. Hence it
+    need not wait long for threads: `LAST_GRACE` is for functions that save something.
     """
     import atexit
     import os
     import threading
 
+    from ravestate.runtime import workers
+
     code = main()
+    workers.LAST_GRACE = LAST_GRACE
     atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # this runs the handlers that wait for threads
     if any(thread.daemon for thread in threading.enumerate()):
         for stream in (sys.stdout, sys.stderr):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -35,7 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     teaching.add_argument("name", metavar="NAME", help="the name as it is spoken, such as 'playing the flute'")
     teaching.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a video, or landmarks (.npz)")
     listing = actions.add_parser("list", help="list the activities that the agent knows")
-    for action in (guessing, teaching, listing):
+    forgetting = actions.add_parser("forget", help="forget an activity that the agent was taught")
+    forgetting.add_argument("name", metavar="NAME", help="its name, as `list` shows it")
+    for action in (guessing, teaching, listing, forgetting):
         action.add_argument("--folder", type=Path, metavar="FOLDER", help="the folder of taught activities")
     for action in (guessing, teaching):
         action.add_argument("--python", type=Path, metavar="FILE", help="the interpreter of the vision worker")
@@ -48,13 +51,16 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.settings import load_settings
 
     given = {"folder": options.folder} if options.folder else {}
-    settings: activity.Settings = load_settings([activity.module], {"activity": given})["activity"]  # type: ignore[assignment]
+    settings = load_settings([activity.module], {"activity": given})["activity"]
+    assert isinstance(settings, activity.Settings)
     folder = folder_of(settings.folder)
     for file in [options.file] if options.action == "guess" else options.files if options.action == "teach" else []:
         if not file.is_file():
             raise UsageError(f"{file} is a folder: name a file" if file.is_dir() else f"there is no file {file}")
     if options.action == "teach":
         return _teach(options, folder, settings)
+    if options.action == "forget":
+        return _forget(options.name, folder)
     known = _recogniser(folder)
     if options.action == "list":
         for name in known.names:
@@ -109,6 +115,27 @@ def _teach(options: argparse.Namespace, folder: Path, settings: Any) -> int:
     for part in parts:
         keep(folder, name, part)
     print(f"learnt {name} from {len(parts)} demonstration{'' if len(parts) == 1 else 's'}, in {folder}")
+    unlike = sum(known.recognise(part).name != name for part in parts)
+    if unlike:
+        print(
+            f"ravestate activity: {unlike} of {len(parts)} demonstrations would not be recognised: film one person from the front, "
+            f"who does nothing else. Then forget these: ravestate activity forget {shlex.quote(name)}",
+            file=sys.stderr,
+        )
+    return 0
+
+
+def _forget(given: str, folder: Path) -> int:
+    from ravestate.errors import nearest
+    from ravestate.modules.modality.activity.files import clean, files_of
+
+    taught = files_of(folder)
+    name = clean(given)
+    if name not in taught:
+        raise UsageError(f"no activity {name!r} was taught{nearest(name, taught)} (in {folder})")
+    for file in taught[name]:
+        file.unlink(missing_ok=True)
+    print(f"forgot {name}: {len(taught[name])} demonstration{'' if len(taught[name]) == 1 else 's'}")
     return 0
 
 

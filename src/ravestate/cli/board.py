@@ -50,9 +50,7 @@ def run(options: argparse.Namespace) -> int:
         raise PlatformError(f"the board needs {error.name}: pip install 'ravestate[web]'") from error
     recording = open_trace(Path(options.recording)) if options.recording else None
     talks = recording is None
-    chosen = agents.load_agent(
-        options, ["webio", *(complete.names(options, voice=True) if talks and not named else ())]
-    )
+    chosen = agents.load_agent(options, ["webio", *(complete.names(options, page=True) if talks and not named else ())])
     if talks and not named:
         complete.leave_out_absent(chosen, options.command)
     if talks and (offer := complete.choose_small_talk(chosen, options.command)):

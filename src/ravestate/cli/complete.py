@@ -19,6 +19,9 @@ COMPLETE = (
 )  # fmt: skip
 """The names of the modules of the complete text agent, without a platform."""
 
+ON_PAGE = ("voiceio", "visionio", "charades")
+"""The names of the modules that the complete agent has in addition on a page, where they are set up: speech and eyes."""
+
 PACKAGES = {
     "nlp": ("spacy",),
     "ontology": ("ladybug",),
@@ -52,16 +55,19 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def names(options: argparse.Namespace, *, voice: bool = False) -> list[str]:
+def names(options: argparse.Namespace, *, page: bool = False) -> list[str]:
     """Return the names of the complete agent's modules, except those that the options leave out.
 
-    With `voice`, the agent also hears and speaks if speech is set up on this machine.
+    On a `page`, the agent also hears, speaks and sees if speech and eyes are set up on this machine.
     """
-    known = (*COMPLETE, "voiceio") if voice else COMPLETE
+    known = (*COMPLETE, *ON_PAGE) if page else COMPLETE
     for name in options.without:
         if name not in known:
             raise UsageError(f"--without {name}: the agent has no such module{nearest(name, known)}")
-    return [name for name in known if name not in options.without and (name != "voiceio" or _can_hear())]
+    absent = {"voiceio"} if page and not _can_hear() else set[str]()
+    if page and ("visionio" in options.without or not _can_see()):
+        absent |= {"visionio", "charades"}
+    return [name for name in known if name not in (*options.without, *absent)]
 
 
 def _can_hear() -> bool:
@@ -71,6 +77,17 @@ def _can_hear() -> bool:
     from ravestate.modules.platform.voiceio.models import whisper_models
 
     return any(whisper_models())
+
+
+def _can_see() -> bool:
+    """Return whether this machine has the packages for recognising faces."""
+    from ravestate.modules.modality.visionio.places import eyes_python
+
+    try:
+        eyes_python()
+    except PlatformError:
+        return False
+    return True
 
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
@@ -88,14 +105,16 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
     in_environment = (name for name in absent if any(v.startswith(variable_of(name, "")) for v in os.environ))
     out = absent - {*agent.settings, *in_environment}
     for module in agent.modules:  # each module comes after those that it requires
-        if module.name in COMPLETE and any(required.name in out for required in module.requires):
+        if module.name in (*COMPLETE, *ON_PAGE) and any(required.name in out for required in module.requires):
             out.add(module.name)
     agent.modules = [module for module in agent.modules if module.name not in out]
     out -= {module.name for module in with_required(agent.modules)}  # keep modules that other modules still need
     for name in out:
         agent.settings.pop(name, None)
     left = (
-        f"the agent talks without {', '.join(name for name in COMPLETE if name in out)}; to add them: " if out else ""
+        f"the agent talks without {', '.join(name for name in (*COMPLETE, *ON_PAGE) if name in out)}; to add them: "
+        if out
+        else ""
     )
     print(f"ravestate {command}: {left}pip install 'ravestate[chat]'", file=sys.stderr)
 

@@ -6,7 +6,7 @@ import argparse
 import asyncio
 import json
 import sys
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -16,6 +16,7 @@ from ravestate.loading.spec import AgentSpec
 
 if TYPE_CHECKING:
     from ravestate.modules.platform.ros import Node
+    from ravestate.modules.platform.ros.checking import Bound
 
 LONG = 64
 """The number of items of a list above which `echo` leaves out the rest."""
@@ -101,16 +102,19 @@ async def _check_agent(options: argparse.Namespace) -> int:
     spec = load_agent(options)
     agent = Agent(*spec.modules, **spec.options())
     slots = [slot for slot in agent.policy.slots.values() if isinstance(slot, TopicSlot)]
+    wanted: list[tuple[Node, Sequence[Bound]]] = [
+        (_make(version, dict(agent.settings)), own)
+        for version in (1, 2)
+        if (own := [slot for slot in slots if slot.binding.version == version])
+    ]
+    if any(module.name == "roboyio" for module in agent.policy.modules):
+        wanted.append(_robot(dict(agent.settings)))
     lines: list[Line] = []
-    for version in (1, 2):
-        own = [slot for slot in slots if slot.binding.version == version]
-        if not own:
-            continue
-        node = _make(version, dict(agent.settings))
+    for node, bound in wanted:
         try:
-            lines += await check(node, own)
+            lines += await check(node, bound)
         except PlatformError as error:
-            lines += [Line(False, slot.name, str(error)) for slot in own]
+            lines += [Line(False, each.name, str(error)) for each in bound]
         finally:
             await node.close()
     if not lines:
@@ -120,6 +124,21 @@ async def _check_agent(options: argparse.Namespace) -> int:
     for line in lines:
         print(f"{'ok' if line.good else 'FAULT':<7}  {line.what:<{width}}  {line.text}")
     return int(not all(line.good for line in lines))
+
+
+def _robot(settings: dict[str, Any]) -> tuple[Node, Sequence[Bound]]:
+    """Return a node on the network of the agent's robot, and the parts of the robot."""
+    from ravestate.modules import roboyio, ros2
+
+    own = settings["roboyio"]
+    robot = roboyio.load_robot(own.robot)
+    if own.link == "bus":
+        node = ros2.make_node(ros2.Settings(backend="bus", bus=own.bus))
+    else:
+        node = _make(int(own.link[-1]), settings)
+    if robot.definitions is not None:
+        node.types.definitions.add(robot.definitions)
+    return node, robot.parts(1 if own.link == "ros1" else 2)
 
 
 async def _with_node(
@@ -168,10 +187,17 @@ async def _look_again(node: Node, topic: str) -> dict[str, Any]:
 async def _topics(options: argparse.Namespace, node: Node, graph: dict[str, Any]) -> int:
     if not options.version or options.version == 2:
         graph = await _look_again(node, "")
-    for kind in ("topics", "services", "actions"):
+    from ravestate.modules.platform.ros.checking import counted
+
+    for kind, nouns in (
+        ("topics", ("publishers", "subscribers")),
+        ("services", ("servers",)),
+        ("actions", ("servers",)),
+    ):
         for row in sorted(graph[kind], key=lambda row: row["name"]):
-            ends = f"{row['publishers']} > {row['subscribers']}" if kind == "topics" else f"{row['servers']} offer it"
-            print(f"{kind[:-1]:<7}  {row['name']}  {', '.join(row['types']) or '?'}  {ends}")
+            if any(row[noun] for noun in nouns):  # else it is this command's own
+                ends = ", ".join(counted(row[noun], noun) for noun in nouns)
+                print(f"{kind[:-1]:<7}  {row['name']}  {', '.join(row['types']) or '?'}  {ends}")
     return 0
 
 

@@ -1,8 +1,8 @@
 """The life of an activation (L12, L14, L17, L18).
 
 An activation is a clause plus the spikes that it has acquired. Once it has consent, it is a run of the rule. Every
-clause also has an activation in stand-by: one that holds nothing yet. It needs no object: the engine creates the object
-for the first spike.
+clause also has an activation in stand-by, which holds no spike yet. No object represents a stand-by: the engine creates
+the object for the first spike.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
@@ -103,10 +103,10 @@ class Activation:
         missing: The bits of the clause's needs without a spike.
         ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
         place: While it is ready and needs no consent: its place in the queue (``free.py``).
-        pressed: Group in which others wait for it, though it may never be ready → when its patience ends (seconds; L16).
+        pressed: If it may never be ready: a group in which others wait for it → when its patience ends (seconds; L16).
         refusal: While it waits: the reasons (``consent.py``).
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
-        groups: The groups in which the run has taken slots, as they were when the run began.
+        groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
         deadline: The time at which the run times out (seconds).
         told: The reason for which the engine cancelled the run; empty if it did not.

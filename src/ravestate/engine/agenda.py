@@ -5,8 +5,8 @@
    utility first within a cause. By then, rules that never suspend have ended.
 3. When no writer may start either, the engine updates the built-in flags.
 
-So when a classifier ends, a waiting activation asks again in the same instant, but only after everything else that ends
-in this instant.
+Suppose that an activation waits for a rule, and that rule ends. Then the activation asks again in the same instant, after
+all other rules that end in this instant.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Final
 
 from ravestate.engine.activation import READY, WAITING, Activation
 from ravestate.engine.consent import Consent
+from ravestate.engine.idle import Idle
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
@@ -24,10 +25,10 @@ from ravestate.engine.stalemate import stalemate
 from ravestate.engine.state import State
 
 BATCH: Final = 100
-"""The number of activations without consent that start before the events of their runs are received."""
+"""The maximum number of activations that start in one go without consent. Then the engine receives their runs' events."""
 
 Turn = tuple[int, float, int, int, Activation]
-"""A place in the queue of those that ask: the oldest cause, then the sort key of the activation (`State.order`)."""
+"""A place in the queue of activations that ask: the oldest cause, the sort key (`State.order`), and the activation."""
 
 
 class Agenda:
@@ -43,7 +44,7 @@ class Agenda:
         self.queue: list[Turn] = []
         """The activations that ask in this instant, the best first."""
         self.places: dict[Activation, Turn] = {}
-        """Activation in the queue → its place there; its other places do not count."""
+        """Activation in the queue → its place that counts. Other places that it has in the queue are out of date."""
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
         self.time = 0.0
@@ -56,7 +57,7 @@ class Agenda:
         state = self.state
         started = 0
         while started < BATCH and (activation := state.free.pop()) is not None:
-            if activation.clause.guards and not self._is_open(activation):
+            if activation.clause.guards and not self._pass_guards(activation):
                 continue
             if state.loops.runs > MANY and state.loops.defer(activation):
                 continue
@@ -67,20 +68,23 @@ class Agenda:
     def has_questions(self) -> bool:
         """Whether activations may ask for consent now."""
         state = self.state
-        return bool(self.queue or state.asking or state.dirty or state.stirred or state.refused or state.stuck)
+        return bool(
+            self.queue or state.asking or state.dirty or state.stirred or state.headless or state.refused or state.stuck
+        )
 
     def consent_round(self) -> None:
         """Let ready activations ask for consent: older causes first, and the best activation first within a cause.
 
         If a rule has just started, an activation that reads one of its slots asks in the next round instead. So the
-        activation sees the values that this rule writes before it suspends.
+        activation sees the values that the rule writes before the rule first suspends.
         """
         state, queue, places = self.state, self.queue, self.places
         state.standing.now = state.now
+        self.consent.holdings.benches.settle()
         asking = self.consent.holdings.waits.wake()
         if not queue and len(asking) == 1:
             for activation in asking:
-                if self._may_ask(activation) and self._has_consent(activation):
+                if self._may_ask(activation) and self._ask(activation):
                     self.runs.start(activation)
         else:
             self._line_up(asking)
@@ -98,10 +102,10 @@ class Agenda:
             if written and not rule.readable.isdisjoint(written):
                 if _is_taken(activation):
                     later.append(turn)  # by the next round it waits, or has lost its spike
-                elif self._has_consent(activation):
+                elif self._ask(activation):
                     later.append(turn)
                     break
-            elif self._has_consent(activation):
+            elif self._ask(activation):
                 self.runs.start(activation)
                 written.update(rule.slots)
         for turn in later:
@@ -113,7 +117,7 @@ class Agenda:
     def settle_flags(self) -> bool:
         """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
         state = self.state
-        pressure = _presses(state.waiting) or _presses(state.alternatives)
+        pressure = bool(state.benches) or _presses(state.waiting) or _presses(state.alternatives)
         if pressure != state.values.get(state.pressure.index, False):
             self.slots.set_flag(state.pressure, pressure)
             return True
@@ -142,25 +146,29 @@ class Agenda:
                     self.recovering = self.recovering or activation.clause.rule.cooldown > 0
 
     def _may_ask(self, activation: Activation) -> bool:
-        """Return whether an activation asks: it is ready, and its turn in a loop is not one too many (L23)."""
+        """Return whether an activation may ask: it is ready or waits, its guards are true, no loop defers it (L23)."""
         if activation.state not in (READY, WAITING):
             return False
-        if activation.clause.guards and not self._is_open(activation):
+        if activation.clause.guards and not self._pass_guards(activation):
             return False
         loops = self.state.loops
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
-    def _has_consent(self, activation: Activation) -> bool:
-        """Return whether an activation has consent; if it has not, it waits."""
+    def _ask(self, activation: Activation) -> bool:
+        """Ask for consent; return whether the activation has it. If not, it waits, and others may ask instead."""
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
+            if self.state.benches:
+                for head in self.consent.holdings.benches.next_heads(activation):
+                    del self.state.asking[head]
+                    self._line_up({head: None})
             if activation in self.state.alternatives and not refusal.taken and self.consent.is_contested(activation):
                 self.consent.halves.sets.unfold(activation)
             return False
         return True
 
-    def _is_open(self, activation: Activation) -> bool:
+    def _pass_guards(self, activation: Activation) -> bool:
         """Return whether the activation's predicates on slots are true; if not, the activation is no longer ready."""
         if self.state.is_open(activation.clause):
             return True
@@ -178,23 +186,29 @@ class Agenda:
         """Start the best of the activations that wait for nothing but each other, if there are any."""
         state, breakers = self.state, self.breakers
         if not (state.refused or state.stuck):
+            breakers.clear()  # none of them is stuck any more
             return
         found = stalemate(self.consent, state.refused, state.stuck)
         state.refused.clear()
+        stuck = state.stuck
+        if stuck is None:
+            if not found:
+                return
+            stuck = state.stuck = Idle()
         for activation in found:
-            if activation not in state.stuck:
-                state.stuck.add(activation)
+            if activation not in stuck:
+                stuck.add(activation)
                 heapq.heappush(breakers, (state.order(activation), activation))
         while breakers:
             order, best = heapq.heappop(breakers)
-            if best not in state.stuck:
+            if best not in stuck:
                 continue  # it has asked again since
             if order != state.order(best):
                 heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
                 continue
             for group in best.firm_groups():
-                for other in group.interested:  # what these wait for depends on the group, and so on this start
-                    state.stuck.discard(other)
+                for other in group.interested:  # their wait depends on the group, which this start changes
+                    stuck.discard(other)
                     state.refused[other] = None
             self.runs.start(best)
             break

@@ -2,14 +2,16 @@
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
 the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
-its run resigns or fails, the next clause takes its place. To explain something, and to retire or add a rule, the queue
-is *unfolded* into ordinary activations. The number of each activation is fixed from the start, and no rival depends on
-an alternative (`find_contests`). So it does not matter when a queue unfolds.
+its run resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations for a
+tracer, and to retire or add a rule. It also unfolds if a rival may come between the clauses (`Consent.is_contested`).
+The number of each activation is fixed from the start, and no rival depends on an alternative (`find_conflict_sets`). So
+it does not matter when a queue unfolds. An explanation unfolds nothing.
 """
 
 from __future__ import annotations
 
 from ravestate.engine.activation import Activation
+from ravestate.engine.group import NOTHING
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
@@ -28,7 +30,7 @@ class ConflictSets:
     def offer(self, signal: SignalPlan, spike: Spike) -> None:
         """Offer a spike to the conflict sets of its signal."""
         state = self.state
-        for clauses in signal.contests:
+        for clauses in signal.conflict_sets:
             if spike.group.finished(clauses[0].rule.slots):
                 for clause in clauses if state.tracer is not None else ():
                     self.holdings.pass_by(clause, spike, "consumed")
@@ -84,6 +86,8 @@ class ConflictSets:
         """Create the activation of the clause at a position; the clauses after it become its alternatives."""
         activation = self._activate(clauses[position], base + position + 1, spike)
         if position + 1 < len(clauses):
+            if self.state.alternatives is NOTHING:
+                self.state.alternatives = {}
             self.state.alternatives[activation] = (clauses, position + 1, base)
 
     def _activate(self, clause: Clause, number: int, spike: Spike) -> Activation:

@@ -1,10 +1,11 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses while one of the activation's slots is taken in it, or while there is a rival: another viable clause
-that writes one of these slots, has greater effective utility, and has a stake in the group. A clause has a stake if
-it holds a spike of the group, or lacks a signal that a rule of the group may cause.
+A group refuses consent while one of the activation's slots is taken in it, or while the activation has a rival there. A
+rival is another viable clause that writes one of these slots, has greater effective utility, and has a stake in the
+group. A clause has a stake if it holds a spike of the group, or lacks a signal that a rule of the group may cause.
 
-A rival that may never become ready is under pressure: it has its patience, once in each group (L16).
+A rival that may never become ready is under pressure: when its patience ends, the activation waits for it no longer. Each
+group grants a rival its patience once (L16).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Any
 from ravestate.engine import trace
 from ravestate.engine.activation import NEVER, RUNNING, Activation
 from ravestate.engine.deadlines import PATIENCE
-from ravestate.engine.group import Group
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import FIRM, NO, Horizon
@@ -52,7 +53,7 @@ class Consent:
         for group in groups:
             refusal.interests[group] = None
         horizon: Horizon | None = None
-        soon: list[tuple[Clause, list[Activation], Group]] = []  # the rivals that are ahead from this moment on
+        soon: list[tuple[Clause, list[Activation], Group]] = []  # rivals that are not ahead yet, but in the next moment
         eliminated = False
         for group in groups:
             if group.taken and _note_taken(refusal, group, clause.rule):
@@ -67,7 +68,7 @@ class Consent:
             for rival, members in self._rivals(activation, group):
                 if clause.rule.cooldown or rival.rule.cooldown:
                     refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
-                if standing.refuses(rival, clause):
+                if standing.is_ahead(rival, clause):
                     horizon = horizon or self._horizon(activation, idle)
                     if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                         eliminated = True
@@ -78,7 +79,7 @@ class Consent:
             if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                 eliminated = True
         if eliminated and refusal.names:
-            return self.ask(activation, idle)  # rivals judged before may have hung on the eliminated one
+            return self.ask(activation, idle)  # the verdict on an earlier rival may depend on the eliminated one
         if horizon is not None:
             refusal.interests.update(horizon.visited)
             refusal.hopes = horizon.hopes
@@ -98,11 +99,14 @@ class Consent:
     ) -> bool:
         """Judge each activation of a rival and its stand-by in a group. Return whether one was eliminated."""
         eliminated = False
-        apart = False  # whether one of them waits for the group's signals without a spike of the group
+        apart = False  # whether one of them holds no spike of the group, but waits for one
         sure: list[Activation] = []
         if self.state.halves and horizon.open_bits(rival, group):
             self.halves.unfold_clause(rival)
-        for member in (*members, *horizon.elsewhere(rival, group), None):
+        living = [*members, *horizon.elsewhere(rival, group)]
+        if len(living) > 1:
+            living.sort(key=_age)  # oldest first: an old activation with a young spike covers younger activations
+        for member in (*living, None):
             if member is None:
                 if apart:
                     break  # the older activation takes the signal
@@ -132,7 +136,10 @@ class Consent:
     def _judge_half(
         self, refusal: Refusal, horizon: Horizon, best: Need, spike: Spike, clause: Clause, *, commit: bool
     ) -> bool:
-        """Judge a half that holds a spike by its best clause, which stands for all; or unfold it, to judge each clause.
+        """Judge all clauses of a half that holds a spike by the best of them, or unfold the half.
+
+        The best clause can stand for all if each clause lacks only a second spike, and all have the same prospects of
+        that spike. Otherwise, the half is unfolded, and each clause is judged on its own.
 
         Return whether clauses were eliminated.
         """
@@ -140,11 +147,11 @@ class Consent:
         assert half is not None
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
-            horizon.judge(rival, None, group)[0] != NO
-            or horizon.open_bits(rival, group)
-            or (strength == FIRM and rival.rule.index in self.state.active)
-            or (strength != NO and self._is_held_beside(half, spike))
-            or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)
+            horizon.judge(rival, None, group)[0] != NO  # its stand-by is a rival as well
+            or horizon.open_bits(rival, group)  # its activations elsewhere may take a spike of this group
+            or (strength == FIRM and rival.rule.index in self.state.active)  # an older activation may cover it
+            or (strength != NO and self._is_held_beside(half, spike))  # or cover another clause of the half
+            or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
             self.halves.unfold(spike, half)
             horizon.renew()
@@ -156,7 +163,7 @@ class Consent:
         return False
 
     def _is_held_beside(self, half: Half, spike: Spike) -> bool:
-        """Return whether a clause for which a half holds a spike has an activation with the same spike."""
+        """Return whether a clause of a half has both an entry and an activation with the same spike."""
         for holder in spike.holders:
             rank = half.rank.get(holder.clause.index)
             if rank is not None and self.state.keeps(half.best[rank], spike):
@@ -166,14 +173,16 @@ class Consent:
     def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
         """Put the clauses of a half that go before `clause` under pressure; eliminate those whose patience is over.
 
-        The first entry of a half's pressure is for its best clauses, the next one for those that follow, and so on.
-        Return whether clauses were eliminated.
+        `State.pressed` has a list for each spike and half. Its first item is for the best clauses, the second for the
+        clauses after these, and so on. Return whether clauses were eliminated.
         """
         state = self.state
         pressed = state.pressed.get(spike, {}).get(half, [])
         ahead = bisect_left(half.ranks, (-clause.base, clause.index))
         if commit and (not pressed or pressed[-1][0] < ahead):
             until = state.now + (state.patience if half.patience is None else half.patience)
+            if state.pressed is NOTHING:
+                state.pressed = {}
             state.pressed.setdefault(spike, {}).setdefault(half, pressed).append((ahead, until))
         begin, eliminated = 0, False
         for count, until in list(pressed):
@@ -193,7 +202,7 @@ class Consent:
         """Return the need of the best other clause for which a half holds a spike, if it goes before `clause`."""
         for need in half.best:
             if need.clause is not clause and self.state.keeps(need, spike):
-                return need if self.state.standing.refuses(need.clause, clause) else None
+                return need if self.state.standing.is_ahead(need.clause, clause) else None
         return None
 
     def is_contested(self, best: Activation) -> bool:
@@ -222,7 +231,7 @@ class Consent:
                     theirs is not first
                     and (-theirs.base, theirs.index) < limit
                     and not theirs.rule.slotset.isdisjoint(slots)
-                    and not state.standing.refuses(theirs, first)
+                    and not state.standing.is_ahead(theirs, first)
                 ):
                     return True
         return False
@@ -230,9 +239,9 @@ class Consent:
     def press(
         self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True
     ) -> float:
-        """Return when a rival's patience in a group ends (seconds), for it may never be ready and `by` waits for it.
+        """Return when a rival's patience in a group ends (seconds). `by` waits for the rival, which may never be ready.
 
-        The first time puts the rival under pressure (L16), if `commit`. `member` is the rival's activation, or None if
+        With `commit`, the first call puts the rival under pressure (L16). `member` is the rival's activation, or None if
         the clause stands by.
         """
         state = self.state
@@ -265,7 +274,10 @@ class Consent:
         self.holdings.end(rival, "eliminated")
 
     def _horizon(self, activation: Activation, idle: Sequence[Idle]) -> Horizon:
-        """Return a horizon in which the activation does nothing, nor do those that wait, or would wait, for it (L16)."""
+        """Return a horizon in which the activation does nothing (L16).
+
+        Activations that wait for it, or would wait for it, do nothing either.
+        """
         still = {activation}
         clause = activation.clause
         slots = clause.rule.slotset
@@ -334,6 +346,10 @@ def _is_covered(younger: Activation, older: Sequence[Activation]) -> bool:
     """Return whether one of the older activations, which are still to run, holds all spikes of a younger one."""
     spikes = younger.firm_spikes() if older else ()
     return any([all([spike in one.spikes for spike in spikes]) for one in older])
+
+
+def _age(activation: Activation) -> int:
+    return activation.id
 
 
 def _place(rival: tuple[Clause, list[Activation]]) -> int:

@@ -21,9 +21,9 @@ class Kind(enum.IntEnum):
 
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need
-    RECHECK = 2  # the order of recovering utilities changes, or the patience of a rival without an activation ends
+    RECHECK = 2  # a reason to wait may end at this time (`Refusal.recheck`)
     PATIENCE = 3  # the patience of a pressured activation ends
-    EXPIRE = 4  # a spike is too old for an incomplete activation
+    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` condition are old enough

@@ -65,7 +65,7 @@ class Spiked:
 @dataclass(slots=True)
 class Ended:
     """A report of the outcome of a run, if the engine has `report_ends`. ``fired`` is false if the run resigned, or if
-    it failed or was wiped before it wrote a slot."""
+    it failed or was wiped before it wrote a slot. A run that was interrupted has fired, even if it failed then."""
 
     run: int
     rule: str

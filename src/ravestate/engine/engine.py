@@ -123,7 +123,8 @@ class Engine:
             if state.deadlines.earliest <= state.now:
                 self.advance(state.now)
             elif state.errors:
-                failure, lineage = state.errors.pop(0)
+                failure, lineage = state.errors[0]
+                state.errors = state.errors[1:]
                 error = state.policy.signal_of["core:error"]
                 self.matching.birth(error, failure, (), self.matching.new_group(), None, lineage)
             elif state.busy and not state.values.get(state.activity.index):
@@ -219,7 +220,7 @@ class Engine:
     def _retire(self, rule: RulePlan) -> None:
         """Remove a rule from the context (L18)."""
         self.halves.unfold_all()
-        self.state.retired.add(rule.index)
+        self.state.retired |= {rule.index}
         for activation in list(self.state.active.get(rule.index, ())):
             if activation.state < RUNNING:
                 self.holdings.end(activation, "retired")

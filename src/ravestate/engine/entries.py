@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import OrderedDict
 
 from ravestate.engine.activation import NEVER
+from ravestate.engine.bench import Bench
 from ravestate.engine.deadlines import EXPIRE, FORGET
+from ravestate.engine.group import NOTHING
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Half, Need, RulePlan
@@ -24,8 +26,14 @@ class Entries:
         state = self.state
         held = state.halves.get(half)
         if held is None:
+            if state.halves is NOTHING:
+                state.halves, state.pools, state.seats = {}, {}, {}
             held = state.halves[half] = OrderedDict()
+            if half.sole:
+                state.pools[half] = Bench(half, held)
         held[spike] = before
+        if half.sole:
+            state.seats.setdefault(half, {})[spike] = state.pools[half]
         spike.entries += 1
         state.busy += half.busy
         if half.slotset or half.kin:
@@ -36,7 +44,7 @@ class Entries:
     def part(self, spike: Spike, need: Need) -> None:
         """Note that the need's half holds a spike no longer for the need's clause."""
         half = need.half
-        if half is None or spike not in self.state.halves.get(half, ()):
+        if half is None or self.state.entries(half, spike) is None:
             return
         if spike.parted is None:
             spike.parted = set()
@@ -47,10 +55,13 @@ class Entries:
     def drop(self, spike: Spike, half: Half) -> None:
         """Make a half give a spike up for all its clauses."""
         state = self.state
-        held = state.halves[half]
-        del held[spike]
-        if not held:
-            del state.halves[half]
+        if half.sole:
+            self._leave(spike, half)
+        else:
+            held = state.halves[half]
+            del held[spike]
+            if not held:
+                del state.halves[half]
         spike.entries -= 1
         state.busy -= half.busy
         if state.pressed:
@@ -65,6 +76,35 @@ class Entries:
             state.dirty[group] = None
         if not (spike.holders or spike.entries):
             self.forget(spike)
+
+    def _leave(self, spike: Spike, half: Half) -> None:
+        """Remove a spike from its bench."""
+        state = self.state
+        seats = state.seats[half]
+        bench = seats.pop(spike)
+        if not seats:
+            del state.seats[half]
+        del bench.spikes[spike]
+        if not bench.spikes:
+            if bench.partner is None:
+                del state.halves[half], state.pools[half]
+            else:
+                self.vacate(bench)
+
+    def vacate(self, bench: Bench) -> None:
+        """Take its counterpart from a bench."""
+        state, partner = self.state, bench.partner
+        assert partner is not None
+        bench.partner = None
+        benches = state.benches[partner]
+        del benches[bench.half]
+        if not benches:
+            del state.benches[partner]
+        partner.entries -= 1
+        if not partner.entries:
+            partner.group.root().leave(partner)
+            if not partner.holders:
+                self.forget(partner)
 
     def refuse_for_good(self, spike: Spike, rule: RulePlan) -> None:
         """Make a rule give a spike up for good."""
@@ -81,12 +121,14 @@ class Entries:
         """
         parted, refused = spike.parted or set(), spike.refused or set()
         needs = [need for need in half.best[begin:end] if need.clause.index not in parted]
+        if not needs:
+            return False
         refused.update([need.clause.rule.index for need in needs])
         parted.update([need.clause.index for need in needs])
         spike.parted, spike.refused = parted, refused
         if parted.issuperset(half.rank):
             self.drop(spike, half)
-        return bool(needs)
+        return True
 
     def let_expire(self, spike: Spike, due: float) -> None:
         """Set the time (seconds) at which holders that are still incomplete give the spike up (L14)."""

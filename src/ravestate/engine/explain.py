@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, WAITING, Activation
+from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, RUNNING, WAITING, Activation
 from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
 from ravestate.engine.refusal import Refusal
 from ravestate.engine.state import State
@@ -185,6 +185,17 @@ def stand_ins(state: State) -> dict[int, list[Activation]]:
             for need in half.needs:
                 if state.keeps(need, spike):
                     found.setdefault(need.clause.rule.index, []).append(state.stand_in(need, spike))
+    for partner, benches in state.benches.items():
+        for bench in benches.values():
+            need = bench.half.needs[0]
+            counterpart = need.clause.needs[1 - need.index]
+            for spike in bench.spikes:
+                other = state.stand_in(need, spike)
+                other.spikes[counterpart.index], other.missing = partner, 0
+                other.state, other.refusal = WAITING, Refusal()
+                other.refusal.names[need.clause.rule.name] = None
+                other.refusal.blockers.update(dict.fromkeys(h for h in partner.holders if h.state >= RUNNING))
+                found.setdefault(need.clause.rule.index, []).append(other)
     for best, (clauses, made, base) in state.alternatives.items():
         spike = best.spikes[0]
         for place in range(made, len(clauses)):

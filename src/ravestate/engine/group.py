@@ -4,12 +4,35 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from ravestate.errors import EngineError
+
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.engine.spike import Spike
 
-NOTHING: Final[dict[Any, Any]] = {}
-"""An empty table in the place of one that is made on first use. Nothing writes into it."""
+
+class Nothing(dict[Any, Any]):
+    """An empty table that refuses entries, because all engines share it."""
+
+    __slots__ = ()
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        raise EngineError("this empty table is shared: make a table before the first entry")
+
+    def setdefault(self, key: Any, default: Any = None) -> Any:
+        """Raise an error: this table refuses every entry."""
+        self[key] = default
+
+    def update(self, *args: Any, **entries: Any) -> None:
+        """Raise an error: this table refuses all entries."""
+        self["entries"] = args, entries
+
+
+NOTHING: Final[dict[Any, Any]] = Nothing()
+"""The shared empty table. An attribute keeps it until the first entry, which needs a table of its own."""
+
+NO_NUMBERS: Final[frozenset[int]] = frozenset()
+"""An empty set of numbers, shared by all engines. A set that seldom gets a member starts as this one."""
 
 
 class Group:
@@ -17,8 +40,8 @@ class Group:
 
     Attributes:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
-        members: Activation with non-detached spikes of the group → the number of these spikes; oldest activation first.
-        entries: The group's spikes that halves hold without an activation.
+        members: Activation with non-detached spikes of the group → the number of these spikes; the first to join comes first.
+        entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something ends in the group.
         pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
         answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
@@ -46,7 +69,7 @@ class Group:
         return group
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for the runs `holders`, or (None) for good. Runs share it if their groups have merged."""
+        """Take a slot for the runs `holders`; None takes it for good. Runs share a slot if their groups have merged."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:

@@ -1,18 +1,20 @@
 """Halves: spikes that meet the first need of a clause of two needs.
 
 A thousand rules `input & topic` would need a thousand activations for each input, although only a few of the topics
-occur. And of a hundred spikes that wait for their counterpart, a new one may have any, but only the oldest will get it.
-So a first spike is an entry in a table (``entries.py``). An activation is made when a second spike arrives: in a rule
-that writes no slot, for the oldest first spike; in any other rule, for all of them, because consent chooses.
+occur. If a hundred first spikes wait for a counterpart, a new spike fits them all, but only the oldest will get it. So a
+first spike is an entry in a table (``entries.py``). The engine makes activations when a second spike arrives:
 
-To explain something, to merge groups, and to retire or add a rule, entries are *unfolded* into ordinary activations. As
-in a conflict set, their numbers are fixed from the start, and no rival depends on them (`find_halves`). So it does not
-matter when an entry unfolds.
+- for a rule that writes no slot: one activation, with the oldest first spike
+- for the only writer of a slot: also one activation, but all first spikes hold the second (``benches.py``)
+- for any other rule: one activation with each first spike, because consent chooses
+
+Entries are *unfolded* into ordinary activations for a tracer, to merge groups, and to retire or add a rule. `Consent`
+unfolds an entry to judge each of its clauses by itself. As in a conflict set, the numbers of these activations are
+fixed from the start, and no rival depends on them (`find_halves`). So it does not matter when an entry unfolds. An
+explanation unfolds nothing.
 """
 
 from __future__ import annotations
-
-from itertools import islice
 
 from ravestate.engine.activation import Activation
 from ravestate.engine.conflict_sets import ConflictSets
@@ -66,6 +68,8 @@ class Halves:
                 if paired:
                     spike.parted = paired | (spike.parted or set())
                 self.entries.enter(spike, half, before)
+                if state.hoping:
+                    self.holdings.waits.stir_half(half)
                 self._inherit_pressure(spike, half, group)
         if group.interested:
             state.dirty[group] = None
@@ -76,6 +80,9 @@ class Halves:
         self.sets.unfold_all()
         for half, spikes in list(self.state.halves.items()):
             for spike in list(spikes):
+                self.unfold(spike, half)
+        for half, seats in list(self.state.seats.items()):
+            for spike in list(seats):
                 self.unfold(spike, half)
 
     def unfold(self, spike: Spike, half: Half) -> None:
@@ -111,6 +118,9 @@ class Halves:
 
     def _make(self, need: Need, spike: Spike) -> Activation:
         """Create the activation of a clause for which a half holds a spike."""
+        bench = self.state.bench_of(need.half, spike) if need.half is not None else None
+        if bench is not None and bench.partner is not None:
+            return self.holdings.benches.make(bench, spike)
         clause = need.clause
         activation = self.holdings.new_activation(clause, self.state.entry_number(need, spike))
         self.holdings.acquire(activation, need, spike)
@@ -128,12 +138,19 @@ class Halves:
         waiting = state.halves.get(partner.half) if partner.half is not None else None
         if not waiting:
             return False
+        if len(waiting) > 1 and partner.half is not None and partner.half.sole:
+            self.holdings.benches.seat(partner.half, spike)
+            return False
         free = not need.clause.rule.slots
         if need.kin != need.bit:
             found: list[Spike] = sorted((s for s in group.entries if state.keeps(partner, s)), key=waiting.__getitem__)
         else:
-            kept = (s for s in waiting if state.keeps(partner, s))
-            found = [*islice(kept, 1)] if free else [*kept]
+            found = []
+            for first in waiting:  # mypyc would make a list of a generator
+                if state.keeps(partner, first):
+                    found.append(first)
+                    if free:
+                        break
         for first in found[:1] if free else found:
             activation = self._make(partner, first)
             self.holdings.acquire(activation, need, spike)

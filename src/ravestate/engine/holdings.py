@@ -16,6 +16,7 @@ from ravestate.engine.activation import (
     WAITING,
     Activation,
 )
+from ravestate.engine.benches import Benches
 from ravestate.engine.deadlines import RIPEN
 from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
@@ -29,12 +30,13 @@ from ravestate.policy.model import Clause, Need, SignalPlan
 class Holdings:
     """The part of the engine that gives spikes to activations and takes them away."""
 
-    __slots__ = ("entries", "state", "waits")
+    __slots__ = ("benches", "entries", "state", "waits")
 
     def __init__(self, state: State, entries: Entries, waits: Waits) -> None:
         self.state = state
         self.entries = entries
         self.waits = waits
+        self.benches = Benches(self)
 
     def new_activation(self, clause: Clause, number: int) -> Activation:
         """Create an activation of a clause; it is about to take its first spike."""
@@ -140,6 +142,8 @@ class Holdings:
                     state.gated.pop(activation, None)
                     self.complete(activation)
                     return
+                if state.gated is NOTHING:
+                    state.gated = {}
                 state.gated[activation] = None
             elif activation.ripens != ripens:
                 activation.ripens = ripens
@@ -168,11 +172,22 @@ class Holdings:
     def unready(self, activation: Activation) -> None:
         """Put a ready or waiting activation back into the state `GATHERING`."""
         activation.step(LOSE)
+        self._unhead(activation)
         activation.ripens = NEVER
         if activation.refusal is not None:
             self.waits.end(activation)
         self.state.asking.pop(activation, None)
         self.state.gated.pop(activation, None)
+
+    def _unhead(self, activation: Activation) -> None:
+        """Note that benches need another head, if an activation was one."""
+        state = self.state
+        if state.benches:
+            for spike in activation.spikes:
+                if spike is not None and spike in state.benches:
+                    if state.headless is NOTHING:
+                        state.headless = {}
+                    state.headless[spike] = None
 
     def on_ripen(self, activation: Activation) -> None:
         """Judge an activation again whose spikes are old enough now (L14)."""
@@ -187,7 +202,11 @@ class Holdings:
                 self.lose(holder, old, "age")
         for half in self.state.halves_of(spike):
             if spike.born + half.max_age <= time:
-                self.entries.drop(spike, half)
+                bench = self.state.bench_of(half, spike)
+                if bench is not None and bench.partner is not None:
+                    bench.late.append(spike)  # it lacks nothing
+                else:
+                    self.entries.drop(spike, half)
 
     # ------------------------------------------------------------------------------------ giving up
 
@@ -234,8 +253,11 @@ class Holdings:
         """Make the run's rule give up the run's non-detached spikes for good, in all its other activations."""
         rule = run.clause.rule
         for spike in run.stands_on:  # mark all of them first: an activation that loses a spike takes another at once
+            self.benches.rise(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:
+            if spike in self.state.benches:
+                self.benches.check(spike)
             for other in list(spike.holders) if len(spike.holders) > 1 else ():
                 if other is not run and other.clause.rule is rule and other.state < RUNNING:
                     self.lose(other, [n for n in _of_spike(other, spike) if not n.detached], reason, run)
@@ -244,6 +266,7 @@ class Holdings:
         """End an activation and remove every reference to it. With a `reason`, trace that it gave its spikes up."""
         state = self.state
         before = activation.state
+        self._unhead(activation)
         activation.step(END)
         clause = activation.clause
         missing = activation.missing
@@ -315,8 +338,11 @@ class Holdings:
         self.entries.remove(spike)
         for watch in state.watched_by.pop(spike, ()):
             watch.lose(spike)
+        self.benches.rise(spike)
         for half in state.halves_of(spike):
             self.entries.drop(spike, half)
+        if spike in state.benches:
+            self.benches.check(spike)
         for holder in list(spike.holders):
             if holder.state < RUNNING:
                 self.lose(holder, _of_spike(holder, spike), "withdrawn")

@@ -35,13 +35,15 @@ NO: Final = 0
 SPECULATIVE: Final = 1
 FIRM: Final = 2
 
-Slots = frozenset[int]
+SlotNumbers = frozenset[int]
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
 
 
 class Horizon:
-    """The horizons of the engine's groups at one moment, for one asking activation. It reads the state, and changes nothing.
+    """The horizons of the engine's groups at one moment, for one asking activation.
+
+    It changes no spike, group or activation. A predicate that raises is reported (`State.test`).
 
     Args:
         state: The state of the engine.
@@ -78,7 +80,7 @@ class Horizon:
         self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
         self._cuts = 0  # how often a cycle was cut
         self._path: set[tuple[int, Group]] = set()  # the signals whose derivation is in progress
-        self._known: dict[tuple[int, Group, Slots], tuple[int, tuple[Activation, ...]]] = {}
+        self._known: dict[tuple[int, Group, SlotNumbers], tuple[int, tuple[Activation, ...]]] = {}
         self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
@@ -151,7 +153,7 @@ class Horizon:
             and one not in group.members
         ]
 
-    def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: Slots) -> Step:
+    def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: SlotNumbers) -> Step:
         rule = clause.rule
         if rule.index in self.state.retired:
             return NO
@@ -210,7 +212,7 @@ class Horizon:
             return NO
         return strength
 
-    def _all(self, needs: list[Need], group: Group, slots: Slots) -> Step:
+    def _all(self, needs: list[Need], group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which one group may meet all of several needs."""
         weakest = FIRM
         for need in needs:
@@ -220,7 +222,7 @@ class Horizon:
                 break
         return weakest
 
-    def _seen(self, need: Need, group: Group, slots: Slots) -> Step:
+    def _seen(self, need: Need, group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which anything may meet a detached need."""
         self.hopes[SEEN, need.signal.index] = 0
         spike = self.state.newest(need)
@@ -231,7 +233,7 @@ class Horizon:
         strength = yield from self._comes(need.signal.index, group, slots)
         return strength or (SPECULATIVE if self._outside(need, group) else NO)
 
-    def _guards(self, clause: Clause, group: Group, slots: Slots) -> Generator[Any, int, bool]:
+    def _guards(self, clause: Clause, group: Group, slots: SlotNumbers) -> Generator[Any, int, bool]:
         """Return whether each of a clause's predicates on slots is true, or its slot may yet change in this group."""
         for slot, guard in clause.guards:
             if self.state.opens(slot, guard):
@@ -240,7 +242,7 @@ class Horizon:
                 return False
         return True
 
-    def _comes(self, signal: int, group: Group, slots: Slots) -> Step:
+    def _comes(self, signal: int, group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which a signal lies in the horizon of a group."""
         if (signal, group) in self._path:
             self._cuts += 1
@@ -253,7 +255,7 @@ class Horizon:
         self.roots.extend(known[1])
         return known[0]
 
-    def _caused(self, signal: int, group: Group, slots: Slots) -> Step:
+    def _caused(self, signal: int, group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which one of the rules that may raise a signal will do so."""
         cuts, mark = self._cuts, len(self.roots)
         by_rule, retired = self._by_rule[group], self.state.retired

@@ -6,7 +6,7 @@ of all loops together, each further turn waits until nothing else is ready. Once
 the engine names it in an error.
 
 A rule that triggers two runs of itself turns one loop into thousands. So the turns of all loops count together. The
-engine judges a turn when it becomes ready, and again when it is to start: thousands may be ready by then.
+engine judges a turn twice: when it becomes ready, and just before it starts. Thousands may have become ready in between.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ravestate.engine.activation import READY
+from ravestate.engine.group import NO_NUMBERS
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
@@ -26,7 +27,7 @@ MANY: Final = 500
 """The number of runs in one instant before the engine traces further runs; most instants have fewer."""
 
 TURNS: Final = 500
-"""The number of turns in one instant that start like any other run. `MANY` and `TURNS` make the 1,000 runs of L23."""
+"""The number of turns in one instant that the engine does not defer. `MANY` and `TURNS` make the 1,000 runs of L23."""
 
 
 class Loop:
@@ -58,7 +59,7 @@ class Loops:
 
     Attributes:
         runs: How many runs there have been in this instant.
-        late: How many deferred turns of loops that an error has named had their run in this instant.
+        late: How many deferred turns ran in this instant after an error had named their loop.
         deferred: The activations that wait until nothing else is ready, oldest first.
     """
 
@@ -69,7 +70,7 @@ class Loops:
         self._next: Activation | None = None
         self.deferred: deque[Activation] | None = None  # made on first use: an empty one takes 600 bytes
         self._instant = 0
-        self._named: set[int] = set()
+        self._named = NO_NUMBERS
 
     @property
     def full(self) -> bool:
@@ -83,7 +84,7 @@ class Loops:
         self._instant += 1
 
     def defer(self, activation: Activation) -> bool:
-        """Return whether a ready activation is one turn of a loop too many; if so, defer it."""
+        """Defer a ready activation if it is a turn of a loop after `TURNS` turns. Return whether it is deferred."""
         if self._turns < TURNS or activation is self._next:
             return False
         rule = activation.clause.rule.index

@@ -10,7 +10,7 @@ from ravestate.engine.conflict_sets import ConflictSets
 from ravestate.engine.deadlines import LOOK
 from ravestate.engine.effects import Spiked
 from ravestate.engine.entries import Entries
-from ravestate.engine.group import Group
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.loops import MANY, Lineage
@@ -72,6 +72,8 @@ class Matching:
         for activation in list(root.members):
             if activation.state < RUNNING and not activation.clause.rule.slotset.isdisjoint(done):
                 self.holdings.lose_group(activation, root, "consumed")
+        for spike in list(root.entries):
+            self.holdings.benches.check(spike)
         self._offer_again(root)
         state.dirty.pop(merged, None)
         state.dirty[root] = None
@@ -144,6 +146,8 @@ class Matching:
             live = state.live[signal.index] = {}
         live[spike] = None
         if len(live) > signal.limit:
+            if state.dropped is NOTHING:
+                state.dropped = {}
             state.dropped[signal.name] = state.dropped.get(signal.name, 0) + 1
             self.holdings.kill(next(iter(live)), "overflow")
         if signal.watchers and state.watches:
@@ -155,7 +159,7 @@ class Matching:
         if signal.halves:
             for need in self.halves.offer(signal, spike):
                 self._offer(need, spike)
-        if signal.contests:
+        if signal.conflict_sets:
             self.sets.offer(signal, spike)
         if not (spike.holders or spike.entries):
             self.entries.forget(spike)

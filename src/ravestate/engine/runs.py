@@ -64,6 +64,8 @@ class Runs:
             activation.deadline = state.now + rule.timeout
             state.deadlines.add(activation.deadline, TIMEOUT, activation)
         for until in rule.until:
+            if state.watches is NOTHING:
+                state.watches = {}
             state.watches.setdefault(until, {})[activation] = Watch(activation, until)
         payloads: dict[str, Any] = {}
         for spike in activation.spikes:
@@ -101,6 +103,8 @@ class Runs:
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < state.now:
                         watch.spikes[need.index] = spike  # else the older spike ripens first
+                        if state.watched_by is NOTHING:
+                            state.watched_by = {}
                         state.watched_by.setdefault(spike, {})[watch] = None
                         if held is not None and held not in watch.spikes:
                             self._unwatch(watch, held)
@@ -159,7 +163,7 @@ class Runs:
             state.tracer(trace.Settled(state.now, run.id, rule.name, outcome, text, fired, exception))
         if self.report_ends:
             state.out.append(Ended(run.id, rule.name, outcome, fired))
-        on_error = kind == FAILED and _handles_error(run)
+        on_error = outcome == FAILED and _handles_error(run)
         self.holdings.end(run)
         if outcome == FAILED:
             failure = exception or RuleError(f"rule {rule.name} failed")
@@ -194,6 +198,8 @@ class Runs:
             for slot in rule.slots:
                 group.take(slot, None)
         for group in groups:
+            for spike in list(group.entries) if state.benches else ():
+                self.holdings.benches.rise(spike)
             for other in list(group.members):
                 if (
                     other is not run
@@ -202,6 +208,8 @@ class Runs:
                 ):
                     self.holdings.lose_group(other, group, "consumed", run)
             for spike in list(group.entries) if group.entries else ():
+                if spike in state.benches:
+                    self.holdings.benches.check(spike)
                 for half in state.halves_of(spike):
                     if not half.slotset.isdisjoint(rule.slotset):
                         self.holdings.entries.drop(spike, half)
@@ -224,7 +232,7 @@ def _roots(run: Activation) -> list[Group]:
 
 
 def _handles_error(run: Activation) -> bool:
-    """Return whether a run stands on ``core:error``: its own failure does not signal another one."""
+    """Return whether a run holds a spike of ``core:error``, or a descendant: its exception signals no other one."""
     return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
 
 

@@ -9,6 +9,7 @@ from typing import Any, cast
 from ravestate.declare.slot import Entry
 from ravestate.engine import trace
 from ravestate.engine.activation import Activation
+from ravestate.engine.group import NOTHING
 from ravestate.engine.matching import Matching
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
@@ -81,6 +82,8 @@ class Slots:
             items = dict(old)
             state.values[slot.index] = MappingProxyType(items)
         if state.tracer is None:
+            if state.unseen is NOTHING:
+                state.unseen = {}
             state.unseen[slot.index] = items
         changed, added, removed = slot.signals
         raised: tuple[SignalPlan, ...] = (changed,)

@@ -37,18 +37,18 @@ class Standing:
         """Return the effective utility of a clause now, in nats (L9)."""
         return clause.base * self.recovery(clause)[0] if clause.rule.cooldown else clause.base
 
-    def refuses(self, theirs: Clause, mine: Clause) -> bool:
-        """Return whether a clause goes before another, both now and in the moment after."""
-        if not (theirs.rule.cooldown or mine.rule.cooldown):
-            return theirs.base > mine.base or (theirs.base == mine.base and theirs.index < mine.index)
-        now, soon = self._leads(theirs, mine)
+    def is_ahead(self, one: Clause, other: Clause) -> bool:
+        """Return whether a clause goes before another, both now and in the moment after: then it refuses the other."""
+        if not (one.rule.cooldown or other.rule.cooldown):
+            return one.base > other.base or (one.base == other.base and one.index < other.index)
+        now, soon = self._leads(one, other)
         return now and soon
 
-    def overtakes(self, mine: Clause, theirs: Clause) -> bool:
+    def overtakes(self, one: Clause, other: Clause) -> bool:
         """Return whether a clause goes before another in the moment after: the other clause waits for it (L16)."""
-        if not (theirs.rule.cooldown or mine.rule.cooldown):
-            return mine.base > theirs.base or (mine.base == theirs.base and mine.index < theirs.index)
-        return self._leads(mine, theirs)[1]
+        if not (one.rule.cooldown or other.rule.cooldown):
+            return self.is_ahead(one, other)
+        return self._leads(one, other)[1]
 
     def _leads(self, one: Clause, other: Clause) -> tuple[bool, bool]:
         """Return whether a clause goes before another now, and whether it does in the moment after."""
@@ -68,13 +68,18 @@ class Standing:
         return (lead or first) > 0, (soon or first) > 0
 
     def crossing(self, one: Clause, other: Clause) -> float:
-        """Return when recovery next changes the order of two clauses (seconds); `inf` if it never does."""
+        """Return when recovery next changes the order of two clauses (seconds); `inf` if it never does.
+
+        The time is counted from the last run, so it is the same to the last digit for all that wait for it.
+        """
         (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
         closing = one.base * fast - other.base * their_fast
-        behind = other.base * their_far - one.base * far
         turn = inf
-        if closing * behind > 0:
-            turn = self.now + behind / closing
+        if closing * (other.base * their_far - one.base * far) > 0:
+            began = max(self.ran[c.rule.index] for c, speed in ((one, fast), (other, their_fast)) if speed)
+            far = (began - self.ran[one.rule.index]) * fast if fast else far
+            their_far = (began - self.ran[other.rule.index]) * their_fast if their_fast else their_far
+            turn = began + (other.base * their_far - one.base * far) / closing
         for clause in (one, other):
             ran = self.ran.get(clause.rule.index)
             if ran is not None and self.now < ran + clause.rule.cooldown < turn:

@@ -3,11 +3,18 @@
 Each table is indexed by what an event concerns: live spikes by signal, activations by rule, and incomplete activations
 by the need that they lack. So the cost of an event does not grow with the number of rules.
 
-The other parts of the engine share one state. Each table has one owner, which alone changes it:
+The other parts of the engine share one state. Beside `State.adopt`, these files change its tables:
 
-- ``holdings.py``: `active`, `lacking`, `gated`, `busy`; ``entries.py``: `live`, `halves`
-- ``conflict_sets.py``: `alternatives`; ``waits.py``: `waiting`, `hoping`, `refused`, `stuck`
-- ``runs.py``: `running`, `retired`, `ran`, `watches`, `watched_by`; ``slots.py``: `values`
+- `active`: ``holdings.py``; `lacking`: also ``matching.py`` and ``halves.py``; `gated`: also ``slots.py``
+- `live`: ``matching.py`` and ``entries.py``; `busy`: ``holdings.py`` and ``entries.py``
+- `halves`, `pools`, `seats`, `benches`: ``entries.py`` and ``benches.py``
+- `headless`: ``holdings.py`` and ``benches.py``
+- `pressed`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
+- `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: also ``agenda.py``
+- `running`, `ran`, `watches`: ``runs.py``; `watched_by`: also ``holdings.py``; `retired`: ``engine.py``
+- `values`: ``slots.py``; a first read also adds the default
+
+Any part may add to the work that is still to be done: `asking`, `free`, `dirty`, `stirred`, `errors`, `out`.
 """
 
 from __future__ import annotations
@@ -21,10 +28,11 @@ from typing import Any
 from ravestate.declare.condition import Holds
 from ravestate.declare.core import RuleFailure
 from ravestate.engine.activation import Activation
+from ravestate.engine.bench import Bench
 from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
-from ravestate.engine.group import Group
+from ravestate.engine.group import NO_NUMBERS, NOTHING, Group
 from ravestate.engine.idle import Idle
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.spike import Spike
@@ -53,6 +61,7 @@ class State:
         "acts",
         "alternatives",
         "asking",
+        "benches",
         "blamed",
         "busy",
         "causes",
@@ -64,6 +73,7 @@ class State:
         "gated",
         "groups",
         "halves",
+        "headless",
         "hope_counts",
         "hoping",
         "lacking",
@@ -73,6 +83,7 @@ class State:
         "out",
         "patience",
         "policy",
+        "pools",
         "pressed",
         "pressure",
         "ran",
@@ -80,6 +91,7 @@ class State:
         "reordered",
         "retired",
         "running",
+        "seats",
         "signal_of",
         "slot_of",
         "spikes",
@@ -106,9 +118,10 @@ class State:
         self.now = 0.0
         self.tracer: Tracer | None = None
         self.deadlines = Deadlines(self)
+        # Many contexts never need some of the following tables. Each of these is `NOTHING` until its owner first writes it.
         self.values: dict[int, Any] = {}
         """Number of a slot that was written or read → its value."""
-        self.unseen: dict[int, dict[str, Any]] = {}
+        self.unseen: dict[int, dict[str, Any]] = NOTHING
         """Number of a collection that was not read since its last change → its items. Changing them needs no copy."""
         self.live: dict[int, dict[Spike, None]] = {}
         """Number of a signal → its live spikes, oldest first."""
@@ -116,12 +129,20 @@ class State:
         """Number of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but none for this need."""
-        self.halves: dict[Half, OrderedDict[Spike, int]] = {}
+        self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING
         """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
         before theirs (``halves.py``)."""
-        self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = {}
+        self.pools: dict[Half, Bench] = NOTHING
+        """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
+        self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
+        """Spike → half → the bench whose counterpart it is."""
+        self.seats: dict[Half, dict[Spike, Bench]] = NOTHING
+        """Half with benches → spike that it holds → the spike's bench."""
+        self.headless: dict[Spike, None] = NOTHING
+        """The counterparts of benches whose heads may have gone."""
+        self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds it under pressure → how many of its best clauses, and until when (seconds; L16)."""
-        self.gated: dict[Activation, None] = {}
+        self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.free = Free()
         """The ready activations that need no consent."""
@@ -133,17 +154,17 @@ class State:
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
         """The activations refused since the last search for a stalemate."""
-        self.stuck = Idle()
-        """The activations found in a stalemate since they were refused."""
+        self.stuck: Idle | None = None
+        """The activations found in a stalemate since they were refused; made on first use."""
         self.dirty: dict[Group, None] = {}
         """The groups in which something ended: the activations that wait there ask again."""
-        self.hoping: dict[tuple[int, int], dict[Activation, None]] = {}
+        self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
         """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
-        self.hope_counts: dict[tuple[int, int], int] = {}
+        self.hope_counts: dict[tuple[int, int], int] = NOTHING
         """The same keys → the greatest count in `Horizon.hopes`."""
-        self.stirred: dict[tuple[int, int], None] = {}
+        self.stirred: dict[tuple[int, int], None] = NOTHING
         """The keys of `hoping` that have changed."""
-        self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = {}
+        self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
         """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
         them have had an activation; the activation number just before theirs."""
         self.running: dict[int, Activation] = {}
@@ -151,13 +172,13 @@ class State:
         self.ran: dict[int, float] = {}
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.standing = Standing(self.ran)
-        self.retired: set[int] = set()
+        self.retired = NO_NUMBERS
         """The numbers of the rules that have retired."""
-        self.watches: dict[Clause, dict[Activation, Watch]] = {}
+        self.watches: dict[Clause, dict[Activation, Watch]] = NOTHING
         """Clause of an `until` condition → its runs, and how far each has met the clause."""
-        self.watched_by: dict[Spike, dict[Watch, None]] = {}
+        self.watched_by: dict[Spike, dict[Watch, None]] = NOTHING
         """Spike → the watches that hold it."""
-        self.dropped: dict[str, int] = {}
+        self.dropped: dict[str, int] = NOTHING
         """Signal's name → how many of its spikes were dropped by its limit (L23)."""
         self.watched: dict[str, int] = {}
         """The names of the signals whose spikes are reported as effects, as the keys of a table."""
@@ -165,9 +186,9 @@ class State:
         """The effects that the runtime has not taken yet."""
         self.acts = False
         """Whether one of these effects starts or cancels a run."""
-        self.errors: list[tuple[RuleFailure, Lineage | None]] = []
+        self.errors: tuple[tuple[RuleFailure, Lineage | None], ...] = ()
         """Failures that ``core:error`` has not reported yet, each with the rules that led to it."""
-        self.blamed: set[int] = set()
+        self.blamed = NO_NUMBERS
         """The ids of the predicates whose failure was reported."""
         self.loops = Loops()
         self.busy = 0
@@ -234,18 +255,33 @@ class State:
 
     def halves_of(self, spike: Spike) -> Sequence[Half]:
         """Return the halves that hold a spike."""
-        return [half for half in spike.signal.halves if spike in self.halves.get(half, ())] if spike.entries else ()
+        return [half for half in spike.signal.halves if self.entries(half, spike)] if spike.entries else ()
+
+    def entries(self, half: Half, spike: Spike) -> OrderedDict[Spike, int] | None:
+        """Return the table in which a half holds a spike, or None."""
+        if half.sole:
+            bench = self.bench_of(half, spike)
+            return None if bench is None else bench.spikes
+        held = self.halves.get(half)
+        return held if held is not None and spike in held else None
+
+    def bench_of(self, half: Half, spike: Spike) -> Bench | None:
+        """Return the bench on which a half holds a spike, or None."""
+        seats = self.seats.get(half)
+        return None if seats is None else seats.get(spike)
 
     def keeps(self, need: Need, spike: Spike) -> bool:
         """Return whether the need's half holds a spike for the need's clause."""
-        held = self.halves.get(need.half) if need.half is not None else None
-        return held is not None and spike in held and not (spike.parted and need.clause.index in spike.parted)
+        held = self.entries(need.half, spike) if need.half is not None else None
+        return held is not None and not (spike.parted and need.clause.index in spike.parted)
 
     def entry_number(self, need: Need, spike: Spike) -> int:
         """Return the number of the activation for which the need's half holds a spike."""
         half = need.half
         assert half is not None
-        return self.halves[half][spike] + half.places[need.clause.rule.index] + 1
+        held = self.entries(half, spike)
+        assert held is not None
+        return held[spike] + half.places[need.clause.rule.index] + 1
 
     def stand_in(self, need: Need, spike: Spike) -> Activation:
         """Return the activation for which the need's half holds a spike. It is in no table."""
@@ -303,7 +339,7 @@ class State:
             return bool(predicate(value))
         except Exception as exception:  # a predicate is the designer's code: it may raise anything
             if id(predicate) not in self.blamed:
-                self.blamed.add(id(predicate))
+                self.blamed |= {id(predicate)}
                 self.fail(rule, exception, signal=True)
             return False
 
@@ -311,7 +347,7 @@ class State:
         """Report a failure of a rule to the runtime; with `signal`, ``core:error`` occurs next."""
         self.out.append(Failed(rule.name, exception))
         if signal:
-            self.errors.append((RuleFailure(rule.name, exception), lineage))
+            self.errors = (*self.errors, (RuleFailure(rule.name, exception), lineage))
 
     # ------------------------------------------------------------------------------------ utility
 

@@ -1,7 +1,8 @@
 """Waiting: what makes an activation that was refused consent ask again (L15, L16).
 
 An activation waits for a reason: a `Refusal`. It asks again when a group changes on which the reason depends, or a thing
-outside its groups (a hope). Nothing else makes it ask, so an event costs nothing for those that it does not concern.
+outside its groups (a hope). Its recheck time, a change of the rules, a cooldown, or a write of a slot with predicates
+also makes it ask. While there are hopes, each change of an activation is compared with all of them (`Waits.stir_rule`).
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 from ravestate.engine import trace
 from ravestate.engine.activation import NEVER, REFUSE, Activation
 from ravestate.engine.deadlines import RECHECK
+from ravestate.engine.group import NOTHING
 from ravestate.engine.refusal import OUTSIDE, RULE, Refusal
 from ravestate.engine.state import State
-from ravestate.policy.model import RulePlan
+from ravestate.policy.model import Half, RulePlan
 
 
 class Waits:
@@ -30,6 +32,8 @@ class Waits:
         self.end(activation)
         activation.refusal = refusal
         state.waiting[activation] = state.refused[activation] = None
+        if refusal.hopes and state.hoping is NOTHING:
+            state.hoping, state.hope_counts, state.stirred = {}, {}, {}
         for hope, most in refusal.hopes.items():
             state.hoping.setdefault(hope, {})[activation] = None
             state.hope_counts[hope] = max(most, state.hope_counts.get(hope, 0))
@@ -84,6 +88,13 @@ class Waits:
                 and others <= state.hope_counts[hope]
                 and rule.index in state.causes.wide_ancestors(number)
             ):
+                state.stirred[hope] = None
+
+    def stir_half(self, half: Half) -> None:
+        """Note that a half has taken a spike: rivals in stand-by now hold a spike of another group."""
+        state = self.state
+        for hope in state.hoping:
+            if hope[0] == RULE and hope[1] in half.places:
                 state.stirred[hope] = None
 
     def wake(self) -> dict[Activation, None]:

@@ -58,6 +58,15 @@ class Nearest:
                 self._encoder.load()
                 self._learnt = _Learnt(self._examples, self._encoder)
 
+    @property
+    def loaded(self) -> bool:
+        """Whether `load` was called with success."""
+        return self._learnt is not None
+
+    def similarities(self, text: str, places: Sequence[int]) -> list[float]:
+        """Return the cosine similarity of a text to the examples at some places. Until `load`, that is 0.0."""
+        return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
+
     def nearest(self, sentences: Sequence[str], most: int = 5) -> list[Near]:
         """Return the `most` examples that resemble one of the sentences, the most similar first."""
         texts = {plain(sentence): sentence for sentence in sentences}
@@ -76,6 +85,10 @@ class _Learnt:
         self._meanings = encoder.encode_lasting(examples)
         self._shapes = np.array([shape(text) for text in examples], dtype=np.int8).reshape(-1, 4)
         self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
+
+    def similarities(self, text: str, places: Sequence[int]) -> list[float]:
+        """Return the cosine similarities of a plain text to examples."""
+        return [float(one) for one in self._meanings[list(places)] @ self._encoder.encode([text])[0]]
 
     def nearest(self, texts: dict[str, str], most: int) -> list[Near]:
         """Return the nearest examples of plain texts, each with its sentence as it was written."""

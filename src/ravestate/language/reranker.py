@@ -47,11 +47,15 @@ class Reranker:
         Scores are logits. Those of the bundled model go from about -11 (unrelated) to +11 (an answer). A pair of short
         sentences takes about 3 ms. The model reads the first 512 tokens of a pair.
         """
+        return self.score_pairs([(query, passage) for passage in passages])
+
+    def score_pairs(self, pairs: Sequence[tuple[str, str]]) -> NDArray[np.float32]:
+        """Return a score for each pair of a query and a passage: shape (n,), float32, as `score` does."""
         # Load the model before numpy is imported: the model's error says what to install.
         model = model_in(self._folder, BUNDLED)
         import numpy as np
 
-        scores = np.zeros(len(passages), dtype=np.float32)
-        for indices, logits, _ in model.run([(query, passage) for passage in passages]):
+        scores = np.zeros(len(pairs), dtype=np.float32)
+        for indices, logits, _ in model.run(pairs):
             scores[indices] = logits.reshape(len(indices), -1)[:, 0]
         return scores

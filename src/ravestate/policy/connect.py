@@ -1,7 +1,8 @@
-"""The relations between the records of a policy: listeners, coherent needs, contests, halves."""
+"""The relations between the records of a policy: listeners, coherent needs, conflict sets, halves."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -57,8 +58,8 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
             clause.apart = len(families) == 1
 
 
-def find_contests(signals: Sequence[SignalPlan], causes: Causes) -> None:
-    """Set the contests of each signal: the clauses that compete for each of its spikes, in a fixed order.
+def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
+    """Set the conflict sets of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
     Only the first clause can get consent, unless it resigns or fails. Until it has done so, the engine makes no
@@ -67,34 +68,41 @@ def find_contests(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """
     helpful = causes.leading_to_slots()
     for signal in signals:
-        contests: dict[tuple[frozenset[int], bool], list[Clause]] = {}
+        sets: dict[tuple[frozenset[int], bool], list[Clause]] = {}
         for need in signal.listeners:
             clause, rule = need.clause, need.clause.rule
             fixed = not (need.detached or clause.cyclic or rule.cooldown)
             if clause.simple and rule.slots and fixed and helpful.isdisjoint(rule.raises):
-                contests.setdefault((rule.slotset, rule.background), []).append(clause)
-        signal.contests = tuple(
-            tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
-            for clauses in contests.values()
-            if len(clauses) > 1
+                sets.setdefault((rule.slotset, rule.background), []).append(clause)
+        signal.conflict_sets = tuple(
+            tuple(sorted(clauses, key=lambda c: (-c.base, c.index))) for clauses in sets.values() if len(clauses) > 1
         )
 
 
 def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
-    """Set the halves of each signal, and the listeners in no contest and no half.
+    """Set the halves of each signal, and the listeners in no conflict set and no half.
 
     A first spike changes nothing for such a clause but what it lacks, so a table of spikes is enough
-    (``engine/halves.py``). As for a contest, none of the rule's effects may help a rule that writes a slot.
+    (``engine/halves.py``). As for a conflict set, none of the rule's effects may help a rule that writes a slot.
     """
     helpful = causes.leading_to_slots()
+    writers = Counter(slot for rule in causes.rules for slot in rule.slots)
     for signal in signals:
-        contested = {clause for clauses in signal.contests for clause in clauses}
+        competing = {clause for clauses in signal.conflict_sets for clause in clauses}
         halves: dict[Any, list[Need]] = {}
         for need in signal.listeners:
             if _is_plain(need.clause) and helpful.isdisjoint(need.clause.rule.raises):
                 halves.setdefault(_likeness(need, causes), []).append(need)
         signal.halves = tuple(Half(tuple(needs)) for needs in halves.values())
-        signal.others = tuple(n for n in signal.listeners if n.half is None and n.clause not in contested)
+        for half in signal.halves:
+            clause = half.needs[0].clause
+            half.sole = (
+                bool(half.slotset)
+                and not half.kin
+                and all(writers[slot] == 1 for slot in half.slotset)
+                and not any(causes.causes[need.signal.index] for need in clause.needs)
+            )
+        signal.others = tuple(n for n in signal.listeners if n.half is None and n.clause not in competing)
 
 
 def _is_plain(clause: Clause) -> bool:

@@ -48,8 +48,8 @@ class SignalPlan:
     listeners: tuple[Need, ...] = ()
     """The needs for this signal in conditions of rules, in declaration order."""
     others: tuple[Need, ...] = ()
-    """The listeners in no contest and in no half."""
-    contests: tuple[tuple[Clause, ...], ...] = ()
+    """The listeners in no conflict set and in no half."""
+    conflict_sets: tuple[tuple[Clause, ...], ...] = ()
     """Groups of clauses that compete for each spike of the signal; the best clause of a group comes first."""
     halves: tuple[Half, ...] = ()
     """The listeners whose spikes are held without an activation."""
@@ -209,6 +209,7 @@ class Half:
         slotset: The numbers of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
         places: Number of a rule → the place of its need in `needs`.
+        sole: Whether the half has one rule, no other rule writes its slots, and no rule raises its signals.
     """
 
     needs: tuple[Need, ...]
@@ -221,6 +222,7 @@ class Half:
     slotset: frozenset[int] = field(init=False)
     busy: bool = field(init=False)
     places: dict[int, int] = field(init=False)
+    sole: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
         first = self.needs[0]

@@ -6,13 +6,15 @@ import asyncio
 import contextvars
 import functools
 import logging
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ravestate.declare.rule import Rule
 from ravestate.runtime.eager_task import EagerTask
 from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.spares import Spares
+
+if TYPE_CHECKING:
+    from ravestate.runtime.runner import Runner
 
 GRACE = 5.0  # the seconds that a cancelled rule has to clean up before its run counts as ended
 
@@ -25,24 +27,16 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    When a run's function has ended, this class calls `finish` with the run, its result and its exception. If a run does
-    not end within `GRACE` seconds of its cancellation, this class calls `give_up` with the run and the reason. It calls
-    `proceed` when the tasks in `cleaning` have ended, or when their turns are over.
+    It tells the runner when the function of a run has ended (`Runner.finish`). If a run does not end within `GRACE`
+    seconds of its cancellation, it tells the runner to drop the run (`Runner.drop`). When the tasks in `cleaning` have
+    ended, or their turns are over, the runner goes on (`Runner.pump`).
     """
 
-    def __init__(
-        self,
-        loop: asyncio.AbstractEventLoop,
-        finish: Callable[[RuleContext, Any, BaseException | None], None],
-        give_up: Callable[[RuleContext, str], None],
-        proceed: Callable[[], None],
-    ) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner) -> None:
         self.cleaning: list[asyncio.Task[Any]] = []
         """The tasks that have just been cancelled. Their last writes come before any other effect."""
         self._loop = loop
-        self._finish = finish
-        self._give_up = give_up
-        self._proceed = proceed
+        self._runner = runner
         self._variables = contextvars.copy_context()
         self._spares: Spares | None = Spares.join(loop)
         self._tasks: dict[RuleContext, EagerTask] = {}
@@ -62,7 +56,7 @@ class AsyncRules:
             end = task.first_step(ctx)
         except BaseException as exception:  # a rule may raise anything
             self._keep(task)
-            self._finish(ctx, None, exception)
+            self._runner.finish(ctx, None, exception)
             if isinstance(exception, KeyboardInterrupt):
                 raise
             return
@@ -71,7 +65,7 @@ class AsyncRules:
             task.task.add_done_callback(functools.partial(self._done, ctx))
         else:
             self._keep(task)
-            self._finish(ctx, end.result, None)
+            self._runner.finish(ctx, end.result, None)
 
     def _keep(self, task: EagerTask) -> None:
         """Keep a spare task for the next function, unless a function has spoilt it."""
@@ -124,19 +118,19 @@ class AsyncRules:
         if grace is not None:
             grace.cancel()
         exception = asyncio.CancelledError() if task.cancelled() else task.exception()
-        self._finish(ctx, None if exception is not None else task.result(), exception)
+        self._runner.finish(ctx, None if exception is not None else task.result(), exception)
 
     def _wait_for_cleaning(self, turns: int) -> None:
         if turns and not all(task.done() for task in self.cleaning):
             self._loop.call_soon(self._wait_for_cleaning, turns - 1)
         else:
             self.cleaning.clear()
-            self._proceed()
+            self._runner.pump()
 
     def _grace_is_over(self, ctx: RuleContext) -> None:
         del self._grace[ctx]
         _warn(ctx.rule)
-        self._give_up(ctx, "it did not end in time")
+        self._runner.drop(ctx, "it did not end in time")
 
 
 def _warn(rule: Rule[Any, Any]) -> None:

@@ -24,7 +24,7 @@ from ravestate.errors import DeclarationError, EngineError, UndeclaredError, nea
 from ravestate.policy.compile import compile_policy
 from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Taken
-from ravestate.runtime.listeners import Hooks
+from ravestate.runtime.listeners import NO_HOOKS, Hooks
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
 
@@ -86,9 +86,9 @@ class Context:
         self._seed = seed
         self._patience = patience
         self._trace: deque[Record] | None = None
-        self._observers: list[Callable[[Record], None]] = []
+        self._observers: tuple[Callable[[Record], None], ...] = ()
         if trace:
-            self._observers.append(self.trace.append if trace is True else trace)
+            self._observers = (self.trace.append if trace is True else trace,)
         self._journal = journal
         self._runner: Runner | None = None
         self._is_to_stop = False
@@ -111,11 +111,12 @@ class Context:
         """
         if self._runner is not None:
             raise EngineError("a context runs once: make another one of the same policy")
-        hooks = hooks or Hooks()
+        hooks = hooks or NO_HOOKS
         engine = Engine(self._policy, patience=self._patience, report_ends=hooks.on_ended is not None)
         loop = asyncio.get_running_loop()
         self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop, hooks, self._journal)
-        self._attach()
+        if self._observers:
+            self._attach()
         self._runner.receive(Start())
 
     async def __aexit__(self, *_: object) -> None:
@@ -263,10 +264,10 @@ class Context:
         if runner.closed:
             raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
         if timeout is None:  # an asyncio.timeout would cost as much as a short rule
-            return await runner.listeners.next(signal.name)
+            return await runner.listeners.next(signal.name, runner.settle)
         try:
             async with asyncio.timeout(timeout):
-                return await runner.listeners.next(signal.name)
+                return await runner.listeners.next(signal.name, runner.settle)
         except TimeoutError:
             raise TimeoutError(f"no {signal.name} within {timeout:g} s") from None
 
@@ -278,12 +279,13 @@ class Context:
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
         act on the context. Without observers the engine makes no records, and spends no time on them.
         """
-        self._observers.append(observer)
+        self._observers = (*self._observers, observer)
         self._attach()
 
         def leave() -> None:
             if observer in self._observers:
-                self._observers.remove(observer)
+                place = self._observers.index(observer)
+                self._observers = (*self._observers[:place], *self._observers[place + 1 :])
                 self._attach()
 
         return leave
@@ -296,7 +298,7 @@ class Context:
         return self._trace
 
     def _attach(self) -> None:
-        observers = tuple(self._observers)
+        observers = self._observers
 
         def tell_all(record: Record) -> None:
             for observer in observers:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from ravestate.engine.effects import Ended, Spiked
 
@@ -25,31 +25,28 @@ class Waiter:
 class Listeners:
     """The listeners of one context: functions and waiting tasks, each for one signal.
 
-    This class fills `watched`, the engine's table of the signals whose spikes it reports. Before a task waits, this class
-    calls `settle`, which may make the spike come at once.
+    This class fills `watched`, the engine's table of the signals whose spikes it reports.
     """
 
-    __slots__ = ("_functions", "_settle", "_waiters", "_watched")
+    __slots__ = ("_functions", "_waiters", "_watched")
 
     def __init__(
         self,
         watched: dict[str, int],
         functions: Mapping[str, Callable[[Any], None]],
-        settle: Callable[[], None] = lambda: None,
     ) -> None:
         self._watched = watched
         self._functions = functions
-        self._settle = settle
         self._waiters: dict[str, list[Waiter]] = {}
         watched.update(dict.fromkeys(functions, 1))
 
-    async def next(self, signal: str) -> Any:
-        """Wait for the next spike of a signal, and return its payload."""
+    async def next(self, signal: str, settle: Callable[[], None] = lambda: None) -> Any:
+        """Wait for the next spike of a signal, and return its payload. First call `settle`: the spike may come at once."""
         waiter = Waiter()
         self._waiters.setdefault(signal, []).append(waiter)
         self._watched[signal] = 1
         try:
-            self._settle()
+            settle()
             if waiter.error is not None:
                 raise waiter.error
             if not waiter.done:
@@ -105,3 +102,7 @@ class Hooks:
     on_failed: Callable[[str, BaseException], None] | None = None
     on_endless: Callable[[str], None] | None = None
     listeners: Mapping[str, Callable[[Any], None]] = field(default_factory=dict[str, Callable[[Any], None]])
+
+
+NO_HOOKS: Final = Hooks()
+"""Hooks without a function. All contexts share it."""

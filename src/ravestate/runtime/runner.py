@@ -67,8 +67,7 @@ class Runner:
         self.loop = loop
         self.settings = settings
         self.clock = Clock(loop)
-        self.listeners = Listeners(engine.watched, hooks.listeners, self.settle)
-        self.waits = Waits(engine, self._is_busy, self._schedule)
+        self.listeners = Listeners(engine.watched, hooks.listeners)
         self.closed = False
         self.fault: RavestateError | None = None
         """The error that ends the context, from a rule (``ctx.stop``) or from the engine; None without an error."""
@@ -81,8 +80,9 @@ class Runner:
         self._seed = seed
         self._random: random.Random | None = None
         self._contexts: dict[int, RuleContext] = {}  # the runs that did not end at once
-        self._async = AsyncRules(loop, self._finish, self._drop, self._pump)
+        self._async = AsyncRules(loop, self)
         self._plain: PlainRules | None = None  # made for the first plain function
+        self._waits: Waits | None = None  # made for the first task that waits
         self._todo: list[Effect] = []  # the effects that are still to be performed, the next one last
         self._due = False  # whether the engine may have effects
         self._scheduled = False  # whether the loop will call `_turn`
@@ -101,6 +101,13 @@ class Runner:
     def now(self) -> float:
         """The time on the context's clock: seconds since the runner was made."""
         return self.clock.now()
+
+    @property
+    def waits(self) -> Waits:
+        """The tasks that wait until the engine reaches a certain state."""
+        if self._waits is None:
+            self._waits = Waits(self._engine, self._is_busy, self._schedule)
+        return self._waits
 
     @property
     def policy(self) -> Policy:
@@ -191,7 +198,7 @@ class Runner:
         self._scheduled = False
         self._settled = 0
         if self._due:
-            self._pump()
+            self.pump()
 
     def settle(self) -> None:
         """Perform the effects at once that the loop's next turn would perform; a task is about to wait for them.
@@ -201,16 +208,17 @@ class Runner:
         """
         if self._due and self._settled < SETTLES and not (self._pumping or self._is_virtual):
             self._settled += 1
-            self._pump()
+            self.pump()
 
-    def _pump(self) -> None:
+    def pump(self) -> None:
+        """Perform the effects that are due now."""
         self._due = False
         if self.closed or self.clock.halted:
             return
         self._work_off(BATCH)
         self._arm()
-        if self.waits.futures and not self._is_busy():
-            self.waits.check()
+        if self._waits is not None and self._waits.futures and not self._is_busy():
+            self._waits.check()
 
     def _is_busy(self) -> bool:
         """Whether some effects have not been performed yet."""
@@ -376,7 +384,7 @@ class Runner:
         self._timer = None
         if not self.closed and not self.clock.halted:
             self._fall_due(self._timer_due)
-            self._pump()
+            self.pump()
 
     def _fall_due(self, due: float = 0.0) -> None:
         try:
@@ -398,10 +406,10 @@ class Runner:
         else:
             self._contexts[effect.run] = ctx
             if self._plain is None:
-                self._plain = PlainRules(self.loop, self._finish)
+                self._plain = PlainRules(self.loop, self.finish)
             self._plain.start(ctx)
 
-    def _finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
+    def finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
         """Report to the engine how a run has ended (L18)."""
         if ctx.run in self._contexts:
             del self._contexts[ctx.run]
@@ -417,7 +425,7 @@ class Runner:
         if self._is_virtual and not ctx.rule.is_async:
             self._schedule()
 
-    def _drop(self, ctx: RuleContext, reason: str) -> None:
+    def drop(self, ctx: RuleContext, reason: str) -> None:
         """End a run, for a `reason`, although its function is still running. The function must not act any more."""
         if self._contexts.pop(ctx.run, None) is not None and not self.closed:
             ctx.ended = reason
@@ -432,7 +440,7 @@ class Runner:
         else:
             assert self._plain is not None  # the run has started
             self._plain.abandon(ctx)
-            self._drop(ctx, effect.reason)
+            self.drop(ctx, effect.reason)
 
     def plain_functions(self) -> list[str]:
         """Return the names of the rules whose plain functions are running, one for each run."""

@@ -90,7 +90,7 @@ def test_a_process_that_dies_is_replaced(process: ModelProcess) -> None:
     assert process.request({"do": "go on"}, seconds=20)[0]["said"] == "go on"
     assert process.pid is not None
     os.kill(process.pid, signal.SIGKILL)
-    process._process.wait()  # type: ignore[union-attr]
+    process._process.wait(20.0)  # type: ignore[union-attr]
     assert process.request({"do": "and on"}, seconds=20)[0]["said"] == "and on"
     assert process.restarts == 1
 

@@ -12,17 +12,17 @@ import itertools
 import json
 import os
 import selectors
-import subprocess
 import sys
-import tempfile
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import IO, Any
+from typing import Any
 
 from ravestate.errors import PlatformError
+
+from .child import ENDING, Child
 
 LOADING = 120.0
 """The longest time (seconds) that a model may take to load."""
@@ -73,15 +73,14 @@ class ModelProcess:
         self._config = dict(config)
         self._python = python
         self._turn = threading.Lock()
-        self._process: subprocess.Popen[bytes] | None = None
-        self._errors: IO[bytes] | None = None
+        self._process: Child | None = None
         self._rest = b""
         self._closed = False
 
     @property
     def pid(self) -> int | None:
         """The process's number, if it runs."""
-        return self._process.pid if self._process is not None and self._process.poll() is None else None
+        return self._process.pid if self._process is not None else None
 
     @property
     def busy(self) -> bool:
@@ -146,25 +145,13 @@ class ModelProcess:
         if self._process is not None:
             self.restarts += 1
             self._end()
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_end` closes it
         try:
             # -P: the files beside the program must not be imported in place of packages with their names.
-            self._process = subprocess.Popen(
-                [self._python, "-P", str(SERVER), str(self._backend.program)],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._errors,
-                bufsize=0,
-                start_new_session=True,
-            )
+            self._process = Child([self._python, "-P", str(SERVER), str(self._backend.program)], piped=True)
         except OSError as error:
-            self._end()
             raise PlatformError(
                 f"{self._backend.owner}: cannot start {self._python!r} for {self._backend.name}: {error}"
             ) from error
-        assert self._process.stdin is not None and self._process.stdout is not None
-        os.set_blocking(self._process.stdin.fileno(), False)
-        os.set_blocking(self._process.stdout.fileno(), False)
         self._rest = b""
         answer, _ = self._exchange(self._config, b"", LOADING)
         if "error" in answer:
@@ -190,13 +177,12 @@ class ModelProcess:
             self._end()
             raise PlatformError(f"{self._title} did not answer within {seconds:g} s, and starts again") from None
         except (EOFError, OSError):
-            how = self._obituary()
-            self._end()
+            how = self._end(patience=ENDING)
             raise PlatformError(f"{self._backend.owner}: the process of {self._backend.name} ended ({how})") from None
 
     def _send(self, data: bytes, end: float) -> None:
-        assert self._process is not None and self._process.stdin is not None
-        pipe = self._process.stdin.fileno()
+        assert self._process is not None
+        pipe = self._process.stdin
         rest = memoryview(data)
         while rest:
             _wait(pipe, selectors.EVENT_WRITE, end)
@@ -204,40 +190,17 @@ class ModelProcess:
                 rest = rest[os.write(pipe, rest) :]
 
     def _receive(self, end: float) -> None:
-        assert self._process is not None and self._process.stdout is not None
-        pipe = self._process.stdout.fileno()
+        assert self._process is not None
+        pipe = self._process.stdout
         _wait(pipe, selectors.EVENT_READ, end)
         block = os.read(pipe, 1 << 20)
         if not block:
             raise EOFError
         self._rest += block
 
-    def _obituary(self) -> str:
-        if self._process is None:
-            return "closed"
-        try:
-            code = self._process.wait(2.0)
-        except subprocess.TimeoutExpired:
-            return "its pipe is closed"
-        how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
-        if self._errors is not None:
-            self._errors.seek(0)
-            said = self._errors.read(1 << 16).decode("utf-8", "replace").strip().splitlines()
-            how += f": {said[-1]}" if said else ""
-        return how
-
-    def _end(self) -> None:
+    def _end(self, patience: float = 0.0) -> str:
         process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            process.wait()
-            for pipe in (process.stdin, process.stdout):
-                if pipe is not None:
-                    with contextlib.suppress(OSError):
-                        pipe.close()
-        if self._errors is not None:
-            self._errors.close()
-            self._errors = None
+        return process.end(patience) if process is not None else "closed"
 
 
 def _wait(pipe: int, event: int, end: float) -> None:
@@ -276,6 +239,12 @@ def take(
             process = _processes[key] = ModelProcess(backend, config, python)
         _users[key] = _users.get(key, 0) + 1
         return process
+
+
+def is_shared(process: ModelProcess) -> bool:
+    """Return whether a process has more than one user."""
+    with _sharing:
+        return any(known is process and _users[key] > 1 for key, known in _processes.items())
 
 
 def drop(process: ModelProcess, *, linger: bool = False) -> None:

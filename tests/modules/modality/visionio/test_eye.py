@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -176,3 +177,19 @@ def test_the_worker_ends_with_its_last_user() -> None:
     one.close()
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
+
+
+def test_a_camera_is_closed_even_while_the_worker_is_busy(clip: Path) -> None:
+    one, other = Eye(), Eye()
+    try:
+        assert run(one.open(str(clip))) is False
+        stream = one._stream
+        with one.process._turn:  # a look of another agent
+            one.close()
+        for thread in threading.enumerate():
+            if thread.name == "visionio-close":
+                thread.join(20)
+        answer, _ = other.process.request({"do": "look", "stream": stream, "want": [], "at": 0.0}, seconds=20)
+        assert answer == {"closed": True}
+    finally:
+        other.close()

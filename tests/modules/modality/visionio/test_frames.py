@@ -24,10 +24,9 @@ def test_only_the_newest_picture_is_given() -> None:
 def test_a_picture_from_another_thread_wakes_the_agent() -> None:
     async def watch() -> Frame | None:
         frames = Frames()
-        waiting = asyncio.create_task(frames.next())
-        await asyncio.sleep(0)
-        threading.Thread(target=frames.put, args=(b"pixels", (1, 2))).start()
-        return await waiting
+        other = threading.Thread(target=frames.put, args=(b"pixels", (1, 2)))
+        asyncio.get_running_loop().call_soon(other.start)
+        return await frames.next()
 
     frame = asyncio.run(watch())
     assert frame is not None and (frame.data, frame.shape) == (b"pixels", (1, 2))
@@ -47,13 +46,37 @@ def test_messages_of_ros() -> None:
 
 
 def test_a_closed_camera_ends_the_watch_and_takes_nothing_more() -> None:
-    async def watch() -> Frame | None:
+    async def watch() -> None:
         frames = Frames()
-        waiting = asyncio.create_task(frames.next())
-        await asyncio.sleep(0)
-        frames.close()
+        asyncio.get_running_loop().call_soon(frames.close)
+        assert await frames.next() is None
         frames.put(b"late")
         assert await frames.next() is None
-        return await waiting
 
-    assert asyncio.run(watch()) is None
+    asyncio.run(watch())
+
+
+def test_the_next_picture_is_due_when_the_last_one_has_been_taken_or_the_camera_is_closed() -> None:
+    async def watch() -> None:
+        frames = Frames()
+        await frames.taken()  # there is none
+        order: list[str] = []
+
+        async def wait() -> None:
+            await frames.taken()
+            order.append("due")
+
+        async def take() -> None:
+            order.append("taken")
+            assert await frames.next() is not None
+
+        async def close() -> None:
+            order.append("closed")
+            frames.close()
+
+        for end in (take, close):
+            frames.put(b"pixels")
+            await asyncio.gather(wait(), end())
+        assert order == ["taken", "due", "closed", "due"]
+
+    asyncio.run(watch())

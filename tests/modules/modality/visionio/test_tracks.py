@@ -31,7 +31,9 @@ def test_a_face_needs_vectors_until_enough_agree_and_then_now_and_again() -> Non
         [(one, _)] = tracks.update([seen(1 if number else None)], number / 10)
         one.recognise(ADA, 0.3, 0.3)
         assert needs_vector(tracks, number / 10 + 0.05) is (number < 2)
-    assert not needs_vector(tracks, 0.2 + REFRESH - 0.1)
+    for number in range(3, 10 * round(REFRESH) + 2):
+        tracks.update([seen(1, vector=False)], number / 10)
+        assert not needs_vector(tracks, number / 10)
     assert needs_vector(tracks, 0.2 + REFRESH)
     tracks.update([seen(1)], 4.0)
     one.recognise(None, None, 0.3)  # somebody else is there
@@ -56,6 +58,12 @@ def test_a_face_that_is_gone_loses_its_number() -> None:
     assert tracks.request(LOST + 0.1)["known"] == []
     [(one, _)] = tracks.update([seen(1)], LOST + 0.2)  # an old number of a late answer
     assert one.number == 2
+
+
+def test_a_face_after_a_pause_of_the_camera_gets_a_new_number() -> None:
+    tracks = Tracks()
+    tracks.update([seen()], 0.0)
+    assert tracks.request(LOST + 0.1)["known"] == []
 
 
 def test_a_thorough_search_is_due_each_second() -> None:

@@ -8,9 +8,10 @@ import pytest
 
 import ravestate as rs
 from modules.modality.visionio.photographs import make, photo
+from modules.modality.visionio.user_camera import UserCamera
 from ravestate.errors import PlatformError
-from ravestate.modules import visionio
-from ravestate.modules.modality.visionio import watching
+from ravestate.modules import interloc, rawio, visionio
+from ravestate.modules.modality.visionio import eye, watching
 from ravestate.modules.modality.visionio.watching import AGAIN, FAULTS, Watch
 from ravestate.testing import simulate
 
@@ -45,16 +46,20 @@ async def watched(monkeypatch: pytest.MonkeyPatch, eye: Blind, looks: int) -> li
     monkeypatch.setattr(watching, "Eye", lambda _: eye)
     watch = Watch(visionio.Settings(source="/dev/video0", fps=10, load=0.5), None, LOG)
     waits: list[float] = []
+    now = 0.0
 
     async def sleep(seconds: float) -> None:
+        nonlocal now
         waits.append(seconds)
+        now += seconds
 
     assert await watch.begin()
     for _ in range(looks):
         frame = await watch.next()
         assert frame is True
         await watch.look(["faces"], {}, 0.0, frame)
-        if not await watch.rest(0.02, sleep):
+        now += 0.02
+        if not await watch.rest(now - 0.02, now, sleep):
             break
     assert watch.skipped == 3
     return waits
@@ -72,7 +77,7 @@ def test_a_lost_camera_is_told_once_and_tried_again(
     eye = Blind(8, live=True)
     caplog.set_level(logging.INFO)
     waits = run(watched(monkeypatch, eye, 10))
-    assert waits[:8] == [AGAIN] * 8 and waits[8:] == pytest.approx([0.08, 0.08])
+    assert waits[:8] == [AGAIN] * 8 and waits[8:] == pytest.approx([0.02, 0.02])
     assert eye.reopened == 8
     assert caplog.text.count("is it unplugged?") == 1 and caplog.text.count("sees again") == 1
 
@@ -90,20 +95,36 @@ def test_black_pictures_are_told_once(monkeypatch: pytest.MonkeyPatch, caplog: p
     assert caplog.text.count("is the lens covered") == 1
 
 
-def test_a_slow_machine_looks_less_often() -> None:
-    async def waits() -> list[float]:
-        found: list[float] = []
+def looks_of(*spent: float) -> list[float]:
+    """Return the times at which looks begin that take so many seconds each, at 10 a second and a load of a half."""
+
+    async def began() -> list[float]:
+        now, found = 0.0, list[float]()
 
         async def sleep(seconds: float) -> None:
-            found.append(seconds)
+            nonlocal now
+            now += seconds
 
         watch = Watch(visionio.Settings(fps=10, load=0.5), None, LOG)
         watch._eye = Blind(0, live=False)  # type: ignore[assignment]
-        for spent in (0.0, 0.04, 0.3):
-            await watch.rest(spent, sleep)
+        for one in spent:
+            found.append(now)
+            now += one
+            await watch.rest(now - one, now, sleep)
         return found
 
-    assert run(waits()) == pytest.approx([0.1, 0.06, 0.3])
+    return run(began())
+
+
+def test_a_slow_machine_looks_less_often() -> None:
+    assert looks_of(0.3, 0.3, 0.3, 0.0) == pytest.approx([0.0, 0.6, 1.2, 1.8])
+
+
+def test_one_slow_look_in_a_second_does_not_lower_the_rate() -> None:
+    second = (0.09, *[0.02] * 9)
+    began = looks_of(*second, *second, 0.0)
+    assert began[-1] == pytest.approx(2.0)
+    assert began[:4] == pytest.approx([0.0, 0.18, 0.22, 0.3])
 
 
 def test_a_damaged_picture_in_a_folder_is_left_out(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
@@ -142,6 +163,49 @@ def test_a_platforms_pictures(tmp_path: Path) -> None:
         frames.close()
         sim.advance(10)
         assert not sim.read(visionio.visitors) and sim.failures == []
+
+
+def test_the_users_camera(tmp_path: Path) -> None:
+    """The agent asks for pictures at its own pace, shows the faces on the page, and notices that the camera goes off."""
+    user = UserCamera(photo("hanks").read_bytes())
+    settings = {"visionio": {"source": "", "fps": 5}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    with simulate(visionio.module, settings=settings) as sim:
+        sim.put(rawio.camera, user)
+        sim.advance(3)
+        looks = sum(getattr(record, "signal", "") == visionio.looked.name for record in sim.trace)
+        assert 5 <= user.asked <= looks + 2
+        ((_, visitor),) = sim.read(visionio.visitors).items()
+        (face,) = user.marks[-1]
+        x, y, width, height = face.box
+        assert face.name == "" and 0 < x < x + width < 1 and 0 < y < y + height < 1
+        sim.put(interloc.users, {visitor.key: "Tom"})
+        sim.advance(1)
+        assert [each.name for each in user.marks[-1]] == ["Tom"]
+        user.picture = None
+        sim.put(rawio.camera, None)
+        sim.advance(10)
+        assert not sim.read(visionio.visitors)
+        second = UserCamera(photo("biden").read_bytes())
+        sim.put(rawio.camera, second)
+        sim.advance(2)
+        assert len(sim.read(visionio.visitors)) == 1 and second.marks
+        assert user.refused == [] and sim.failures == []
+
+
+def test_an_agent_that_cannot_see_turns_the_users_camera_off(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def missing(_: object) -> str:
+        raise PlatformError("visionio needs the packages of the eyes: `make eyes` sets them up")
+
+    monkeypatch.setattr(eye, "eyes_python", missing)
+    user = UserCamera(photo("hanks").read_bytes())
+    settings = {"visionio": {"source": ""}, "ontology": {"path": str(tmp_path / "m.lbug")}}
+    with simulate(visionio.module, settings=settings) as sim:
+        sim.put(rawio.camera, user)
+        sim.advance(1)
+        assert user.refused == ["the agent cannot see at the moment"] and sim.failures == []
+    assert caplog.text.count("`make eyes`") == 1
 
 
 def test_a_rule_that_listens_to_poses_gets_them(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 import ravestate as rs
 from modules.platform.ros.networks import PATIENCE, Network, pause, until
-from ravestate.modules import emotion, interloc, rawio, roboyio, ros2
+from ravestate.modules import emotion, interloc, rawio, roboyio, ros1, ros2
 from ravestate.modules.platform.roboyio.rules import speakable
 from ravestate.modules.platform.roboyio.stand_in import StandIn
 from ravestate.modules.platform.ros import Bus
@@ -20,6 +20,10 @@ def parrot() -> rs.Module:
     @module.rule(when=rawio.input.changed, writes=rawio.output)
     async def answer(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = f"You said: {ctx.payload(rawio.input.changed)} 😀"
+
+    @module.rule(when=rs.startup, writes=rawio.output)
+    async def welcome(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "Welcome!"
 
     return module
 
@@ -39,7 +43,7 @@ def test_text_in_and_words_expression_head_and_gesture_out(name: str) -> None:
             robot.watch(seen.append)
             settings = {"roboyio": {"bus": bus.address, "robot": name, "feeling": 0.2}}
             async with rs.Context(roboyio, emotion, parrot(), settings=settings) as context:
-                await until(lambda: context.read(roboyio.body))
+                await until(lambda: any(looks["text"] == "Welcome!" for looks in seen))
                 ready = roboyio.load_robot(name)
                 assert ready.hear is not None
                 await until(lambda: bus.find("subscriber", ready.hear.topic))  # type: ignore[union-attr]
@@ -76,7 +80,16 @@ def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
                 await until(
                     lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
                 )
-                await until(lambda: any(looks["yaw"] == pytest.approx(0.4, abs=0.01) for looks in seen))
+                # The direction is a topic of its own, which may connect later.
+                await until(
+                    lambda: any(looks["yaw"] == pytest.approx(0.4, abs=0.01) for looks in seen),
+                    lambda: robot.hear("hello", 0.4),
+                    0.5,
+                )
+                ours = context.read(ros1.node)
+                assert ours is not None
+                bound = [channel.name for channel in ours.channels.values()]
+                assert len(bound) == len(set(bound))  # it connected once, and answers once
                 context.emit(emotion.surprised)
                 await until(lambda: any(looks["face"] == "surprised" for looks in seen))
             await robot.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import asyncio
 import atexit
 import contextlib
@@ -48,7 +49,7 @@ def free_port() -> int:
         return sock.getsockname()[1]
 
 
-class Network:
+class Network(abc.ABC):
     """A network with one other node. Its processes are stopped by their numbers.
 
     Its nodes live on one loop, so that tests share a node instead of starting a bridge each.
@@ -71,8 +72,9 @@ class Network:
 
         return the_loop().run(in_time())
 
+    @abc.abstractmethod
     def start_peer(self) -> None:
-        raise NotImplementedError
+        """Start the other node."""
 
     def _run_peer(self, python: str, file: str, *arguments: str) -> None:
         self.peer = subprocess.Popen(
@@ -84,8 +86,9 @@ class Network:
         assert line == "ready\n", f"the other node of ROS {self.version} did not start: is `make ros` done?"
 
     @property
+    @abc.abstractmethod
     def environment(self) -> dict[str, str]:
-        raise NotImplementedError
+        """The variables by which a process finds the network."""
 
     def node(self, **options: Any) -> Node:
         """Return a node of ours, as an agent makes it; use it on a loop, and close it."""

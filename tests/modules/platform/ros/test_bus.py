@@ -104,3 +104,49 @@ def test_other_types_and_addresses_are_refused_in_words(caplog: pytest.LogCaptur
             await main()
 
     asyncio.run(limited())
+
+
+def test_a_slow_node_of_the_latest_skips_messages_and_its_rate_is_kept() -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
+            newest: list[int] = []
+            every: list[int] = []
+            one.subscribe("/number", "std_msgs/Int32", lambda message: newest.append(message.data), rate=5, qos=ALL)
+            one.subscribe(
+                "/number", "std_msgs/Int32", lambda message: every.append(message.data), latest=False, qos=ALL
+            )
+            await until(lambda: len(bus.find("subscriber", "/number")) == 2)
+            number = other.advertise("/number", "std_msgs/Int32", qos=ALL)
+            for n in range(200):
+                number.publish(n)
+            await until(lambda: newest and newest[-1] == 199)
+            assert every == list(range(200))
+            assert len(newest) == 2  # the first, and after the pause the last
+
+    asyncio.run(main())
+
+
+def test_a_server_that_goes_away_fails_its_calls_at_once() -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as robot, opened(on(bus)) as agent:
+            asked = asyncio.Event()
+
+            async def serve(request: Any) -> Any:
+                asked.set()
+                await asyncio.get_running_loop().create_future()
+
+            robot.offer("/lamp", "std_srvs/SetBool", serve)
+            await until(lambda: bus.find("server", "/lamp"))
+            short = agent.client("/lamp", "std_srvs/SetBool", timeout=0.05)
+            with pytest.raises(PlatformError, match="did not answer within"):
+                await short.call(True)
+            lamp = agent.client("/lamp", "std_srvs/SetBool", timeout=60.0)
+            asked.clear()
+            call = asyncio.ensure_future(lamp.call(True))
+            await asked.wait()
+            await robot.close()
+            with pytest.raises(PlatformError, match="the node of the service is gone"):
+                await call
+            await until(lambda: not bus._calls)  # nothing stays of the call that timed out either
+
+    asyncio.run(main())

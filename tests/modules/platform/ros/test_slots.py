@@ -152,9 +152,8 @@ def test_a_silent_service_fails_and_holds_nothing_up(
 
     async def main() -> None:
         failure = asyncio.ensure_future(context.next(silent.failed))
-        await asyncio.sleep(0)
         agent.ticked.clear()
-        context.put(silent, True)
+        asyncio.get_running_loop().call_soon(context.put, silent, True)
         await until(failure.done, lambda: context.emit(agent.tick))
         assert "did not answer within 0.3 s" in await failure
         assert len(agent.ticked) > 3
@@ -188,10 +187,8 @@ def test_the_result_of_an_action_is_a_change(running: tuple[Everything, rs.Conte
     agent, context = running
 
     async def main() -> None:
-        changed = asyncio.ensure_future(context.next(agent.count.changed))
-        await asyncio.sleep(0)
-        context.emit(agent.go["to the end"])
-        assert list((await changed).sequence) == [0, 1, 1, 2, 3]
+        asyncio.get_running_loop().call_soon(context.emit, agent.go["to the end"])
+        assert list((await context.next(agent.count.changed)).sequence) == [0, 1, 1, 2, 3]
         await until(lambda: agent.results)
         assert agent.results == [[0, 1, 1, 2, 3]]
 

@@ -9,7 +9,7 @@ import ravestate as rs
 from modules.platform.webio.visit import Visit, in_virtual_time, page, past
 from ravestate.modules import rawio, webio
 from ravestate.modules.platform.webio import channel, connection
-from ravestate.modules.platform.webio.session import MESSAGES
+from ravestate.modules.platform.webio.history import MESSAGES
 from ravestate.runtime.agent import Agent
 
 TOKEN = "open sesame, please"

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.modules.platform.webio.session import History
+from ravestate.modules.platform.webio.history import History
 
 
 def test_messages_are_numbered_and_kept_in_order() -> None:

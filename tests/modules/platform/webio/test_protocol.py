@@ -129,7 +129,7 @@ def test_what_parsers_stumble_over(text: str) -> None:
         ("{}", "\"type\": 'None' is none of hello, say, writing, bye, ping"),
         (
             '{"type": "hallo"}',
-            "'hallo' is none of hello, say, writing, bye, ping, microphone, played, hush; did you mean 'hello'?",
+            "'hallo' is none of hello, say, writing, bye, ping, microphone, played, hush, camera, picture; did you mean 'hello'?",
         ),
         ('{"type": ["say"]}', "is none of hello, say, writing, bye, ping"),
         ('{"type": "hello"}', 'hello lacks "v": the version, 1'),

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from ravestate.modules import activity, agenda, charades, emotion, hibye, idle, interloc, nlp, rawio
+from ravestate.modules import activity, agenda, charades, emotion, hibye, idle, interloc, nlp, rawio, wildtalk
 from ravestate.modules.meta.verbaliser.phrases import PhraseBook
 from ravestate.modules.skill.charades.game import moves_of
 from ravestate.testing import Simulation, simulate
@@ -360,6 +360,11 @@ def test_a_bored_user_is_offered_the_game() -> None:
         assert not sim.read(charades.game).is_on
 
 
+def test_small_talk_about_boredom_leaves_the_offer_to_the_game() -> None:
+    with simulate(charades, wildtalk, settings={"emotion": {"emoji": False}, "wildtalk": {"backend": "listen"}}) as sim:
+        run(sim, "> I'm bored\n= offer\n> yes\n= begin")
+
+
 def test_waiting_calls_the_countdown_off_and_typing_holds_the_reminder_back() -> None:
     with agent() as sim:
         run(
@@ -382,6 +387,52 @@ def test_waiting_calls_the_countdown_off_and_typing_holds_the_reminder_back() ->
             = COUNTDOWN
             """,
         )
+
+
+def voice(seconds: float) -> rs.Module:
+    """Return a module that speaks, as a loudspeaker does: each utterance takes some seconds, one after another."""
+    module = rs.Module("voice", requires=[rawio])
+    ends = module.slot("ends", 0.0)
+
+    @module.rule(
+        when=rawio.output.changed.max_age(None).detached(), writes=(ends, rawio.heard), detached=True, background=True
+    )
+    async def speak(ctx: rs.RuleContext) -> None:
+        ctx[ends] = end = max(ctx[ends], ctx.now) + seconds
+        await ctx.sleep(end - ctx.now)
+        ctx[rawio.heard] = ctx.payload(rawio.output.changed)
+
+    return module
+
+
+def test_by_voice_the_agent_watches_when_its_last_word_has_sounded() -> None:
+    with agent(voice(1.6)) as sim:
+        run(
+            sim,
+            """
+            > let's play charades
+            wait 3
+            > ready
+            wait 3.5
+            = begin COUNTDOWN
+            """,
+        )
+        assert sim.read(charades.game).step == "counting"  # "3..., 2..., 1..., Go!" sounds for longer
+        sim.advance(1.0)
+        assert sim.read(charades.game).step == "counting"
+        while sim.read(charades.game).step == "counting":
+            sim.advance(0.1)
+        assert sim.read(charades.game).start == pytest.approx(3.0 + 4 * 1.6, abs=0.2)
+        sim.emit(activity.recognised, activity.Activity("swimming", 0.8, sim.now - 1, sim.now))
+        sim.advance(3.1)
+        assert "swimming" in sim.said[-1]
+
+
+def test_a_voice_that_is_cut_does_not_hold_the_game_up() -> None:
+    with agent(voice(100.0)) as sim:
+        run(sim, "> let's play charades\n= begin")
+        sim.put(rawio.heard, sim.said[-1][:10])  # the user interrupts
+        run(sim, "> ready\nwait 3.5\n= COUNTDOWN\nwait 5\nsee swimming\nwait 4\n= guess")
 
 
 @pytest.mark.parametrize(

@@ -117,6 +117,28 @@ def test_somebody_else_than_the_agent_thinks(ada: Path, look: Look) -> None:
     assert "works_as" not in people["Ada"] and people["Emma"] == {"works_as": ["baker"]}
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["I am not Ada, that is not me", "I'm not Ada", "you are wrong, I'm not Ada", "my name isn't Ada", "Ada is not my name", "don't call me Ada"],
+)  # fmt: skip
+def test_a_denied_name_is_asked_again_and_leaves_no_person(file: Path, look: Look, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        assert meant(answers(sim, text), "mistaken")
+        assert name_of(sim) is None
+        sim.say("ida")
+        assert name_of(sim) == "Ida"
+    assert list(look()) == ["Ida"]
+
+
+@pytest.mark.parametrize("text", ["I'm not tired", "my sister is not Ada", "I am not Bob"])
+def test_a_denial_of_something_else_leaves_the_name(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say(text)
+        assert name_of(sim) == "Ada"
+
+
 def test_the_name_is_asked_after_the_first_hello_once(file: Path) -> None:
     with agent(file, hibye) as sim:
         sim.say("hello")

@@ -513,15 +513,6 @@ def test_a_recalled_fact_can_be_corrected(file: Path, look: Look) -> None:
     assert look() == {"Ada": {"lives_in": ["Bremen"]}}
 
 
-def test_a_denied_name_is_asked_again(file: Path, look: Look) -> None:
-    with agent(file) as sim:
-        sim.say("my name is ada")
-        sim.advance(200.0)
-        assert meant(answers(sim, "my name is not ada"), "ask_name")
-        assert meant(answers(sim, "bob"), "renamed")
-    assert look() == {"Bob": {}}
-
-
 @pytest.mark.parametrize("text", ["Hi, I'm Bob.", "i'm ada"])
 def test_an_introduction_counts_unasked(file: Path, text: str) -> None:
     with agent(file, hibye) as sim:

@@ -81,6 +81,18 @@ def taught_in(folder: Path, known: Recogniser) -> Iterator[tuple[Path, str]]:
             yield file, "it shows too little of a body"
 
 
+def files_of(folder: Path) -> dict[str, list[Path]]:
+    """Return the name of each activity in a folder of taught activities, with its files. Damaged files are left out."""
+    found: dict[str, list[Path]] = {}
+    for file in sorted(folder.glob(f"*{SUFFIX}")):
+        try:
+            name = clean(read(file)[0] or file.stem)
+        except PlatformError:
+            continue
+        found.setdefault(name, []).append(file)
+    return found
+
+
 def keep(folder: Path, name: str, poses: Sequence[Pose]) -> Path:
     """Keep a demonstration of an activity in a new file of the folder; return the file.
 

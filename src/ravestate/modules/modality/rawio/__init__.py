@@ -4,9 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .camera import Camera, Face
 from .line import IN_RATE, OUT_RATE, Line
 from .listener import Listener, carry, rest
-from .names import heard, hearing, hush, input, module, output, picture, piece, reaction, sound, speaking, typing
+from .names import (
+    camera,
+    heard,
+    hearing,
+    hush,
+    input,
+    module,
+    output,
+    picture,
+    piece,
+    reaction,
+    sound,
+    speaking,
+    typing,
+)
 
 if TYPE_CHECKING:
     from ravestate.runtime.context import Context
@@ -14,8 +29,11 @@ if TYPE_CHECKING:
 __all__ = [
     "IN_RATE",
     "OUT_RATE",
+    "Camera",
+    "Face",
     "Line",
     "Listener",
+    "camera",
     "carry",
     "heard",
     "hearing",

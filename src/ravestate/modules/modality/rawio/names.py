@@ -6,6 +6,7 @@ from typing import Any
 
 import ravestate as rs
 
+from .camera import Camera
 from .line import Line
 
 module = rs.Module("rawio")
@@ -34,6 +35,9 @@ picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 
 sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
 """The line to the user's microphone and loudspeaker, from a platform that carries sound; None without one."""
+
+camera: rs.Slot[Camera | None] = module.slot("camera", None, input=True)
+"""The user's camera, from a platform that has one; None while it is off."""
 
 hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
 """The words so far of an utterance that the user is still speaking, for platforms that show captions."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import consent as consent
 from . import rules as rules
 from .face import FaceVec, Look, Pose
 from .frames import Frame, Frames

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -106,9 +107,15 @@ class Eye:
 
     def close(self) -> None:
         """Close the camera. The worker ends with its last user."""
-        if self._process.pid is not None and not self._process.busy:
+        if self._process.busy:  # with a look of this stream or of another one: the loop does not wait for its end
+            threading.Thread(target=self._close, name="visionio-close", daemon=True).start()
+        else:
+            self._close()
+
+    def _close(self) -> None:
+        if process.is_shared(self._process) and self._process.pid is not None:
             with contextlib.suppress(PlatformError):
-                self._process.request({"do": "close", "stream": self._stream}, seconds=5.0)
+                self._process.request({"do": "close", "stream": self._stream}, seconds=PATIENCE)
         process.drop(self._process)
 
     def _open(self) -> bool:

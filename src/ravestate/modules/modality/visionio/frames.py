@@ -52,7 +52,7 @@ class Frames:
         """Whether no more pictures come."""
         self._newest: Frame | None = None
         self._lock = threading.Lock()
-        self._waiting: tuple[asyncio.AbstractEventLoop, asyncio.Event] | None = None
+        self._waiting: dict[str, tuple[asyncio.AbstractEventLoop, asyncio.Event]] = {}
 
     def put(self, data: bytes | bytearray | memoryview, shape: tuple[int, int] | None = None) -> None:
         """Take a picture. Thread-safe.
@@ -99,13 +99,28 @@ class Frames:
         while True:
             with self._lock:
                 frame, self._newest = self._newest, None
+                if frame is not None:
+                    self._wake()
                 if frame is not None or self.closed:
                     return frame
-                event = asyncio.Event()
-                self._waiting = asyncio.get_running_loop(), event
+                event = self._wait("next")
             await event.wait()
 
+    async def taken(self) -> None:
+        """Wait until the newest picture has been taken, so that it is time for another one."""
+        while True:
+            with self._lock:
+                if self._newest is None or self.closed:
+                    return
+                event = self._wait("taken")
+            await event.wait()
+
+    def _wait(self, caller: str) -> asyncio.Event:
+        event = asyncio.Event()
+        self._waiting[caller] = asyncio.get_running_loop(), event
+        return event
+
     def _wake(self) -> None:
-        waiting, self._waiting = self._waiting, None
-        if waiting is not None:
-            waiting[0].call_soon_threadsafe(waiting[1].set)
+        waiting, self._waiting = self._waiting, {}
+        for loop, event in waiting.values():
+            loop.call_soon_threadsafe(event.set)

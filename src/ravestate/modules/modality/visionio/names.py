@@ -12,7 +12,7 @@ from ravestate.modules import activity, idle, interloc, ontology, rawio, verbali
 
 from .face import FaceVec, Look, Pose
 from .tracks import Sighting
-from .visitors import Visitor
+from .visitors import Question, Visitor
 
 if TYPE_CHECKING:
     from .frames import Frames
@@ -75,17 +75,17 @@ history: rs.Slot[tuple[FaceVec, ...]] = module.slot("history", ())
 visitors: rs.Collection[Visitor] = module.collection("visitors")
 """The people whom the agent sees: a key of `interloc.users` → the person's node, tracks and vectors."""
 
+met: rs.Slot[frozenset[str]] = module.slot("met", frozenset())
+"""The keys of the users, added by a platform, whose faces the agent has seen in this conversation."""
+
 left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
 """A person has left. The payload is the visitor, as the agent saw them last."""
 
 named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
 """A person whom the agent sees has told their name. The payload is their node, which memory keeps from now on."""
 
-asking: rs.Slot[str] = module.slot("asking", "")
-"""The key of the visitor whom the agent has asked whether it may remember their face; empty without such a question."""
-
-asked_at: rs.Slot[float] = module.slot("asked_at", 0.0)
-"""The time of that question (seconds on the context's clock)."""
+asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Question]", object))
+"""The question whether the agent may remember a face, while it waits for its answer."""
 
 agreed: rs.Signal[str] = module.signal("agreed", payload=str)
 """A visitor agrees that the agent remembers their face. The payload is their key."""

@@ -18,7 +18,7 @@ RELATION = "has_face"
 """The relation from a person to their faces."""
 NUMBERS = 128
 MERGE = 0.45
-"""The distance up to which two people of one name are one."""
+"""The distance up to which two faces are surely one person's: two people of one name are then one."""
 MARGIN = 0.05
 """The least advantage of the nearest person over the next one; within it, nobody is recognised."""
 
@@ -68,6 +68,11 @@ def owner(graph: Graph, face: Node) -> Node | None:
 def faces_of(graph: Graph, person: Node) -> list[Node]:
     """Return a person's faces in memory, oldest first."""
     return graph.related(person, RELATION)
+
+
+def has_faces(graph: Graph, person: Node) -> bool:
+    """Return whether memory has a face of a person."""
+    return graph.get(person.id) is not None and bool(faces_of(graph, person))
 
 
 def keep(graph: Graph, person: Node, vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[Node, int]:
@@ -121,6 +126,25 @@ def forget_faces(graph: Graph, person: Node) -> int:
     for face in faces:
         graph.forget(face)
     return len(faces)
+
+
+def take_away(graph: Graph, person: Node, vectors: Sequence[Vector]) -> int:
+    """Remove the faces of a person that are surely those of somebody else; return their number.
+
+    Args:
+        graph: The memory.
+        person: The person who has these faces wrongly.
+        vectors: The other person's face.
+    """
+    faces = faces_of(graph, person) if graph.get(person.id) is not None else []
+    wrong = [
+        face
+        for face in faces
+        if (known := unpacked(face.get("vector", ""))) is not None and any(dist(known, one) <= MERGE for one in vectors)
+    ]
+    for face in wrong:
+        graph.forget(face)
+    return len(wrong)
 
 
 def packed(vector: Sequence[float]) -> str:

@@ -1,47 +1,36 @@
-"""The rules: looking, following faces, greeting whom the agent knows, and remembering faces after a yes."""
+"""The rules: looking, following faces, and telling the other modules who comes, who leaves, and their names."""
 
 from __future__ import annotations
 
-import asyncio
 from dataclasses import replace
 from typing import Any
 
 import ravestate as rs
 from ravestate.errors import RavestateError
-from ravestate.modules import activity, idle, interloc, ontology, rawio, verbaliser
-from ravestate.modules.meta.nlp.answer import yesno_of
-from ravestate.modules.meta.verbaliser.intents import Intent
+from ravestate.modules import activity, interloc, ontology, rawio
 
 from . import people
 from .face import FaceVec, Look, Pose, Vector
+from .frames import Frames
 from .names import (
     Settings,
-    agreed,
-    asked_at,
-    asking,
     camera,
     facevec,
     history,
     left,
     looked,
+    met,
     module,
     named,
     pose,
-    refused,
     sighted,
     visitors,
-    withdrawn,
 )
 from .tracks import Sighting, Tracks
-from .visitors import Decision, Visitor, decide, gone, in_front, of_track, whose
-from .wishes import wish_of
+from .visitors import Decision, Visitor, at, decide, gone, of_track, whose
 
 KEY = "visionio-"
 """The beginning of the keys in ``interloc.users`` of people whom no platform has added."""
-POLITE = 3.0
-"""Seconds after a person has told their name until the agent asks whether it may remember their face."""
-ANSWERED = 60.0
-"""Seconds for which that question waits for its answer."""
 
 
 # ------------------------------------------------------------------------------------ looking
@@ -66,12 +55,12 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     if frames is not None and ctx.payload(camera.changed) is None:
         return rs.Resign("another run of this rule looks at the camera that came at once")
     view = Watch(settings, frames, ctx.log)
-    if not await view.begin():
-        return None
     tracks = Tracks(settings.sure)
     want = ["faces", "pose"] if _is_heard(ctx, pose) or _is_heard(ctx, activity.recognised) else ["faces"]
     began = ctx.now
     try:
+        if not await view.begin():
+            return None
         while (frame := await view.next()) is not None:
             now = ctx.now
             seen = await view.look(want, tracks.request(now), now - began, frame) if frame else None
@@ -85,10 +74,12 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
                     ctx.emit(pose, Pose(None if body is None else tuple(tuple(point) for point in body), now))
                     if body is not None:
                         ctx.emit(activity.posed, activity.pose_of(body, now, *seen["picture"]))
-            if not await view.rest(ctx.now - now, ctx.sleep):
+            if not await view.rest(now, ctx.now, ctx.sleep):
                 break
     finally:
         view.close()
+        if frames is not None:
+            frames.close()
     await ctx.sleep(settings.gone_after + 0.1)
     ctx.emit(sighted, Sighting(Look(ctx.now, (0, 0), dropped=view.skipped), ()))  # everybody has left
     return None
@@ -103,6 +94,51 @@ def _is_heard(ctx: rs.RuleContext, signal: rs.Signal[Any]) -> bool:
     """Return whether a rule of this agent listens to a signal."""
     plans = (ctx.policy.rule_plan(rule) for rule in ctx.policy.rules)
     return any(need.signal.name == signal.name for plan in plans for clause in plan.clauses for need in clause.needs)
+
+
+@module.rule(
+    when=rawio.camera.changed.max_age(None).detached(),
+    writes=camera,
+    detached=True,
+    background=True,
+)
+async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Look through the camera of the user's platform, and ask for each next picture when the last one is taken."""
+    user = ctx.payload(rawio.camera.changed)
+    if user is None:
+        return rs.Resign("the user has turned their camera off")
+    ctx[camera] = frames = Frames()
+    try:
+        while not frames.closed and (picture := await user.next()) is not None:
+            frames.put(picture)
+            await frames.taken()
+        user.refuse("the agent cannot see at the moment")
+    finally:
+        frames.close()  # so that the people leave whom the agent sees
+    return None
+
+
+@module.rule(
+    when=sighted.max_age(None) & rawio.camera.holds(bool),
+    reads=(rawio.camera, visitors),
+    detached=True,
+    background=True,
+)
+async def mark_faces(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Show the user the faces in their pictures, with the names that the agent knows."""
+    if (user := ctx[rawio.camera]) is None:
+        return rs.Resign("the user has turned their camera off")
+    sighting, here = ctx.payload(sighted), ctx[visitors]
+    width, height = sighting.look.size
+    faces: list[rawio.Face] = []
+    for track, _ in sighting.faces:
+        one = of_track(here, track.number)
+        person = track.person if one is None else one.node
+        x, y, w, h = track.box
+        name = str(person.get("name") or "") if person is not None else ""
+        faces.append(rawio.Face((x / width, y / height, w / width, h / height), name))
+    user.mark(faces)
+    return None
 
 
 @module.rule(
@@ -144,8 +180,9 @@ async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None
 
 @module.rule(
     when=facevec.max_age(None),
-    writes=(history, visitors, interloc.users),
-    emits=interloc.recognised,
+    reads=ontology.memory,
+    writes=(history, visitors, met, interloc.users),
+    emits=(interloc.recognised, named),
     background=True,
 )
 async def track(ctx: rs.RuleContext) -> None:
@@ -164,10 +201,12 @@ async def track(ctx: rs.RuleContext) -> None:
     if one is not None and decision is not None:
         one = _reconsidered(ctx, one, face, decision)
     if one is None and decision is not None:
-        one = whose(here, face, decision, settings.threshold) or _arrival(ctx, decision)
+        one = whose(here, face, decision, settings.threshold) or await _arrival(ctx, decision)
         if decision.person is not None and not one.known:
             one = _recognised(ctx, one, decision.person)
     if one is not None:
+        if one.linked:
+            ctx[met] = ctx[met] | {one.key}
         ctx[visitors].add(one.key, one.met(face, least=settings.quality, threshold=settings.threshold))
 
 
@@ -188,7 +227,7 @@ def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: De
     return None
 
 
-def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
+async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
     """Return a new visitor, and add them to the present users, unless they are the user whom a platform has added."""
     users, here, now = ctx[interloc.users], ctx[visitors], ctx.now
     person = decision.person
@@ -198,6 +237,9 @@ def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
         item = users[key]
         name = person.get("name") if person is not None else None
         before = item.node.id if isinstance(item, interloc.Recognised) else None
+        if isinstance(item, interloc.Recognised) and person is None and await _is_new_face(ctx, key, item.node):
+            ctx.emit(named, item.node)
+            return Visitor(key, item.node, known=True, since=now, seen=now, linked=True)
         if before is not None and (person is None or person.id != before):  # another person sits down
             users.remove(key)
             node = person or ontology.Node("Person")
@@ -213,6 +255,18 @@ def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
         return one
     one = Visitor(key, ontology.Node("Person"), since=now, seen=now, linked=True)
     return one if person is None else _recognised(ctx, one, person)
+
+
+async def _is_new_face(ctx: rs.RuleContext, key: str, node: ontology.Node) -> bool:
+    """Return whether a user who has told their name shows their face for the first time: memory has none of theirs."""
+    memory = ctx[ontology.memory]
+    if key in ctx[met] or memory is None:
+        return False
+    try:
+        return not await memory.together(lambda graph: people.has_faces(graph, node))
+    except RavestateError as error:
+        ctx.log.debug("memory was not asked about a person: %s", error)
+        return False
 
 
 def _recognised(ctx: rs.RuleContext, one: Visitor, person: ontology.Node) -> Visitor:
@@ -241,12 +295,18 @@ async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-@module.rule(when=looked.max_age(None), writes=(visitors, interloc.users), emits=left, background=True)
+@module.rule(when=looked.max_age(None), writes=(visitors, history, interloc.users), emits=left, background=True)
 async def leave(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note who has left."""
+    """Note who has left, and drop the vectors of the faces that have gone."""
     settings: Settings = ctx.settings
-    absent = gone(ctx[visitors], ctx.payload(looked).time, settings.gone_after)
-    if not absent:
+    now, here = ctx.payload(looked).time, dict(ctx[visitors])
+    absent = gone(here, now, settings.gone_after)
+    present = {number for one in here.values() if one not in absent for number in one.tracks}
+    before = ctx[history]
+    kept = tuple(face for face in before if face.track in present or now - at(face) <= settings.gone_after)
+    if len(kept) < len(before):
+        ctx[history] = kept
+    elif not absent:
         return rs.Resign("nobody has left")
     for one in absent:
         ctx[visitors].remove(one.key)
@@ -261,7 +321,7 @@ async def leave(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=interloc.users.changed.max_age(None).detached(),
-    reads=interloc.users,
+    reads=(interloc.users, ontology.memory),
     writes=(visitors, history),
     emits=named,
     detached=True,
@@ -278,158 +338,33 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
         if one.known:  # they are not the person whom the agent took them for
             ctx[history] = ()
             mistaken = one.mistaken | {one.node.id}
-            ctx[visitors].add(
-                key, replace(one, node=ontology.Node("Person"), known=False, faces=False, mistaken=mistaken)
-            )
+            stranger = replace(one, node=ontology.Node("Person"), known=False, faces=False, mistaken=mistaken)
+            ctx[visitors].add(key, stranger)
+            await _take_away(ctx, one)
         return None
     node = item.node if isinstance(item, interloc.Recognised) else one.node.with_properties(name=str(item))
     if one.known and node.id == one.node.id:
         return rs.Resign("the agent knows this person")
+    wrong = None
     if one.faces and one.known:
         strangers = [other for other in here.values() if not other.known]
         if len(strangers) == 1:  # of two people, the one whom the agent does not know has told their name
             one = strangers[0]
         else:
-            one = replace(one, mistaken=one.mistaken | {one.node.id})
+            wrong, one = one, replace(one, mistaken=one.mistaken | {one.node.id})
     ctx[visitors].add(one.key, replace(one, node=node, known=True, faces=False))
+    if wrong is not None:
+        await _take_away(ctx, wrong)
     ctx.emit(named, node)
     return None
 
 
-@module.rule(
-    when=named.min_age(POLITE).max_age(None).detached() | idle.bored,
-    reads=(visitors, ontology.memory, asking),
-    writes=(verbaliser.intent, rawio.output, visitors, asking, asked_at),
-    weight=1.3,  # outranks the other questions out of boredom
-    cooldown=20.0,
-    detached=True,
-    background=True,
-)
-async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Ask a person who has told their name whether the agent may remember their face."""
-    if not ctx.settings.ask:
-        return rs.Resign("visionio.ask is off")
-    memory = ctx[ontology.memory]
-    one = next(
-        (one for one in ctx[visitors].values() if one.item and not one.faces and one.good(ctx.settings.quality)), None
-    )
-    if one is None or memory is None:
-        return rs.Resign("there is nobody to ask, or no memory")
-    if ctx[asking]:
-        return rs.Resign("the agent has asked somebody else")
-    ctx[visitors].add(one.key, replace(one, faces=True))
-    try:
-        present = await memory.together(lambda graph: _has_faces(graph, one.node))
-    except RavestateError as error:
-        return rs.Resign(f"memory failed: {error}")
-    if present:
-        return rs.Resign("memory has their face")
-    ctx[asking], ctx[asked_at] = one.key, ctx.now
-    ctx[verbaliser.intent] = Intent("ask_leave", {"name": one.name}, __package__)
-    return None
-
-
-def _has_faces(graph: ontology.Graph, person: ontology.Node) -> bool:
-    return graph.get(person.id) is not None and bool(people.faces_of(graph, person))
-
-
-@module.rule(
-    when=rawio.input.changed,
-    reads=(asked_at, visitors, history),
-    writes=asking,
-    emits=(agreed, refused, withdrawn),
-)
-async def listen(ctx: rs.RuleContext) -> None:
-    """Notice the answer to the question, and the wish that the agent remember or forget a face."""
-    text = ctx.payload(rawio.input.changed)
-    key = ctx[asking] if ctx.now - ctx[asked_at] <= ANSWERED else ""
-    wish = await asyncio.to_thread(wish_of, text)
-    answer = yesno_of(text)
-    front = in_front(ctx[visitors], ctx[history])
-    if wish:
-        ctx.emit(withdrawn if wish == "forget" else agreed, front.key if front else "")
-    elif key and answer and not answer.unsure:
-        ctx.emit(agreed if answer.yes and not answer.no else refused, key)
-    else:
+async def _take_away(ctx: rs.RuleContext, one: Visitor) -> None:
+    """Remove a visitor's face from the person whom they deny to be, so that they are not taken for them again."""
+    memory, vectors = ctx[ontology.memory], [vector for _, vector in one.vectors]
+    if memory is None:
         return
-    ctx[asking] = ""
-
-
-@module.rule(when=agreed, reads=ontology.memory, writes=(verbaliser.intent, visitors, interloc.users), weight=2.0)
-async def store(ctx: rs.RuleContext) -> None:
-    """File the vectors of a person who agrees."""
-    settings: Settings = ctx.settings
-    one, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
-    meant, name = "no_memory", one.name if one else None
-    vectors = one.good(settings.quality) if one else ()
-    if one is None or not vectors:
-        meant = "not_seen"
-    elif name is None:
-        meant = "no_name"
-    elif memory is not None:
-        try:
-            node, _ = await memory.together(lambda graph: people.keep(graph, one.node, vectors, settings.most))
-        except RavestateError as error:
-            ctx.log.error("%s", error)
-        else:
-            ctx[visitors].add(one.key, replace(one, node=node, known=True, faces=True))
-            meant = "kept"
-    ctx[verbaliser.intent] = Intent(meant, {"name": name}, __package__)
-
-
-@module.rule(when=refused, reads=visitors, writes=verbaliser.intent, weight=1.9)
-async def respect(ctx: rs.RuleContext) -> None:
-    """Accept that a person does not want the agent to remember their face."""
-    one = ctx[visitors].get(ctx.payload(refused))
-    ctx[verbaliser.intent] = Intent("not_kept", {"name": one.name if one else None}, __package__)
-
-
-@module.rule(when=withdrawn, reads=ontology.memory, writes=(verbaliser.intent, visitors, history), weight=4.0)
-async def forget(ctx: rs.RuleContext) -> None:
-    """Remove a person's faces from memory."""
-    one, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
-    meant = "not_seen"
-    if one is not None:
-        try:
-            removed = 0 if memory is None else await memory.together(lambda graph: people.forget_faces(graph, one.node))
-            meant = "forgotten" if removed else "had_none"
-        except RavestateError as error:
-            ctx.log.error("%s", error)
-            meant = "no_memory"
-        else:
-            ctx[history] = ()
-            ctx[visitors].add(one.key, replace(one, faces=True, vectors=()))  # do not ask again
-    ctx[verbaliser.intent] = Intent(meant, {"name": one.name if one else None}, __package__)
-
-
-@module.rule(
-    when=interloc.forgotten.max_age(None).detached(), reads=ontology.memory, writes=(visitors, history), background=True
-)
-async def forget_person(ctx: rs.RuleContext) -> None:
-    """Take visitors for strangers whom memory has forgotten."""
-    memory = ctx[ontology.memory]
-    ctx[history] = ()
-    for one in ctx[visitors].values():
-        if one.known and (memory is None or await memory.get(one.node.id) is None):
-            stranger = replace(one, node=ontology.Node("Person"), known=False, faces=True, vectors=())
-            ctx[visitors].add(one.key, stranger)
-
-
-@module.rule(when=left.max_age(None).detached(), reads=ontology.memory, background=True)
-async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a visit, file a vector of a person who has agreed before, because people change."""
-    settings: Settings = ctx.settings
-    one, memory = ctx.payload(left), ctx[ontology.memory]
-    vectors = one.good(max(0.7, settings.quality))[:1]
-    if memory is None or not one.known or one.mistaken or not vectors:
-        return rs.Resign("there is nothing to file")
-
-    def file(graph: ontology.Graph) -> None:
-        if _has_faces(graph, one.node):
-            people.keep(graph, one.node.with_properties(), vectors, settings.most)
-
     try:
-        await memory.together(file)
+        await memory.together(lambda graph: people.take_away(graph, one.node, vectors))
     except RavestateError as error:
-        ctx.log.warning("%s", error)
-    return None
+        ctx.log.error("%s", error)

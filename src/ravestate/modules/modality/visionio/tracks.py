@@ -47,6 +47,9 @@ class Track:
     distance: float | None = None
     agreed: int = 0
 
+    def __repr__(self) -> str:
+        return f"Track({self.number}, box={self.box}, quality={self.quality})"
+
     def fresh(self, now: float, sure: int) -> bool:
         """Return whether the face needs no new vector now."""
         wait = REFRESH if self.agreed >= sure else 1.0 if self.tries >= TRIES else 0.0
@@ -77,6 +80,9 @@ class Sighting:
     look: Look
     faces: tuple[tuple[Track, bool], ...]
 
+    def __repr__(self) -> str:
+        return f"Sighting({self.look}, faces={[track.box for track, _ in self.faces]})"
+
 
 @dataclass(slots=True)
 class Tracks:
@@ -92,7 +98,8 @@ class Tracks:
     _thorough: float = float("-inf")
 
     def request(self, now: float) -> dict[str, Any]:
-        """Return what the vision worker must know for the next look."""
+        """Return what the vision worker must know for the next look. Lost faces get new tracks, after a pause as well."""
+        self._lose(now)
         known = [
             {"track": one.number, "box": list(one.box), "fresh": one.fresh(now, self.sure)}
             for one in self._tracks.values()
@@ -115,6 +122,9 @@ class Tracks:
                 track.vector, track.quality = tuple(face["vector"]), face["quality"]
                 track.encoded, track.tries = now, track.tries + 1
             found.append((track, face["vector"] is not None))
+        self._lose(now)
+        return found
+
+    def _lose(self, now: float) -> None:
         for one in [one for one in self._tracks.values() if now - one.seen > LOST]:
             del self._tracks[one.number]
-        return found

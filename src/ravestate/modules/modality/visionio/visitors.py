@@ -84,6 +84,21 @@ class Visitor:
 
 
 @dataclass(frozen=True, slots=True)
+class Question:
+    """The question to a visitor whether the agent may remember their face.
+
+    Attributes:
+        key: The visitor's key in ``interloc.users``.
+        time: The time of the question (seconds on the context's clock).
+        said: Whether the agent has said it. With the agent's next words, the question lapses: a yes may mean these.
+    """
+
+    key: str
+    time: float
+    said: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Decision:
     """The owner of a track's face: a person in memory, or None for a stranger; and the vectors that say so."""
 

@@ -16,6 +16,8 @@ from .places import default_camera
 
 AGAIN = 5.0
 """Seconds after which a lost camera is tried again."""
+MADE_UP = 0.5
+"""The greatest delay (seconds) that faster looks make up for."""
 FAULTS = 5
 """The number of failures in a row after which a video, a folder or a worker is given up."""
 
@@ -41,6 +43,7 @@ class Watch:
         self._told = ""
         self._dark = 0
         self._silent = False
+        self._due = 0.0
 
     @property
     def blind(self) -> bool:
@@ -119,11 +122,15 @@ class Watch:
             self._note_dark(seen["dark"])
         return seen
 
-    async def rest(self, spent: float, sleep: Sleep) -> bool:
+    async def rest(self, began: float, now: float, sleep: Sleep) -> bool:
         """Wait until the next look is due; return whether there is one.
 
+        A look is due one period after the last one was due. So a slow look, such as a thorough one, does not lower the rate.
+        The agent never exceeds its share of the time.
+
         Args:
-            spent: The seconds that this look took.
+            began: The time at which this look began (seconds).
+            now: The time at which it ended.
             sleep: Wait for seconds on the context's clock.
         """
         assert self._eye is not None
@@ -135,8 +142,9 @@ class Watch:
             await sleep(AGAIN)
             self._eye.reopen()
             return True
-        work = max(0.0, spent - self._eye.waited)
-        await sleep(max(1.0 / settings.fps - spent, work * (1.0 / settings.load - 1.0), 0.001))
+        period, work = 1.0 / settings.fps, max(0.0, now - began - self._eye.waited)
+        self._due = max(self._due, began - MADE_UP) + period
+        await sleep(max(self._due - now, work * (1.0 / settings.load - 1.0), 0.001))
         return True
 
     def close(self) -> None:

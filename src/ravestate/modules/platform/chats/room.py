@@ -106,7 +106,7 @@ class Room:
         for event in events:
             try:
                 message = read(event)
-            except Exception:
+            except Exception:  # anybody may send an event of any shape
                 self.log.exception("an event cannot be read, and is left out")
                 continue
             if message is not None and (message.kind == "left" or self.admits(message)):

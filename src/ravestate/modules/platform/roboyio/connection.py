@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -14,6 +15,10 @@ from .robot import Axis, Port, Robot
 
 QUALITY = quality(None, depth=10, latch=False)
 LATCHED = quality("latched", depth=1, latch=True)
+STEP = 0.1
+"""Seconds between two commands to an axis that takes a speed. A base that gets no more commands stops by itself."""
+NEAR = 0.03
+"""The angle (radians) at which such an axis has arrived."""
 NOD = ((0.0, -0.18), (0.25, 0.1), (0.25, -0.12), (0.25, 0.0))
 """A nod: the seconds to wait, and then the pitch to add."""
 SHAKE = ((0.0, 0.25), (0.3, -0.25), (0.3, 0.2), (0.3, 0.0))
@@ -27,31 +32,59 @@ class Connection:
         robot: The data file's content.
         node: The node; this class does not close it.
         sleep: Waits for seconds on the context's clock.
+        now: Returns the seconds on the context's clock.
         speech_timeout: Seconds that speaking an utterance may take.
-
-    Raises:
-        PlatformError: A type is unknown, or there is no ROS here.
     """
 
-    def __init__(self, robot: Robot, node: Node, sleep: Callable[[float], Any], speech_timeout: float) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        node: Node,
+        sleep: Callable[[float], Any],
+        now: Callable[[], float],
+        speech_timeout: float,
+    ) -> None:
         self.robot = robot
         self.node = node
         self.turn = asyncio.Lock()
         """Held while the robot speaks: one utterance at a time."""
         self._sleep = sleep
+        self._now = now
+        self._speech_timeout = speech_timeout
         self._pose = Pose()
-        if robot.definitions is not None:
-            node.types.definitions.add(robot.definitions)
+        self._angles: dict[str, float] = {}
+        """Axis that takes a speed → the angle at which it is."""
+        self._targets: dict[str, float] = {}
+        """Axis that turns → the angle at which it is to stop."""
         self._ports: dict[str, Channel] = {}
+        self._opened = asyncio.Event()
+
+    async def open(self) -> None:
+        """Open the topics and services. Earlier acts of the robot wait for it.
+
+        Raises:
+            PlatformError: A type is unknown or does not have the field, or there is no ROS here.
+        """
+        robot = self.robot
+        await self.node.prepare()
+        if robot.definitions is not None:
+            self.node.types.definitions.add(robot.definitions)
         for name, port in (("speak", robot.speak), ("express", robot.express), ("gesture", robot.gesture)):
             if port is not None:
-                self._ports[name] = self._open(port, speech_timeout if name == "speak" else 5.0)
+                self._ports[name] = self._open(port, self._speech_timeout if name == "speak" else 5.0)
         for axis, port in robot.head.items():
-            self._ports[axis] = self._open(port, 5.0)
+            # A robot that connects late gets the newest pose; an old speed must not reach it.
+            self._ports[axis] = self._open(port, 5.0, LATCHED if port.speed is None else QUALITY)
+        self._opened.set()
 
     def listen(self, port: Port | None, take: Callable[[Any], None]) -> None:
-        """Call `take` with each message of a topic of the robot, if it has it."""
+        """Call `take` with each message of a topic of the robot, if it has it.
+
+        Raises:
+            PlatformError: The type is unknown, or does not have the field.
+        """
         if port is not None:
+            port.check(self.node.types)
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
@@ -69,9 +102,8 @@ class Connection:
 
     async def look(self, pose: Pose) -> None:
         """Turn the head to a pose, as far as its axes reach."""
-        before, self._pose = self._pose, pose
-        moves = [self._turn(name, axis, before, pose) for name, axis in self.robot.head.items()]
-        await asyncio.gather(*moves)
+        self._pose = pose
+        await asyncio.gather(*(self._move(name, axis) for name, axis in self.robot.head.items()))
 
     async def perform(self, name: str) -> None:
         """Perform a gesture: the robot's own, or one made of head movements."""
@@ -87,25 +119,45 @@ class Connection:
             at = getattr(self._pose, axis) + angle
             await self._send(axis, self.robot.head[axis], self.robot.head[axis].limited(at))
 
-    async def _turn(self, name: Literal["yaw", "pitch", "roll"], axis: Axis, before: Pose, pose: Pose) -> None:
-        old, new = axis.limited(getattr(before, name)), axis.limited(getattr(pose, name))
+    async def _move(self, name: str, axis: Axis) -> None:
+        angle = axis.limited(getattr(self._pose, name))
         if axis.speed is None:
-            await self._send(name, axis, new)
-        elif abs(new - old) > 0.01:
-            try:
-                await self._send(name, axis, axis.speed if new > old else -axis.speed)
-                await self._sleep(abs(new - old) / axis.speed)
-            finally:
+            await self._send(name, axis, angle)
+            return
+        turns = name in self._targets
+        self._targets[name] = angle
+        if not turns:
+            await self._turn(name, axis, axis.speed)
+
+    async def _turn(self, name: str, axis: Axis, speed: float) -> None:
+        """Turn an axis that takes a speed, until it is at its target. The target may change meanwhile."""
+        at = self._angles.get(name, 0.0)
+        moved = False
+        try:
+            while abs(way := self._targets[name] - at) > NEAR:
+                velocity = math.copysign(speed, way)
+                await self._send(name, axis, velocity)
+                moved = True
+                began = self._now()
+                try:
+                    await self._sleep(min(STEP, abs(way) / speed))
+                finally:
+                    at = self._angles[name] = at + velocity * (self._now() - began)
+        finally:
+            del self._targets[name]
+            if moved:
                 self._publish(name, axis, 0.0)
 
-    def _open(self, port: Port, timeout: float) -> Channel:
+    def _open(self, port: Port, timeout: float, qos: dict[str, Any] = QUALITY) -> Channel:
+        port.check(self.node.types)
         if port.service:
             return self.node.client(port.service, port.type, timeout=timeout)
-        return self.node.advertise(port.topic, port.type, qos=QUALITY)
+        return self.node.advertise(port.topic, port.type, latch=qos is LATCHED, qos=qos)
 
     async def _send(self, name: str, port: Port | None, value: Any) -> None:
         if port is None:
             return
+        await self._opened.wait()
         if port.service:
             answer = await self._ports[name].call(port.pack(value))
             if getattr(answer, "success", True) is False:

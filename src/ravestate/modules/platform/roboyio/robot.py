@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import pydantic
 
-from ravestate.errors import DeclarationError, nearest
+from ravestate.errors import DeclarationError, PlatformError, nearest
 from ravestate.modules._yaml import read_text
+from ravestate.modules.platform.ros import Binding, Types, quality
 from ravestate.yaml_text import load_yaml
 
 ROBOTS = Path(__file__).with_name("robots")
@@ -34,6 +36,18 @@ class Port(pydantic.BaseModel):
         if bool(self.topic) == bool(self.service):
             raise ValueError("write either `topic` or `service`")
         return self
+
+    def check(self, types: Types) -> None:
+        """Load the type.
+
+        Raises:
+            PlatformError: The type is unknown, or does not have the field.
+        """
+        full = types.require(self.type, "srv" if self.service else "msg")
+        try:
+            types.message(self.pack(None), f"{full}_Request" if self.service else full)
+        except PlatformError as error:
+            raise PlatformError(f"the robot's {self.topic or self.service}, field {self.field!r}: {error}") from error
 
     def pack(self, value: Any) -> dict[str, Any]:
         """Return a message in which the field has this value."""
@@ -89,6 +103,14 @@ class Gestures(Port):
     """Ravestate's name of a gesture → the robot's."""
 
 
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a robot, and the topic or service that it is bound to."""
+
+    name: str
+    binding: Binding
+
+
 class Robot(pydantic.BaseModel):
     """A robot. Everything that it does not have may be left out."""
 
@@ -104,6 +126,19 @@ class Robot(pydantic.BaseModel):
     express: Faces | None = None
     head: dict[Literal["yaw", "pitch", "roll"], Axis] = pydantic.Field(default_factory=dict[Any, Any])
     gesture: Gestures | None = None
+
+    def parts(self, version: Literal[1, 2]) -> list[Part]:
+        """Return what an agent binds to ROS 1 or ROS 2 for this robot."""
+        senses = {"hear": self.hear, "direction": self.direction, "people": self.people}
+        acts = {"speak": self.speak, "express": self.express, **self.head, "gesture": self.gesture}
+        found: list[Part] = []
+        for name, port in {**senses, **acts}.items():
+            if port is not None:
+                kind = "service" if port.service else "subscriber" if name in senses else "publisher"
+                options = {"qos": quality(None, depth=10, latch=False)}
+                binding = Binding(version, kind, port.topic or port.service, port.type, options)
+                found.append(Part(f"roboyio:{name}", binding))
+        return found
 
 
 def load_robot(name: str) -> Robot:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import unicodedata
 from typing import Any
+from weakref import WeakSet
 
 import ravestate as rs
 from ravestate.errors import PlatformError
@@ -12,11 +13,14 @@ from ravestate.modules import interloc, rawio, ros1, ros2
 from ravestate.modules.platform.ros import Node, NodeSettings, open_node
 from ravestate.modules.platform.ros.places import Place
 
+from .connection import Connection
 from .names import Pose, Settings, body, direction, expression, gaze, gesture, here, module, speaking, words
 from .robot import load_robot
 
 THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
 """The gaze of a robot that thinks."""
+_connected: WeakSet[Node] = WeakSet()
+"""The nodes that have their robot. Two runs of `connect` may begin at once, and neither sees what the other writes."""
 THINKS_AFTER = 0.6
 """Seconds of work after which a robot shows that it thinks."""
 
@@ -45,10 +49,10 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         if settings.link == "bus":
             node = own = open_node(2, NodeSettings(bus=settings.bus), _nowhere, {}, bus=True)
         assert node is not None  # `_not_now` has looked
-        await node.prepare()
-        from .connection import Connection
-
-        made = Connection(robot, node, ctx.sleep, settings.speech_timeout)
+        made = Connection(robot, node, ctx.sleep, lambda: ctx.now, settings.speech_timeout)
+        _connected.add(node)
+        ctx[body] = made  # at once, so that the first words wait for this connection
+        await made.open()
 
         def hear(message: Any) -> None:
             assert robot.hear is not None
@@ -73,7 +77,6 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         made.listen(robot.direction, notice)
         made.listen(robot.people, see)
         add_feelings(ctx)
-        ctx[body] = made
         await asyncio.get_running_loop().create_future()
     except rs.RavestateError as error:
         ctx.stop(error)
@@ -90,10 +93,13 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
     others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
     if others and not ctx[here]:
         return f"the robot is not this user's, who comes by {others[0]}"
+    if link != "bus":
+        node = ctx[ros1.node if link == "ros1" else ros2.node]
+        if node is None:
+            return f"{link} is not connected"
+        return "the robot is connected" if node in _connected else None
     if ctx[body] is not None:
         return "the robot is connected"
-    if link != "bus":
-        return None if ctx[ros1.node if link == "ros1" else ros2.node] is not None else f"{link} is not connected"
     asked = bool(ctx.payload(here.true))
     at_startup = not asked and not ctx.payload(ros1.node.changed) and not ctx.payload(ros2.node.changed)
     if asked if others else at_startup:

@@ -62,7 +62,6 @@ class StandIn:
         self.looks = Looks(robot.name)
         self._watchers: set[Callable[[dict[str, Any]], None]] = set()
         self._sleep = sleep
-        self._turning: dict[str, float] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         if robot.definitions is not None:
             node.types.definitions.add(robot.definitions)
@@ -70,6 +69,7 @@ class StandIn:
         self._senses: dict[str, tuple[Port, Channel]] = {}
         for name, port in (("hear", robot.hear), ("direction", robot.direction), ("people", robot.people)):
             if port is not None:
+                port.check(node.types)
                 self._senses[name] = port, node.advertise(port.topic, port.type, qos=QUALITY)
         self._take(robot.speak, self._speak)
         self._take(robot.express, self._express)
@@ -112,6 +112,7 @@ class StandIn:
     def _take(self, port: Port | None, act: Callable[[Any], Any]) -> None:
         if port is None:
             return
+        port.check(self._node.types)
         if port.service:
 
             async def serve(request: Any) -> dict[str, Any]:
@@ -149,18 +150,30 @@ class StandIn:
         self._show(gesture=(name, self.looks.gesture[1] + 1))
 
     def _turner(self, name: str, axis: Axis) -> Callable[[float], Any]:
+        """Return the function that takes the values of an axis: angles, or speeds."""
+        now = asyncio.get_running_loop().time
+        speed, since, turns = 0.0, 0.0, False
+
+        def show() -> None:
+            nonlocal since
+            before, since = since, now()
+            if speed:
+                self._show(**{name: axis.limited(getattr(self.looks, name) + speed * (since - before))})
+
         async def turn(value: float) -> None:
+            nonlocal speed, turns
             if axis.speed is None:
                 self._show(**{name: axis.limited(value)})
                 return
-            running = name in self._turning
-            self._turning[name] = value
-            if value and not running:
-                while speed := self._turning.get(name, 0.0):
-                    self._show(**{name: axis.limited(getattr(self.looks, name) + speed * TICK)})
-                    await self._sleep(TICK)
-            if not self._turning.get(name):
-                self._turning.pop(name, None)
+            show()
+            speed = value
+            if turns:
+                return
+            turns = True
+            while speed:  # a later command may change it
+                await self._sleep(TICK)
+                show()
+            turns = False
 
         return turn
 

@@ -12,10 +12,12 @@ import itertools
 import json
 import socket
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from ravestate.errors import PlatformError
 
+from .children.pipe import Outlet
 from .frames import Frames, Handle, Kind
 from .node import MakeLink
 
@@ -39,7 +41,7 @@ class Bus:
         """The address for nodes."""
         self._host, self._port = host, port
         self._nodes: set[_BusNode] = set()
-        self._calls: dict[int, tuple[_BusNode, int, int]] = {}
+        self._calls: dict[int, _Call] = {}
         self._numbers = itertools.count(1)
 
     async def __aenter__(self) -> Bus:
@@ -75,6 +77,12 @@ class Bus:
     def leave(self, node: _BusNode) -> None:
         """Forget a node, and tell those that wait for its answers."""
         self._nodes.discard(node)
+        for own, call in list(self._calls.items()):
+            if call.caller is node:
+                del self._calls[own]
+            elif call.server is node:
+                del self._calls[own]
+                call.caller.frames.tell(Kind.FAULT, "the node of the service is gone", call.channel, call.number)
 
     def find(self, kind: str, name: str) -> list[tuple[_BusNode, int, dict[str, Any]]]:
         """Return node, channel and binding of all channels of a kind and name."""
@@ -89,7 +97,7 @@ class Bus:
         """Pass a message on to all subscribers of its topic."""
         for node, channel, other in self.find("subscriber", binding["name"]):
             if other["type"] == binding["type"]:
-                node.frames.send(Kind.MESSAGE, channel, 0, body)
+                node.outlets[channel].put(body)
             else:
                 node.note(channel, f"{binding['name']} carries {binding['type']}, not {other['type']}")
 
@@ -107,16 +115,24 @@ class Bus:
             )
             return
         own = next(self._numbers)
-        self._calls[own] = caller, channel, number
+        self._calls[own] = _Call(caller, channel, number, server)
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
         """Pass an answer on to the caller."""
-        caller, channel, number = self._calls.pop(own, (None, 0, 0))
-        if caller is not None and kind is Kind.FAULT:
-            caller.frames.tell(Kind.FAULT, bytes(body).decode(), channel, number)
-        elif caller is not None:
-            caller.frames.send(kind, channel, number, body)
+        call = self._calls.pop(own, None)
+        if call is not None and kind is Kind.FAULT:
+            call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)
+        elif call is not None:
+            call.caller.frames.send(kind, call.channel, call.number, body)
+
+    def cancel(self, caller: _BusNode, channel: int, number: int) -> None:
+        """Forget a call whose caller waits no longer."""
+        self._calls = {
+            own: call
+            for own, call in self._calls.items()
+            if (call.caller, call.channel, call.number) != (caller, channel, number)
+        }
 
     def graph(self, asker: _BusNode) -> dict[str, Any]:
         """Return what other nodes publish, subscribe and serve."""
@@ -139,11 +155,22 @@ class Bus:
         return {"topics": list(topics.values()), "services": list(services.values()), "actions": []}
 
 
+@dataclass(frozen=True, slots=True)
+class _Call:
+    """A call under way: the caller's node, channel and number, and the node that is to answer."""
+
+    caller: _BusNode
+    channel: int
+    number: int
+    server: _BusNode
+
+
 class _BusNode:
     """The bus's side of the connection to one node."""
 
     def __init__(self, bus: Bus, connection: socket.socket) -> None:
         self.bindings: dict[int, dict[str, Any]] = {}
+        self.outlets: dict[int, Outlet] = {}
         self._bus = bus
         self._latched: dict[int, memoryview] = {}
         self.frames = Frames(connection, self._handle, lambda: bus.leave(self))
@@ -159,17 +186,24 @@ class _BusNode:
         elif kind is Kind.BIND:
             binding = self.bindings[channel] = json.loads(bytes(body))
             if binding["kind"] == "subscriber":
+                outlet = self.outlets[channel] = Outlet(self.frames, channel, binding["latest"])
                 for node, other, _ in bus.find("publisher", binding["name"]):
                     if other in node._latched:
-                        self.frames.send(Kind.MESSAGE, channel, 0, node._latched[other])
+                        outlet.put(node._latched[other])
         elif kind is Kind.UNBIND:
             self.bindings.pop(channel, None)
+            self.outlets.pop(channel, None)
+            self._latched.pop(channel, None)
+        elif kind is Kind.ACK and channel in self.outlets:
+            self.outlets[channel].acknowledge()
         elif kind is Kind.MESSAGE and channel in self.bindings:
             if self.bindings[channel]["latch"]:
                 self._latched[channel] = body
             bus.publish(self.bindings[channel], body)
         elif kind is Kind.CALL and channel in self.bindings:
             bus.call(self, channel, number, body)
+        elif kind is Kind.CANCEL:
+            bus.cancel(self, channel, number)
         elif kind in (Kind.ANSWER, Kind.FAULT):
             bus.answer(kind, number, body)
         elif kind is Kind.ASK:

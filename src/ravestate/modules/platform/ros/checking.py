@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from ravestate.errors import PlatformError
 
 from .definitions import full_name
 from .node import Node
-from .slots import TopicSlot
+from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
@@ -22,6 +22,15 @@ LOOKS = 8
 """The number of looks at the network, because other nodes show up one by one."""
 PAUSE = 0.4
 """Seconds between two looks."""
+
+
+class Bound(Protocol):
+    """A thing that is bound to the network: a slot, or a part of a robot."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def binding(self) -> Binding: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +48,8 @@ class Line:
     text: str
 
 
-async def check(node: Node, slots: Iterable[TopicSlot]) -> list[Line]:
-    """Check the slots of one node against the network.
+async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
+    """Check what is bound to one node against the network.
 
     Raises:
         PlatformError: There is no ROS here, or no master.
@@ -56,7 +65,7 @@ async def check(node: Node, slots: Iterable[TopicSlot]) -> list[Line]:
     return lines
 
 
-def look_at(slot: TopicSlot, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
+def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
     """Return what the network has for a slot."""
     binding = slot.binding
     name = node.absolute(binding.name)
@@ -68,7 +77,8 @@ def look_at(slot: TopicSlot, node: Node, graph: Mapping[str, list[dict[str, Any]
     row = next((row for row in graph[PLACES[binding.kind]] if row["name"] == name), None)
     count = 0 if row is None else row[OTHERS[binding.kind]]
     if not count or row is None:
-        known = [row["name"] for row in graph[PLACES[binding.kind]] if _has(row, binding.type, KINDS[binding.kind])]
+        alike = [row for row in graph[PLACES[binding.kind]] if _has(row, binding.type, KINDS[binding.kind])]
+        known = [row["name"] for row in alike if row["name"] != name]
         hint = f"; of this type there is {', '.join(sorted(known)[:3])}: write remap or another name" if known else ""
         return Line(False, slot.name, f"{bound}: no {OTHERS[binding.kind]}{hint or ': start the other node'}")
     if row["types"] and not _has(row, binding.type, KINDS[binding.kind]):
@@ -78,7 +88,12 @@ def look_at(slot: TopicSlot, node: Node, graph: Mapping[str, list[dict[str, Any]
     reliable = binding.kind == "subscriber" and binding.options["qos"]["reliability"] == "reliable"
     if reliable and row.get("reliability") == ["best_effort"]:
         return Line(False, slot.name, f"{bound}: its publishers are best-effort: write qos='sensor_data'")
-    return Line(True, slot.name, f"{bound}: {count} {OTHERS[binding.kind]}")
+    return Line(True, slot.name, f"{bound}: {counted(count, OTHERS[binding.kind])}")
+
+
+def counted(count: int, nouns: str) -> str:
+    """Return a number of things in words, such as ``1 publisher`` for 1 and ``publishers``."""
+    return f"{count} {nouns.removesuffix('s') if count == 1 else nouns}"
 
 
 def _has(row: Mapping[str, Any], type_: str, kind: str) -> bool:

@@ -48,6 +48,8 @@ class Kind(IntEnum):
     CLOSE = 15
 
 
+KINDS = {int(kind): kind for kind in Kind}
+
 Handle = Callable[[Kind, int, int, memoryview], None]
 
 
@@ -165,12 +167,21 @@ class Frames:
             if len(rest) - start < HEAD.size + inline:
                 break
             start += HEAD.size
-            if flags & SHARED:
-                body = _mapped(self._fds.popleft(), size)
-            else:
-                body = memoryview(bytes(rest[start : start + size]))
+            try:
+                what = KINDS[kind]
+                body = (
+                    _mapped(self._fds.popleft(), size)
+                    if flags & SHARED
+                    else memoryview(bytes(memoryview(rest)[start : start + size]))
+                )
+            except LookupError:
+                self._end()  # the other end is no bridge, no node and no bus
+                break
             start += inline
-            self._handle(Kind(kind), channel, number, body)
+            try:
+                self._handle(what, channel, number, body)
+            except Exception as error:  # the fault of one frame must not lose those that follow
+                self._loop.call_exception_handler({"message": f"a frame ({what.name}) failed", "exception": error})
         else:
             if not self._closed:
                 self._loop.remove_reader(self._sock)

@@ -20,6 +20,8 @@ from .goals import GoalTopics
 from .naming import resolve
 from .types import Types
 
+TOLD = 100
+"""The maximum number of different texts that a node logs. Good news or a new link resets the count."""
 WAITING = 1000
 """The maximum number of messages that wait while the bridge starts. Then the oldest is dropped."""
 
@@ -76,8 +78,10 @@ class Channel:
         """Publish a message: a message, a mapping of its fields, or the value of its only field.
 
         Raises:
-            PlatformError: The value does not fit the type.
+            PlatformError: The value does not fit the type, or the bridge could not make the channel.
         """
+        if self.fault:
+            raise PlatformError(self.fault)
         body = self.node.types.encode(value, self.type)
         if self.binding["latch"]:
             self.last = body
@@ -102,7 +106,7 @@ class Node:
     """A node of ROS or of the bus. It connects at its first use; a link that breaks is made again.
 
     Args:
-        title: The user's name for it, such as ``ros1``.
+        title: The name of the node in logs and errors, such as ``ros1``.
         types: The types of its messages.
         make_link: Makes the link.
         name: The node's name.
@@ -183,7 +187,7 @@ class Node:
             topic: The topic's name.
             type: The type's name.
             take: The function to call on the loop.
-            latest: Whether messages that come faster than they are taken may replace each other.
+            latest: Whether a new message may replace an older one that `take` has not received yet.
             rate: The maximum number of messages a second; the newest of each interval is taken.
             qos: The quality of service; see `naming.quality`.
 
@@ -245,7 +249,7 @@ class Node:
     # ------------------------------------------------------------------------------- acting
 
     def start(self) -> None:
-        """Connect, unless that has begun.
+        """Start to connect, unless the node has already started.
 
         Raises:
             PlatformError: There is no ROS here, or it does not start.
@@ -257,13 +261,15 @@ class Node:
             raise self._link.failed
 
     async def prepare(self) -> None:
-        """Load the types in a thread, unless they are. Without it, the first use of the node loads them on the loop.
+        """Load the types in a thread, unless they are loaded.
+
+        Without this call, the first use of the node loads the types on the loop.
 
         Raises:
             PlatformError: The library of types is missing.
         """
         if not self.types.loaded:
-            if self._preparing is None:  # one for all, so that those who wait go on in their order
+            if self._preparing is None:  # all callers await one future, so they go on in their order
                 self._preparing = asyncio.ensure_future(asyncio.to_thread(lambda: self.types.store))
             await asyncio.shield(self._preparing)
 
@@ -338,7 +344,9 @@ class Node:
     def _bind_all(self) -> None:
         frames = self._frames
         assert frames is not None  # the link has just become ready
+        self._told.clear()  # a fault that comes back is logged again
         for channel in self.channels.values():
+            channel.fault = ""
             frames.tell(Kind.BIND, channel.binding, channel.number)
             if channel.last is not None:
                 frames.send(Kind.MESSAGE, channel.number, 0, channel.last)
@@ -356,7 +364,7 @@ class Node:
         if self._link is not None and self._link.failed is not None:
             if self._failed is not None:
                 self._failed(self._link.failed)
-            self.ready.set()  # nobody needs to wait
+            self.ready.set()  # a failed link never gets ready: let the callers that wait see the failure
 
     def _fail_calls(self, why: str) -> None:
         for future, channel, _ in list(self._calls.values()):
@@ -413,8 +421,10 @@ class Node:
         self._warn(text, note["level"])
 
     def _warn(self, text: str, level: Literal["info", "warning", "error"] = "warning") -> None:
-        """Log a text, once."""
-        if text not in self._told:
+        """Log a text once. After a text of level `info`, or with a new link, the same text may be logged again."""
+        if level == "info":
+            self._told.clear()
+        if text not in self._told and len(self._told) < TOLD:
             self._told.add(text)
             self._log.log(logging.getLevelNamesMapping()[level.upper()], "%s: %s", self.title, text)
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import os
 import socket
-import subprocess
-import tempfile
 from collections.abc import Callable, Mapping
-from typing import IO, Any
+from typing import Any
 
 from ravestate.errors import PlatformError
+from ravestate.modules._children.child import Child
 
 from .frames import Frames, Handle, Kind
 from .places import Place
@@ -53,8 +51,7 @@ class BridgeProcess:
         self._handle = handle
         self._ready = ready
         self._lost = lost
-        self._process: subprocess.Popen[bytes] | None = None
-        self._errors: IO[bytes] | None = None
+        self._process: Child | None = None
         self._frames: Frames | None = None
         self._again: asyncio.TimerHandle | None = None
         self._idle_deaths = 0
@@ -64,7 +61,7 @@ class BridgeProcess:
     @property
     def pid(self) -> int | None:
         """The process's number, if it runs."""
-        return self._process.pid if self._process is not None and self._process.poll() is None else None
+        return self._process.pid if self._process is not None else None
 
     @property
     def frames(self) -> Frames | None:
@@ -75,20 +72,14 @@ class BridgeProcess:
         """Start the process; it is ready later."""
         self._again = None
         ours, theirs = socket.socketpair()
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `_bury` closes it
         try:
-            self._process = subprocess.Popen(
+            self._process = Child(
                 self._place.command(theirs.fileno()),
-                stdin=subprocess.DEVNULL,
-                stdout=self._errors,
-                stderr=self._errors,
                 pass_fds=(theirs.fileno(),),
-                env={**os.environ, **self._place.environment},
-                start_new_session=True,
+                environment=self._place.environment,
             )
         except OSError as error:
             ours.close()
-            self._errors.close()
             self.failed = PlatformError(f"{self._place.name}: cannot start {self._place.python!r}: {error}")
             self._lost(str(self.failed))
             return
@@ -104,11 +95,12 @@ class BridgeProcess:
             self._again.cancel()
         frames, process = self._frames, self._process
         if frames is not None and process is not None:
-            frames.send(Kind.CLOSE)
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(ENDING):
-                    await frames.flush()
-                    await asyncio.to_thread(process.wait, ENDING)
+            if self._works:  # else it waits for a master, and has nothing to finish
+                frames.send(Kind.CLOSE)
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(ENDING):
+                        await frames.flush()
+                        await asyncio.to_thread(process.wait, ENDING)
             frames.close()
         await asyncio.to_thread(self._bury)
 
@@ -147,18 +139,4 @@ class BridgeProcess:
     def _bury(self) -> str:
         """Make sure that the process is gone; return how it ended."""
         process, self._process = self._process, None
-        if process is None:
-            return "closed"
-        try:
-            process.wait(0.1)
-        except subprocess.TimeoutExpired:
-            process.kill()
-        code = process.wait()
-        how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
-        if self._errors is not None:
-            self._errors.seek(0)
-            said = self._errors.read(1 << 16).decode("utf-8", "replace").strip().splitlines()
-            how += f": {said[-1]}" if said else ""
-            self._errors.close()
-            self._errors = None
-        return how
+        return process.end(patience=0.1) if process is not None else "closed"

@@ -37,10 +37,11 @@ class Types:
     @property
     def store(self) -> Any:
         """The library's store of types. Its first use loads the library, which takes a while."""
-        with self._loading:
-            if self._store is None:
-                self._store = _store(self.version)
-            return self._store
+        if self._store is None:
+            with self._loading:
+                if self._store is None:
+                    self._store = _store(self.version)
+        return self._store
 
     @property
     def loaded(self) -> bool:
@@ -150,9 +151,10 @@ class Types:
                 raise PlatformError(f"{path} takes the fields {self.describe(name)}, not {value!r}")
             value = {own[0]: value}
         given = cast("Mapping[str, Any]", value)
-        if unknown := [str(key) for key in given if key not in dict(fields)]:
+        known = dict(fields)
+        if unknown := [str(key) for key in given if key not in known]:
             raise PlatformError(
-                f"{path} has no field {unknown[0]!r}{nearest(unknown[0], dict(fields))}: its fields are {self.describe(name)}"
+                f"{path} has no field {unknown[0]!r}{nearest(unknown[0], known)}: its fields are {self.describe(name)}"
             )
         return cls(**{field: self._field(given.get(field), what, f"{path}.{field}") for field, what in fields})
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 HEARD = 0.5
 """The share of a word that must have sounded for the word to count as heard."""
-QUIET = 200
-"""The level of a sample below which the end of a word counts as silence: the pause behind it is no part of it."""
+FAINT = 0.1
+"""The share of a word's greatest level below which its end counts as silence: the pause behind it is no part of it."""
 DRIFT = 0.06
 """Seconds by which the play-out may differ from its regular course before the echo's reference jumps there."""
 LEAD = 4.0
@@ -257,5 +257,6 @@ class Mouth:
 
 
 def _speech_end(pcm: bytes) -> float:
-    loud = np.flatnonzero(np.abs(samples(pcm).astype(np.int32)) > QUIET)
+    level = np.abs(samples(pcm).astype(np.int32))
+    loud = np.flatnonzero(level > FAINT * level.max(initial=0))
     return float(loud[-1]) / OUT_RATE if len(loud) else 0.0

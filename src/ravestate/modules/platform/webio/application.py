@@ -45,7 +45,8 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
 
     async def connect(socket: WebSocket) -> None:
         title, suggestions = settings.title, settings.suggestions
-        await Connection(socket, sessions, access, title, inside, suggestions, settings.note).run()
+        texts = settings.note, settings.privacy
+        await Connection(socket, sessions, access, title, inside, suggestions, *texts).run()
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncGenerator[None]:
@@ -106,8 +107,9 @@ class AccessMiddleware:
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 answered = MutableHeaders(scope=message)
-                voice = not self._inside and scope["app"].state.sessions.hears
-                for name, value in _bounds(() if self._inside else access.origins, voice=voice).items():
+                sessions: Sessions = scope["app"].state.sessions
+                devices = [] if self._inside else _devices(sessions)
+                for name, value in _bounds(() if self._inside else access.origins, devices).items():
                     answered.setdefault(name, value)  # the board's own header is stricter, so it stays
             await send(message)
 
@@ -120,10 +122,15 @@ class AccessMiddleware:
             log.warning("a page of %s may not embed the chat: add it to the setting webio.origins", origin)
 
 
-def _bounds(framing: Iterable[str], *, voice: bool) -> dict[str, str]:
+def _devices(sessions: Sessions) -> list[str]:
+    """Return the devices that the page of an agent may use."""
+    return ["microphone"] * sessions.hears + ["camera"] * sessions.sees
+
+
+def _bounds(framing: Iterable[str], devices: Iterable[str]) -> dict[str, str]:
     """Return headers that restrict scripts, and let only the page's own site and the origins `framing` embed it.
 
-    The page may use the microphone only if the agent has a `voice`.
+    The page may use the microphone and the camera only if they are among the `devices`.
     """
     policy = (
         "default-src 'none'",
@@ -138,7 +145,9 @@ def _bounds(framing: Iterable[str], *, voice: bool) -> dict[str, str]:
     )
     return {
         "content-security-policy": "; ".join(policy),
-        "permissions-policy": f"camera=(), geolocation=(), microphone=({'self' if voice else ''})",
+        "permissions-policy": ", ".join(
+            f"{name}=({'self' if name in devices else ''})" for name in ("camera", "geolocation", "microphone")
+        ),
         "referrer-policy": "no-referrer",
         "x-content-type-options": "nosniff",
     }

@@ -13,7 +13,7 @@ from . import frames
 from .channel import Bucket, Channel
 from .fields import VERSION, ProtocolError
 from .frames import CLIENT
-from .protocol import parse, serialise, sound_of
+from .protocol import parse, picture_of, serialise, sound_of
 from .session import Ending, Session
 
 if TYPE_CHECKING:
@@ -30,6 +30,9 @@ SOUND_BURST, SOUND_RATE = 2 * 32_000, 1.25 * 32_000
 REPORTS_BURST, REPORTS_RATE = 40, 20.0
 """How many `Played` frames a client may send in a burst, and per second after it. The server ignores more."""
 
+PICTURES_BURST, PICTURES_RATE = 20, 20.0
+"""How many pictures a client may send in a burst, and per second after it. The server delays further ones."""
+
 REPLIES = 32  # the maximum number of replies that may wait to be sent to a client
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
@@ -38,7 +41,7 @@ HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 class Connection:
     """Carries the protocol over one WebSocket that is not accepted yet.
 
-    The path of the board is `inside`. For `title`, `suggestions` and `note`, see `Settings`.
+    The path of the board is `inside`. For `title`, `suggestions`, `note` and `privacy`, see `Settings`.
     """
 
     def __init__(
@@ -50,6 +53,7 @@ class Connection:
         inside: str | None = None,
         suggestions: tuple[str, ...] = (),
         note: str | None = None,
+        privacy: str = "",
     ) -> None:
         self._socket = socket
         self._sessions = sessions
@@ -58,10 +62,15 @@ class Connection:
         self._inside = inside
         self._suggestions = suggestions
         self._note = note
+        self._privacy = privacy
         self._channel = Channel(socket, REPLIES)
         self._stream: object = None  # the line and the stream of the client's last `Flush`
         self._listens: object = None  # the line of the client's last `Listening`
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
+        self._announced: int | None = None  # the number of the picture that the next binary frame holds
+        self._look: object = None  # the camera and the number of the client's last `Look`
+        self._faces: tuple[frames.Face, ...] = ()  # the client's last `Faces`
+        self._unseen: str | None = None  # why this window has lost the camera, if the client does not know it yet
 
     async def run(self) -> None:
         """Serve the client until either side closes."""
@@ -76,6 +85,11 @@ class Connection:
         self._taken = why
         self.wake()
 
+    def lose_camera(self, why: str) -> None:
+        """Tell the client that its window has lost the camera."""
+        self._unseen = why
+        self.wake()
+
     async def _serve(self) -> None:
         hello = await self._hello()
         session = self._sessions.get(hello.session) if hello.session else None
@@ -88,11 +102,13 @@ class Connection:
             first, newest = session.history.first, session.history.last
             agent = self._name_of(session)
             begin = (VERSION, session.id, resumed, first, agent, self._inside, newest, True)
-            await self._send(frames.Welcome(*begin, self._suggestions, self._note, session.hears or None))
+            sight = self._privacy if session.sees else None
+            await self._send(frames.Welcome(*begin, self._suggestions, self._note, session.hears or None, sight))
             await until_first_ends(self._read(session), self._write(session, max(last, first - 1), agent))
         finally:
             if session.line is not None:
                 session.line.leave(self)
+            session.leave_camera(self)
             self._sessions.exit(session, self)
 
     async def _hello(self) -> frames.Hello:
@@ -108,9 +124,14 @@ class Connection:
         writing, others = (Bucket(burst=BURST, rate=RATE, now=now()) for _ in range(2))
         sound = Bucket(burst=SOUND_BURST, rate=SOUND_RATE, now=now())
         reports = Bucket(burst=REPORTS_BURST, rate=REPORTS_RATE, now=now())
+        pictures = Bucket(burst=PICTURES_BURST, rate=PICTURES_RATE, now=now())
         while True:
             text = await self._channel.receive()
             try:
+                if isinstance(text, bytes) and self._announced is not None:
+                    self._take_picture(text, session)
+                    await asyncio.sleep(0)
+                    continue
                 if isinstance(text, bytes) and session.hears:
                     block = sound_of(text)
                     if sound.take(now(), len(block)) and session.line is not None:
@@ -122,6 +143,10 @@ class Connection:
                     if reports.take(now()) and session.line is not None:
                         session.line.report(self, frame.n, frame.samples)
                     await asyncio.sleep(0)
+                    continue
+                if isinstance(frame, frames.Picture) and session.sees:
+                    self._announced = frame.n
+                    await asyncio.sleep(pictures.wait(now()))
                     continue
                 if isinstance(frame, frames.Writing):
                     if writing.take(now()):
@@ -141,6 +166,8 @@ class Connection:
             self._reply(frames.Pong())
         elif isinstance(frame, frames.Microphone | frames.Played | frames.Hush):
             self._take_sound(frame, session)
+        elif isinstance(frame, frames.Camera | frames.Picture):
+            self._take_camera(frame, session)
         elif isinstance(frame, frames.Bye):
             self._sessions.leave(session, Ending.BYE)
         else:
@@ -156,6 +183,22 @@ class Connection:
             session.take_line(self)
         elif isinstance(frame, frames.Microphone) and session.line is not None:
             session.line.leave(self)
+
+    def _take_camera(self, frame: frames.Camera | frames.Picture, session: Session) -> None:
+        if not session.sees:
+            raise ProtocolError("blind", "this agent does not see: it needs a module such as visionio")
+        if isinstance(frame, frames.Camera) and frame.on:
+            self._unseen = self._look = None
+            self._faces = ()
+            session.take_camera(self)
+        elif isinstance(frame, frames.Camera):
+            session.leave_camera(self)
+
+    def _take_picture(self, data: bytes, session: Session) -> None:
+        number, self._announced = self._announced, None
+        picture = picture_of(data)
+        if number is not None and session.camera is not None and session.camera.window is self:
+            session.camera.take(number, picture)
 
     def _reply(self, frame: frames.ServerFrame) -> None:
         self._channel.reply(serialise(frame))
@@ -194,6 +237,7 @@ class Connection:
                 if mark.n <= last:  # a later message carries its mark
                     await self._send(mark)
             await self._write_sound(session)
+            await self._write_sight(session)
             if session.ended is not None and last == session.history.last:
                 await self._send(frames.Ended(session.ended.for_visitor))
                 await self._channel.end()
@@ -217,6 +261,21 @@ class Connection:
                 await self._channel.send_sound(sound)
             else:
                 return
+
+    async def _write_sight(self, session: Session) -> None:
+        """Ask for a picture, and send the faces that the agent sees, if this window has the camera."""
+        if self._unseen is not None:
+            why, self._unseen = self._unseen, None
+            await self._send(frames.Unseen(why))
+        camera = session.camera
+        if camera is None or camera.window is not self:
+            return
+        if camera.waits and self._look != (camera, camera.asked):
+            self._look = camera, camera.asked
+            await self._send(frames.Look(camera.asked))
+        if camera.faces != self._faces:
+            self._faces = camera.faces
+            await self._send(frames.Faces(camera.faces))
 
     def _name_of(self, session: Session) -> str:
         """Return the agent's name for the page of a conversation."""

@@ -21,6 +21,9 @@ LONGEST_TEXT = 10_000
 LONGEST_SOUND = 32_000
 """The maximum number of bytes of sound in one frame from a client: 1 s."""
 
+LONGEST_PICTURE = 100_000
+"""The maximum number of bytes of a picture."""
+
 GREATEST = 2**53 - 1
 """The greatest whole number that every JSON reader can hold."""
 
@@ -105,4 +108,5 @@ Name = Annotated[
     str, Field(strict=True, description=f"a text of 1 to {LONGEST_NAME} characters"), AfterValidator(_name)
 ]
 Id = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_-]{1,64}$", description="1 to 64 letters, digits, - or _")]
+Share = Annotated[float, Field(ge=0, le=1, description="a number from 0 to 1")]
 Speaker = Annotated[Literal["user", "agent"], Field(alias="from", description='"user" or "agent"')]

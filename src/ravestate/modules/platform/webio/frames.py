@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, TypeAdapter
 
-from .fields import Id, Name, Number, Speaker, Spoken, String, Text, Truth, Version
+from .fields import Id, Name, Number, Share, Speaker, Spoken, String, Text, Truth, Version
 
 # ------------------------------------------------------------------------------------ from a client
 
@@ -95,6 +95,29 @@ class Hush:
     type: Literal["hush"] = "hush"
 
 
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """The visitor's camera goes on or off in this window.
+
+    At most one window of a conversation has it: the last one that turned it on.
+    """
+
+    on: Truth
+    type: Literal["camera"] = "camera"
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """The answer to a `Look`: the next binary frame is the camera's newest picture, a JPEG.
+
+    Attributes:
+        n: The number of the `Look`.
+    """
+
+    n: Number
+    type: Literal["picture"] = "picture"
+
+
 # ------------------------------------------------------------------------------------ from the server
 
 
@@ -114,6 +137,7 @@ class Welcome:
         suggestions: A few things that the visitor could say first.
         note: A line of text that the page shows until the visitor has said something; None for no line.
         voice: Whether the agent can hear and speak: the server accepts `Microphone` and sound.
+        sight: The notice to show before the camera goes on, if the agent can see; None if it cannot.
     """
 
     v: Version
@@ -127,6 +151,7 @@ class Welcome:
     suggestions: tuple[Text, ...] = ()
     note: Text | None = None
     voice: Truth | None = None
+    sight: Text | None = None
     type: Literal["welcome"] = "welcome"
 
 
@@ -240,6 +265,47 @@ class Taken:
 
 
 @dataclass(frozen=True, slots=True)
+class Look:
+    """The agent wants a picture of this window's camera.
+
+    Attributes:
+        n: The number of this request. A `Picture` with an earlier number is ignored.
+    """
+
+    n: Number
+    type: Literal["look"] = "look"
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A face that the agent sees.
+
+    Attributes:
+        box: x, y, width and height, in shares of the picture's size, from the upper left corner.
+        name: The person's name; missing if the agent does not know it.
+    """
+
+    box: tuple[Share, Share, Share, Share]
+    name: Text | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """All faces that the agent sees in this window's pictures now."""
+
+    faces: tuple[Face, ...]
+    type: Literal["faces"] = "faces"
+
+
+@dataclass(frozen=True, slots=True)
+class Unseen:
+    """This window no longer has the camera; `text` says why."""
+
+    text: Text
+    type: Literal["unseen"] = "unseen"
+
+
+@dataclass(frozen=True, slots=True)
 class Ended:
     """The conversation is over; `text` says why. The server then closes the connection."""
 
@@ -270,7 +336,7 @@ class Pong:
     type: Literal["pong"] = "pong"
 
 
-ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush
+ClientFrame = Hello | Say | Writing | Bye | Ping | Microphone | Played | Hush | Camera | Picture
 ServerFrame = (
     Welcome
     | Renamed
@@ -283,6 +349,9 @@ ServerFrame = (
     | Flush
     | Listening
     | Taken
+    | Look
+    | Faces
+    | Unseen
     | Ended
     | Error
     | Pong

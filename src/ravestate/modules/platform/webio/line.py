@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import AsyncGenerator, Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ravestate.modules import rawio
 
 if TYPE_CHECKING:
+    from ravestate.declare.slot import Slot
     from ravestate.policy.policy import Policy
 
 SAMPLE = 2  # the bytes of a sample
@@ -53,9 +54,14 @@ class Window(Protocol):
 
 def hears(policy: Policy) -> bool:
     """Return whether a rule of a policy uses `rawio.sound`, so that the agent can hear and speak."""
-    if any(rawio.sound in rule.reads for rule in policy.rules.values()):
+    return uses(policy, rawio.sound)
+
+
+def uses(policy: Policy, slot: Slot[Any]) -> bool:
+    """Return whether a rule of a policy uses a slot."""
+    if any(slot in rule.reads for rule in policy.rules.values()):
         return True
-    return any(rawio.sound.changed in clause.signals for clause in policy.clause_plans.values())
+    return any(slot.changed in clause.signals for clause in policy.clause_plans.values())
 
 
 class PageLine:

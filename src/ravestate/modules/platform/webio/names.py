@@ -43,6 +43,12 @@ class Settings(rs.Settings):
     """Utterances that the page suggests until the visitor has said something."""
     note: Annotated[str, pydantic.Field(min_length=1, max_length=300)] | None = None
     """A line that the page shows once in each browser, until the visitor has said something."""
+    privacy: Annotated[str, pydantic.Field(min_length=1, max_length=600)] = (
+        "The pictures go to the computer on which this agent runs, and it keeps none of them. It remembers your face only "
+        "after you say yes: as numbers, in its memory on that computer. To delete them, say “forget my face”; to delete "
+        "all that it knows about you, say “forget me”."
+    )
+    """The notice that the page shows before the camera goes on: what is kept, where, and how to delete it."""
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
     """The seconds for which the server keeps a conversation after its visitor has disconnected."""
     sessions: int = pydantic.Field(1000, ge=1)

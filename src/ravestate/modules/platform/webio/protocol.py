@@ -22,7 +22,7 @@ from pydantic import TypeAdapter, ValidationError
 from ravestate.errors import nearest
 from ravestate.modules._text import printable
 
-from .fields import LONGEST_SOUND, ProtocolError
+from .fields import LONGEST_PICTURE, LONGEST_SOUND, ProtocolError
 from .frames import CLIENT, FRAMES, ClientFrame, ServerFrame
 
 F = TypeVar("F")
@@ -102,6 +102,19 @@ def sound_of(data: bytes) -> bytes:
     if not 0 < len(data) <= LONGEST_SOUND or len(data) % 2:
         raise _malformed(
             f"sound is 1 to {LONGEST_SOUND // 2:,} samples of two bytes (16 kHz, mono, little-endian), not {len(data):,} bytes"
+        )
+    return data
+
+
+def picture_of(data: bytes) -> bytes:
+    """Return the picture in a binary frame from a client.
+
+    Raises:
+        ProtocolError: The frame is not a JPEG, or is too large.
+    """
+    if len(data) > LONGEST_PICTURE or not data.startswith(b"\xff\xd8\xff"):
+        raise _malformed(
+            f"a picture is a JPEG of at most {LONGEST_PICTURE:,} bytes, not {len(data):,} bytes: {data[:4]!r}"
         )
     return data
 

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import enum
-import itertools
 import logging
 import re
 import secrets
 import time
 from collections import OrderedDict, deque
-from collections.abc import Iterator
-from dataclasses import replace
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from ravestate.errors import RavestateError
 from ravestate.modules import interloc, rawio
@@ -20,8 +17,10 @@ from ravestate.modules._text import printable, without_controls
 from ravestate.modules.platform.chats import people
 from ravestate.modules.platform.chats.leaving import agent_left
 
+from .camera import PageCamera
+from .camera import Window as CameraWindow
 from .fields import LONGEST_NAME, name_of
-from .frames import Heard, Message
+from .history import History
 from .line import PageLine, Window
 from .names import page
 
@@ -37,72 +36,6 @@ LINGER = 30.0  # the seconds for which the line stays in ``rawio.sound`` after t
 FAREWELL = 5.0  # the seconds that the agent has for a farewell
 
 log = logging.getLogger("ravestate.webio")
-
-
-Speaker = Literal["user", "agent"]
-
-MESSAGES = 500  # the maximum number of messages that a history keeps
-CHARACTERS = 200_000  # the maximum number of characters that a history keeps
-MARKS = 32  # the maximum number of marks that a history keeps for windows that lag behind
-
-
-class History:
-    """The last messages of a conversation, bounded in number and in size."""
-
-    def __init__(self, *, messages: int = MESSAGES, characters: int = CHARACTERS) -> None:
-        self._messages: deque[Message] = deque()
-        self._most = messages
-        self._characters = characters
-        self._size = 0
-        self._marks: deque[Heard] = deque(maxlen=MARKS)
-        self.marked = 0
-        """How many marks there have been so far."""
-        self.last = 0
-        """The number of the newest message; 0 before the first."""
-
-    @property
-    def first(self) -> int:
-        """The number of the oldest message. While there is none, the number that the next message will get."""
-        return self.last - len(self._messages) + 1
-
-    def newest(self, speaker: Speaker) -> Message | None:
-        """Return the newest message of a speaker, or None."""
-        return next((message for message in reversed(self._messages) if message.speaker == speaker), None)
-
-    def add(self, speaker: Speaker, text: str, time: int, id: str | None = None) -> Message:
-        """Add a message, and return it; `time` is in milliseconds since 1970. A text longer than a history is cut."""
-        text = text[: self._characters]
-        self.last += 1
-        message = Message(self.last, speaker, text, time, id)
-        self._messages.append(message)
-        self._size += len(text)
-        while len(self._messages) > self._most or self._size > self._characters:
-            self._size -= len(self._messages.popleft().text)
-        return message
-
-    def mark(self, message: Message, heard: str) -> None:
-        """Note which part of a kept message the visitor heard."""
-        place = message.n - self.first
-        if 0 <= place < len(self._messages):
-            self._messages[place] = replace(message, heard=None if heard == message.text else heard)
-            self._marks.append(Heard(message.n, heard))
-            self.marked += 1
-
-    def marks_since(self, number: int) -> list[Heard]:
-        """Return the marks that came after the first `number` marks and are still kept."""
-        new = self.marked - number
-        return list(self._marks)[-new:] if new > 0 else []
-
-    def recent(self, speaker: Speaker, most: int) -> list[Message]:
-        """Return the newest messages of a speaker, newest first."""
-        said = (message for message in reversed(self._messages) if message.speaker == speaker)
-        return list(itertools.islice(said, most))
-
-    def since(self, number: int) -> Iterator[Message]:
-        """Yield the messages with numbers greater than `number`, in order, including those added meanwhile."""
-        while number < self.last:
-            number = max(number + 1, self.first)
-            yield self._messages[number - self.first]
 
 
 class Ending(enum.StrEnum):
@@ -135,7 +68,7 @@ class Session:
     A session has no queue: it wakes each `Onlooker`, which reads all that it has not seen yet.
     """
 
-    def __init__(self, context: Context, name: str | None = None, *, hears: bool = False) -> None:
+    def __init__(self, context: Context, name: str | None = None, *, hears: bool = False, sees: bool = False) -> None:
         self.id = secrets.token_urlsafe(24)
         """The conversation's secret id; a client sends it to resume."""
         self.visitor = f"webio-{secrets.token_hex(4)}"
@@ -153,6 +86,10 @@ class Session:
         """Whether the agent can hear and speak."""
         self.line: PageLine | None = None
         """The line to the visitor's microphone and loudspeaker; None while the microphone is off in all windows."""
+        self.sees = sees
+        """Whether the agent can see."""
+        self.camera: PageCamera | None = None
+        """The visitor's camera; None while it is off in all windows."""
         self.caption = ""
         """The words so far of an utterance that the visitor is still speaking."""
         self.ended: Ending | None = None
@@ -180,6 +117,8 @@ class Session:
                 context.put(page, self)
                 if self.line is not None:
                     context.put(rawio.sound, self.line)
+                if self.camera is not None:
+                    context.put(rawio.camera, self.camera)
                 people.join(context, self.visitor, self.name)
                 await self._until_left()
                 people.leave(context, self.visitor)
@@ -195,6 +134,7 @@ class Session:
                 self._following.cancel()
             self.fall_silent()
             self._hang_up()
+            self._close_camera()
             self.ended = self._reason
             self.notify()
 
@@ -296,6 +236,31 @@ class Session:
                 self.context.put(rawio.sound, None)
             line.close()
         self._stay_on_line()
+
+    def take_camera(self, window: CameraWindow) -> None:
+        """Note that the camera is on in a window, and put it into ``rawio.camera``. Another window loses it."""
+        if self.camera is not None:
+            if self.camera.window is window and not self.camera.closed:
+                return
+            self.camera.refuse("the camera is on in another window")
+            self._close_camera()
+        if self.leaving:
+            return
+        self.camera = PageCamera(window)
+        if self._begun:
+            self.context.put(rawio.camera, self.camera)
+
+    def leave_camera(self, window: CameraWindow) -> None:
+        """Note that the camera is off in a window."""
+        if self.camera is not None and self.camera.window is window:
+            self._close_camera()
+
+    def _close_camera(self) -> None:
+        camera, self.camera = self.camera, None
+        if camera is not None:
+            camera.close()
+            if self._begun:
+                self.context.put(rawio.camera, None)
 
     def hush(self) -> None:
         """Ask the agent to stop speaking."""

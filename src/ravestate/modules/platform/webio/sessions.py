@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from .camera import sees
 from .fields import ProtocolError
 from .line import hears
 from .session import Ending, Onlooker, Session
@@ -27,6 +28,8 @@ class Sessions:
         self._agent = agent
         self.hears = hears(agent.policy)
         """Whether the agent can hear and speak."""
+        self.sees = sees(agent.policy)
+        """Whether the agent can see."""
         self._limit = limit
         self._keep = keep
         self._sessions: dict[str, Session] = {}
@@ -53,7 +56,7 @@ class Sessions:
             raise ProtocolError("closing", Ending.OFF)
         if len(self._tasks) >= self._limit:
             raise ProtocolError("full", f"{self._limit} visitors are here already: try again later")
-        session = Session(self._agent.context(), name, hears=self.hears)
+        session = Session(self._agent.context(), name, hears=self.hears, sees=self.sees)
         self._sessions[session.id] = session
         self._tasks[session] = asyncio.create_task(self._live(session))
         self._abandon(session)  # the conversation ends if no window opens in time

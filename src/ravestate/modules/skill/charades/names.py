@@ -61,6 +61,15 @@ prompted: rs.Signal[int] = module.signal("prompted", payload=int, keep="latest")
 counted: rs.Signal[None] = module.signal("counted")
 """The countdown may begin."""
 
+called: rs.Signal[int] = module.signal("called", payload=int)
+"""The agent says the last word of the countdown by voice. The payload is `Game.turn` at that time."""
+
+spoken: rs.Signal[None] = module.signal("spoken")
+"""The user has heard all that the agent has said."""
+
+gone: rs.Signal[int] = module.signal("gone", payload=int)
+"""The countdown is over. The payload is `Game.turn` at that time."""
+
 watched: rs.Signal[None] = module.signal("watched")
 """The agent has watched, and may guess."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -18,16 +18,19 @@ from .names import (
     Settings,
     abandoned,
     begun,
+    called,
     counted,
     declined,
     game,
     gestures,
+    gone,
     invited,
     module,
     moved,
     perform,
     prompted,
     sightings,
+    spoken,
     strayed,
     watched,
 )
@@ -43,6 +46,10 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
 }
 PRIORITY = 40.0
 """The weight of the answers in a game: above all others, such as agentqa's answer to "stop"."""
+JUST = 0.1
+"""Seconds for which the end of the agent's speech counts as the end of its last word."""
+SPEAKING = 6.0
+"""The longest time (seconds) for which the agent waits until its last word has sounded."""
 
 
 def is_on(now: Game) -> bool:
@@ -132,7 +139,14 @@ async def answer(ctx: rs.RuleContext) -> None:
     carry_out(ctx, play(ctx[game], ctx.payload(moved), world_of(ctx)))
 
 
-@module.rule(when=invited, reads=SURROUNDINGS, writes=EFFECTS, emits=EMITTED, detached=True)
+@module.rule(
+    when=invited,
+    reads=SURROUNDINGS,
+    writes=EFFECTS,
+    emits=EMITTED,
+    detached=True,
+    weight=2.5,  # outranks small talk about boredom
+)
 async def propose(ctx: rs.RuleContext) -> None:
     """Offer the game to a user who wants to play, or is bored. A skill that knows the game they name goes first."""
     carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
@@ -176,23 +190,60 @@ def world_of(ctx: rs.RuleContext) -> World:
 
 @module.rule(
     when=counted.max_age(None),
+    reads=rawio.heard,
     writes=(game, sightings, verbaliser.intent, rawio.output),
-    emits=watched,
+    emits=(called, gone),
     until=game.changed.where(is_waiting),
     detached=True,
 )
 async def count_down(ctx: rs.RuleContext) -> None:
-    """Count to three, and watch."""
+    """Count to three. If the user hears the agent's words by voice, wait for the end of the last one."""
     settings: Settings = ctx.settings
     ctx[sightings] = ()
+    heard = ctx[rawio.heard].strip()
+    voiced = heard != "" and ctx[rawio.output].strip().startswith(heard)
     for n in (3, 2, 1):
         ctx[verbaliser.intent] = Intent("count", {"n": n}, __package__)
         await ctx.sleep(settings.count)
     ctx[verbaliser.intent] = Intent("go", package=__package__)
-    ctx[game] = replace(ctx[game], step="watching", start=ctx.now)
+    ctx.emit(called if voiced else gone, ctx[game].turn)
+
+
+@module.rule(
+    when=rawio.heard.changed.max_age(None).detached() & game.holds(is_on),
+    reads=rawio.output,
+    emits=spoken,
+    detached=True,
+    background=True,
+)
+async def notice_end_of_speech(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Note that the user has heard all that the agent has said."""
+    if ctx.payload(rawio.heard.changed).strip() != ctx[rawio.output].strip():
+        return rs.Resign("the agent has said more, or was interrupted")
+    ctx.emit(spoken)
+    return None
+
+
+@module.rule(
+    when=called.max_age(None) & spoken.max_age(JUST) | called.min_age(SPEAKING).max_age(None), emits=gone, detached=True
+)
+async def hear_out(ctx: rs.RuleContext) -> None:
+    """Begin to watch when the user has heard the last word of the countdown."""
+    ctx.emit(gone, ctx.payload(called))
+
+
+@module.rule(when=gone.max_age(None), writes=game, emits=watched, until=game.changed.where(is_waiting), detached=True)
+async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Watch for some seconds."""
+    settings: Settings = ctx.settings
+    now = ctx[game]
+    if (now.step, now.turn) != ("counting", ctx.payload(gone)):
+        return rs.Resign("the countdown has been called off")
+    ctx[game] = replace(now, step="watching", start=ctx.now)
     await ctx.sleep(settings.watch)
     ctx[game] = replace(ctx[game], end=ctx.now)
     ctx.emit(watched)
+    return None
 
 
 @module.rule(
@@ -237,12 +288,12 @@ async def guess(ctx: rs.RuleContext) -> rs.Resign | None:
 
 def ranked(seen: Iterable[activity.Activity]) -> tuple[str, ...]:
     """Return the names of the seen activities, the most probable first."""
-    total: Counter[str] = Counter()
+    total: defaultdict[str, float] = defaultdict(float)
     for one in seen:
-        total[one.name] += one.confidence  # type: ignore[assignment]  # a Counter adds floats as well
+        total[one.name] += one.confidence
         for other, confidence in one.others.items():
-            total[other] += confidence  # type: ignore[assignment]
-    return tuple(name for name, _ in total.most_common())
+            total[other] += confidence
+    return tuple(sorted(total, key=total.__getitem__, reverse=True))
 
 
 # -------------------------------------------------------------------------------- silence, asides

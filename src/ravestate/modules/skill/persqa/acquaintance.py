@@ -112,6 +112,11 @@ class Acquaintance:
         before = {topic: self.talk.remembered.get(topic, ()) for topic in self.talk.told}
         records.note(graph, self.who, before, self.talk.ever)
 
+    def disowned(self, graph: ontology.Graph) -> None:
+        """Remove the person whom this conversation created under a name that is not the user's."""
+        assert self.who is not None
+        graph.forget(self.who)
+
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
 

@@ -11,10 +11,10 @@ from ravestate.language.contractions import word_set
 from ravestate.language.reranker import Reranker
 from ravestate.modules import nlp
 
-CLEARLY = 1.5
+CLEARLY = 2.0
 """The least lead of the best sentence over the second best, in logits. The scores themselves differ by question."""
-LEAST = -9.0
-"""The least score of an answer, in logits."""
+LEAST = -7.0
+"""The least score of an answer, in logits. A wrong memory is worse than none."""
 LONGEST = 160
 """The maximum length of a sentence to quote, in characters."""
 SHORTEST = 3
@@ -50,18 +50,24 @@ def asks_for_words(seen: nlp.Analysis) -> bool:
 
 
 def recollect(question: str, sentences: Sequence[str]) -> str:
-    """Return the sentence that answers a question; empty if none clearly does. Takes about 3 ms per sentence."""
+    """Return what answers a question: a sentence, or two that follow each other; empty if none clearly does.
+
+    Takes about 3 ms per sentence.
+    """
     known = [one for one in dict.fromkeys(sentences) if len(one) <= LONGEST and len(one.split()) >= SHORTEST]
     if not known:
         return ""
     try:
-        scores = _reranker().score(question, known)
+        scores = _reranker().score(question, known).tolist()
     except PlatformError:  # without the model, only statements with the same words are found
         return ""
-    ranked = sorted(zip(scores.tolist(), known, strict=True), reverse=True)
-    second = ranked[1][0] if len(ranked) > 1 else LEAST
-    best, text = ranked[0]
-    return text.strip() if best >= LEAST and best - second >= CLEARLY else ""
+    best, *others = sorted(range(len(known)), key=lambda place: -scores[place])
+    answer, bar = known[best], scores[best] - CLEARLY
+    if others and scores[others[0]] > bar and abs(others[0] - best) == 1:
+        first, second = sorted((best, others.pop(0)))
+        answer = f"{known[first].strip()} {known[second].strip()}"
+    clear = scores[best] >= LEAST and all(scores[place] <= bar for place in others)
+    return answer.strip() if clear and len(answer) <= LONGEST else ""
 
 
 @cache

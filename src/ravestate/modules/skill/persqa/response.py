@@ -17,7 +17,7 @@ from .profile import News, learn, told_apart
 from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .topics import NAME, TOPICS, Fact, in_order
 from .understanding import EVERYTHING, Meaning
-from .wording import among, asking, clauses, joined, learned, memorable, same, say, stating, without
+from .wording import among, clauses, joined, learned, memorable, same, say, stating, without
 
 T = TypeVar("T")
 
@@ -140,11 +140,11 @@ async def _settled(
 
 
 async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
-    """Stop treating the user as the person in memory, and ask who they are."""
+    """Stop treating the user as this person, and ask who they are. A person of this conversation leaves memory again."""
     facts = told_apart(user.facts, user.talk.remembered, user.talk.told) if user.talk.met else user.facts
-    if user.talk.met and not user.talk.newcomer:
+    if user.talk.met:
         with contextlib.suppress(RavestateError):
-            await _at_once(memory, user.restored)
+            await _at_once(memory, user.disowned if user.talk.newcomer else user.restored)
     return _ask(NAME, "mistaken", Acquaintance(None, facts, Talk(told=frozenset(facts), spoke=now)), now)
 
 
@@ -152,10 +152,7 @@ async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: flo
 
 
 def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random, *, confirm: bool) -> Response:
-    names = [fact for fact in meaning.facts if fact.topic == NAME]
-    name = next((fact.values[0] for fact in names if not fact.gone), None)
-    if names and name is None:  # "my name is not Ada"
-        return Response(asking(NAME, {}), replace(user, talk=user.talk.asking(NAME, now)))
+    name = next((fact.values[0] for fact in meaning.facts if fact.topic == NAME and not fact.gone), None)
     before = user
     news = learn(user.facts, meaning.facts, user.talk.latest if meaning.kind == "corrected" else ())
     told = {**user.told, **{one.key: one for one in meaning.free}}

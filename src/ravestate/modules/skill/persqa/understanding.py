@@ -140,6 +140,10 @@ class _Hearing:
         facts = self.reader.facts(self.known)
         told = {fact.topic for fact in facts if not fact.gone}
         facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
+        other = any(fact.topic == NAME and not self.is_name(fact.values) for fact in facts if not fact.gone)
+        denied = any(fact.topic == NAME and fact.gone for fact in facts) or self.denies_name()
+        if denied and not other:  # "I'm not Ada, I'm Ida" tells another name
+            return Meaning("mistaken")
         free = tuple(told_in(self.reader, self.talk.said)[0])
         aside = self.leave or asks
         if facts or free:
@@ -172,6 +176,15 @@ class _Hearing:
             return True
         near = {*TOPICS[topic].besides, *(["origin"] if topic == "home" else [])}
         return any(self.known.get(one) for one in near)
+
+    def is_name(self, values: tuple[str, ...]) -> bool:
+        """Return whether these values are the name by which the agent knows the user."""
+        return all(among(value, self.known.get(NAME, ())) for value in values)
+
+    def denies_name(self) -> bool:
+        """Return whether the user says that they are not the person as whom the agent knows them."""
+        names = "|".join(map(re.escape, self.known.get(NAME, ())))
+        return bool(names) and re.search(_DENIED.format(names), self.text, re.IGNORECASE) is not None
 
     def of_speakers(self) -> bool:
         """Return whether the utterance is about the user and the agent, not about others."""
@@ -302,6 +315,11 @@ class _Hearing:
 
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
+_DENIED = (
+    r"\b(?:i (?:am|was)|my name is|(?:this|that|it) is) (?:\w+ly )?(?:not|never) (?:called |named |the )?(?:{0})\b(?!['’]s)"
+    r"|\b(?:{0}) is not (?:me|my name)\b|\b(?:not|never) (?:call me|said i (?:am|was)) (?:{0})\b"
+)
+"""A pattern of words that deny the name ``{0}``: *I am not Ada*, *Ada is not my name*."""
 _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
 
 

@@ -22,7 +22,7 @@ EXAMPLES = (
 )
 """The default of the setting `examples`."""
 
-# Marks of the speaker in chat templates. With such marks, a user could pretend to be the system.
+# The strings that mark the speaker in chat templates. A user who types them could pretend to be the system.
 _MARKERS = re.compile(
     r"<\|[^|<>\n]{0,40}\|>|</?s>|\[/?INST\]|<</?SYS>>|</?(?:start|end)_of_turn>|</?think>", re.IGNORECASE
 )

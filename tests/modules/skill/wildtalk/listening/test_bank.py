@@ -39,16 +39,17 @@ def test_no_utterance_stands_twice() -> None:
 
 def test_similar_words_find_the_entry(talk: Any) -> None:
     bank = material().bank
-    bank.index.load()
-    best = bank.similar(["my dads number is still saved in my phone"])[0]
+    bank.load()
+    said = "my dads number is still saved in my phone"
+    best = bank.similar([said], said)[0]
     assert "his number is still in my phone" in best.moment.examples
-    assert talk.say("my dads number is still saved in my phone") in [line.text for line in best.moment.groups["say"]]
+    assert talk.say(said) in [line.text for line in best.moment.groups["say"]]
 
 
 def test_until_the_model_is_loaded_only_equal_words_are_found() -> None:
     bank = Bank([("own.tsv:1", "-\tthe kettle sings | it boils\tThen tea.")])
-    assert [found.moment.name for found in bank.similar(["The kettle sings!"])] == ["own.tsv:1"]
-    assert bank.similar(["the kettle is singing"]) == []
+    assert [found.moment.name for found in bank.similar(["The kettle sings!"], "The kettle sings!")] == ["own.tsv:1"]
+    assert bank.similar(["the kettle is singing"], "the kettle is singing") == []
 
 
 @pytest.mark.parametrize("row", ["happy\ta\tb", "-\tonly two columns", "-\ta\t"])

@@ -13,6 +13,8 @@ from .picture import Picture
 EACH = 1.0
 """The seconds for which a folder's pictures are shown."""
 SUFFIXES = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".tif", ".tiff"}
+BEHIND = 1.0
+"""The seconds for which one look may skip pictures of a video."""
 WHOLE = 0.9
 """The share of a video's pictures below which it counts as damaged."""
 SILENT = 5.0
@@ -120,8 +122,10 @@ class Video:
         Raises:
             ValueError: The file is damaged.
         """
-        newest = None
+        newest, begun = None, time.monotonic()
         while self._waiting is not None and self._waiting[0] <= at:
+            if newest is not None and time.monotonic() - begun > BEHIND:
+                break  # so large a video is shown late, rather than never
             self.skipped += newest is not None
             newest = self._waiting
             self._forward()

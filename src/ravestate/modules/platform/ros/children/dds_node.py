@@ -70,7 +70,7 @@ class DdsNode:
                         outlet.put(sample.wire)
             except (BrokenPipeError, ConnectionError):
                 os._exit(0)  # the agent is gone
-            except Exception as error:
+            except Exception as error:  # the thread goes on with the next message
                 self._pipe.note(0, reason(error), "error")
 
     def message(self, channel, body):

@@ -21,6 +21,7 @@ import time
 HEAD = struct.Struct("<BBxxIII")
 SHARED = 1  # a flag: the body is in shared memory
 LARGE = 1 << 16
+SEEKING = 0.7  # the part of a call's time-out in which its server must appear; then the agent still hears of it
 
 OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
 """The kinds of frames.
@@ -111,7 +112,7 @@ class Outlet:
         self._busy = False
         self._pending = None
 
-    def put(self, body):
+    def put(self, body: bytes | memoryview) -> None:
         """Pass a message on."""
         if self._latest:
             with self._lock:
@@ -187,7 +188,7 @@ def _obey(pipe, node):
                 return
         except (EOFError, BrokenPipeError):
             raise
-        except Exception as error:
+        except Exception as error:  # the agent gets the reason of any failure, and the process goes on
             if kind == ASK:
                 pipe.tell(TOLD, {"error": reason(error)}, 0, number)
             elif kind == CALL:

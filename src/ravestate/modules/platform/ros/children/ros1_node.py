@@ -9,9 +9,11 @@ import threading
 import time
 import xmlrpc.client
 
-from pipe import ANSWER, CALL, FAULT, Pipe, every, reason, serve
+from pipe import ANSWER, CALL, FAULT, SEEKING, Pipe, every, reason, serve
 
 PROBE = 1.0  # seconds between two looks at the master
+LEAVING = 2.0  # seconds that the last messages have to leave, in threads of rospy
+SILENCE = 0.05  # seconds without another message, after which none is under way
 
 
 def message_class(type_, md5, text=""):
@@ -39,6 +41,31 @@ def message_class(type_, md5, text=""):
     return Raw
 
 
+def call_class():
+    """Return the class of a service call that another thread may end at any time."""
+    import rospy
+
+    class Call(rospy.ServiceProxy):
+        ended = False
+        connection = None
+
+        @property
+        def transport(self):
+            return self.connection
+
+        @transport.setter
+        def transport(self, made):  # rospy sets it as soon as it has connected
+            self.connection = made
+            if made is not None and self.ended:
+                made.close()
+
+        def end(self):
+            self.ended = True
+            self.close()
+
+    return Call
+
+
 class Ros1Node:
     """A rospy node that does what the agent says; see `pipe.serve`."""
 
@@ -60,10 +87,12 @@ class Ros1Node:
         import rospy
 
         self._rospy = rospy
+        self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
         self._bindings = {}
         self._replies = {}
+        self._calls = {}
         self._number = 0
         self._lock = threading.Lock()
         every(PROBE, self._look_at_master)
@@ -71,7 +100,7 @@ class Ros1Node:
     def _master_pid(self):
         try:
             proxy = xmlrpc.client.ServerProxy(self._uri)
-            code, _, pid = proxy.getPid("/ravestate")  # type: ignore[misc]
+            code, _, pid = proxy.getPid("/ravestate")  # type: ignore[misc]  # its answers have no types
             return pid if code == 1 else 0
         except (OSError, xmlrpc.client.Error):
             return 0
@@ -122,9 +151,10 @@ class Ros1Node:
                 return
             outlet.put(message._buff)
 
-        # Subscribers of one topic share rospy's queue, so it may not be short for the sake of one: the outlet skips messages.
+        # Subscribers of one topic share rospy's queue. It has no limit; the outlet skips messages.
+        # rospy allocates the buffer anew for each read. A large buffer costs more than to read an image in parts.
         return rospy.Subscriber(
-            binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 24, tcp_nodelay=True
+            binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 16, tcp_nodelay=True
         )
 
     def _service_class(self, type_, md5):
@@ -152,12 +182,15 @@ class Ros1Node:
         publisher.publish(publisher.data_class(bytes(body)))
 
     def call(self, channel, number, body):
-        threading.Thread(target=self._call, args=(channel, number, bytes(body)), daemon=True).start()
+        # A persistent proxy keeps its connection, which `cancel` closes.
+        call = self._call_class(self._bindings[channel]["name"], self._channels[channel], persistent=True)
+        self._calls[channel, number] = call
+        threading.Thread(target=self._call, args=(channel, number, bytes(body), call), daemon=True).start()
 
-    def _call(self, channel, number, body):
+    def _call(self, channel, number, body, call):
         name, service = self._bindings[channel]["name"], self._channels[channel]
         try:
-            self._rospy.wait_for_service(name, timeout=self._bindings[channel]["timeout"])
+            self._wait_for(name, SEEKING * self._bindings[channel]["timeout"])
             wanted = self._bindings[channel]["md5"]
             found = service_header(self._rospy.resolve_name(name), self._uri)
             if found.get("md5sum") not in (None, wanted):
@@ -166,10 +199,20 @@ class Ros1Node:
                         name, found.get("type"), service._type, found.get("type")
                     )
                 )
-            answer = self._rospy.ServiceProxy(name, service)(service._request_class(body))
-            self._pipe.send(ANSWER, channel, number, answer.data)
-        except Exception as error:
+            if not call.ended:
+                answer = call(service._request_class(body))
+                self._pipe.send(ANSWER, channel, number, answer.data)
+        except Exception as error:  # the caller gets the reason of any failure
             self._pipe.tell(FAULT, reason(error), channel, number)
+        finally:
+            self._calls.pop((channel, number), None)
+            call.end()
+
+    def _wait_for(self, service, seconds):
+        try:
+            self._rospy.wait_for_service(service, timeout=seconds)
+        except self._rospy.ROSException:
+            raise LookupError(f"nobody offers the service {service}") from None
 
     def answer(self, channel, number, body, failed):
         done = self._replies.pop(number, None)
@@ -178,7 +221,10 @@ class Ros1Node:
             done[0].set()
 
     def cancel(self, channel, number):
-        pass  # ROS 1 has no way to withdraw a call; the agent forgets its answer
+        """End the connection of a call, so that its thread ends. ROS 1 has no way to withdraw the call itself."""
+        call = self._calls.pop((channel, number), None)
+        if call is not None:
+            call.end()
 
     def unbind(self, channel):
         thing = self._channels.pop(channel, None)
@@ -217,8 +263,20 @@ class Ros1Node:
         return {"topics": list(found.values()), "services": listed, "actions": actions}
 
     def close(self):
-        time.sleep(0.05)  # the last messages leave in threads of rospy
+        end, before = time.monotonic() + LEAVING, None
+        while (now := self._sent()) != before and time.monotonic() < end:
+            before = now
+            time.sleep(SILENCE)
         self._rospy.signal_shutdown("the agent ends")
+
+    def _sent(self):
+        """Return the number of messages that each connection has sent, and of those that wait in its queue."""
+        publishers = [thing for thing in self._channels.values() if isinstance(thing, self._rospy.Publisher)]
+        return [
+            (connection.stat_num_msg, len(getattr(connection, "_queue", ())))
+            for publisher in publishers
+            for connection in publisher.impl.connections
+        ]
 
 
 def _mismatch(binding, header):
@@ -243,7 +301,7 @@ def service_header(name, uri):
             fields = {"probe": "1", "md5sum": "*", "callerid": "/ravestate", "service": name}
             write_ros_handshake_header(sock, fields)
             return dict(read_ros_handshake_header(sock, BytesIO(), 2048))
-    except Exception:
+    except Exception:  # rosgraph raises many kinds for a service that is gone or speaks nonsense: its type is unknown
         return {}
 
 

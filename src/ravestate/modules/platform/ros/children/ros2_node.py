@@ -8,7 +8,11 @@ import os
 import sys
 import threading
 
-from pipe import ANSWER, CALL, FAULT, FEEDBACK, Pipe, reason, serve
+from pipe import ANSWER, CALL, FAULT, FEEDBACK, SEEKING, Pipe, every, reason, serve
+
+LOOK = 1.0  # seconds between two looks at the types of other nodes
+
+UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 STATUS = {4: "succeeded", 5: "cancelled", 6: "aborted"}  # of action_msgs/GoalStatus
 
@@ -30,12 +34,15 @@ class Ros2Node:
         self._channels = {}
         self._bindings = {}
         self._goals = {}
+        self._calls = {}
         self._replies = {}
         self._number = 0
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._spinning = threading.Thread(target=self._spin, daemon=True)
         self._spinning.start()
+        self._named = set()
+        every(LOOK, self._look_at_types)
 
     def _spin(self):
         from rclpy.executors import ExternalShutdownException, ShutdownException
@@ -48,7 +55,7 @@ class Ros2Node:
                 return
             except (BrokenPipeError, ConnectionError):
                 os._exit(0)  # the agent is gone
-            except Exception as error:
+            except Exception as error:  # the thread goes on with the next message
                 self._pipe.note(0, reason(error), "error")
 
     def bind(self, channel, binding, outlet):
@@ -84,6 +91,28 @@ class Ros2Node:
         self._channels[channel] = thing
         self._executor.wake()
 
+    def _look_at_types(self):
+        """Name each node that has another type for a topic: ROS 2 lets the two pass each other silently."""
+        for channel, binding in list(self._bindings.items()):
+            name, type_ = binding["name"], binding["type"]
+            if binding["kind"] == "subscriber":
+                others, act, ours = self._node.get_publishers_info_by_topic(name), "publishes", "reads"
+            elif binding["kind"] == "publisher":
+                others, act, ours = self._node.get_subscriptions_info_by_topic(name), "reads", "publishes"
+            else:
+                continue
+            for info in others:
+                if info.node_name == UNKNOWN:
+                    continue  # its name comes a moment after its topic
+                other = channel, info.node_namespace.rstrip("/") + "/" + info.node_name, info.topic_type
+                if info.topic_type != type_ and other not in self._named:
+                    self._named.add(other)
+                    self._pipe.note(
+                        channel,
+                        f"{name}: {other[1]} {act} {info.topic_type}, which is not the {type_} that the agent {ours}: "
+                        f"write type={info.topic_type!r}",
+                    )
+
     def _incompatible(self, channel, info):
         policy = str(getattr(info.last_policy_kind, "name", info.last_policy_kind)).lower()
         self._pipe.note(
@@ -112,13 +141,17 @@ class Ros2Node:
 
     def call(self, channel, number, body):
         """Call a service, or send a goal to an action server, in a thread, because the server may not be there yet."""
-        act = self._act if self._bindings[channel]["kind"] == "action" else self._call
+        act = self._call
+        if self._bindings[channel]["kind"] == "action":
+            act = self._act
+            self._goals[channel, number] = {"handle": None, "cancelled": False}  # now, so that `cancel` finds it
         threading.Thread(target=self._careful, args=(act, channel, number, bytes(body)), daemon=True).start()
 
     def _careful(self, act, channel, number, body):
         try:
             act(channel, number, body)
-        except Exception as error:
+        except Exception as error:  # the caller gets the reason of any failure
+            self._goals.pop((channel, number), None)
             self._pipe.tell(FAULT, reason(error), channel, number)
 
     def _call(self, channel, number, body):
@@ -126,17 +159,19 @@ class Ros2Node:
 
         binding, client = self._bindings[channel], self._channels[channel]
         cls = interface(binding["type"])
-        if not client.wait_for_service(timeout_sec=binding["timeout"]):
+        if not client.wait_for_service(timeout_sec=SEEKING * binding["timeout"]):
             raise LookupError("nobody offers the service {}{}".format(binding["name"], self._hint(binding)))
 
         def done(future):
+            self._calls.pop((channel, number), None)
             error = future.exception()
             if error is not None:
                 self._pipe.tell(FAULT, reason(error), channel, number)
             else:
                 self._pipe.send(ANSWER, channel, number, serialize_message(future.result()))
 
-        client.call_async(deserialize_message(body, cls.Request)).add_done_callback(done)
+        future = self._calls[channel, number] = client.call_async(deserialize_message(body, cls.Request))
+        future.add_done_callback(done)
         self._executor.wake()
 
     def _hint(self, binding):
@@ -150,7 +185,7 @@ class Ros2Node:
 
         binding, client = self._bindings[channel], self._channels[channel]
         cls = interface(binding["type"])
-        goal = self._goals[channel, number] = {"handle": None, "cancelled": False}
+        goal = self._goals[channel, number]
         if not client.wait_for_server(timeout_sec=binding["timeout"]):
             raise LookupError("nobody offers the action {}".format(binding["name"]))
 
@@ -180,9 +215,12 @@ class Ros2Node:
         message = deserialize_message(body, cls.Goal)
 
         def send():
+            if goal["cancelled"]:
+                self._goals.pop((channel, number), None)
+                return
             try:
                 client.send_goal_async(message, feedback).add_done_callback(accepted)
-            except Exception as error:
+            except Exception as error:  # the caller gets the reason of any failure
                 self._pipe.tell(FAULT, reason(error), channel, number)
 
         # On the executor's thread: on another one, the server's answer may come before the client expects it.
@@ -196,7 +234,10 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal."""
+        """Cancel a goal, or forget a call: a service that never answers leaves nothing behind."""
+        future = self._calls.pop((channel, number), None)
+        if future is not None:
+            self._channels[channel].remove_pending_request(future)
         goal = self._goals.get((channel, number))
         if goal is not None:
             goal["cancelled"] = True

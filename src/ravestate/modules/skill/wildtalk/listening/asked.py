@@ -83,12 +83,13 @@ class Asked:
             return []
         return [self.area.groups[kind] for kind in ALIKE.get(self.kind, (self.kind,)) if kind in self.area.groups]
 
-    def lines(self, phrases: Material, tone: str) -> list[Sequence[Line]]:
-        """Return the groups of answers, the most specific first."""
+    def lines(self, phrases: Material, tone: str, question: str) -> list[Sequence[Line]]:
+        """Return the groups of answers, the most specific first. Those of the area must suit the words of the question."""
         general = phrases.asked[self.kind]
         named = [self.area.name] if self.area else []
         first = general.lines("picked") if "picked" in self.groups else []
-        return [*first, *self.own, *general.lines(*named, tone, *self.groups, "say")]
+        own = [[line] for lines in self.own for line in phrases.bank.answering(question, lines)]
+        return [*first, *own, *general.lines(*named, tone, *self.groups, "say")]
 
 
 def asked_in(

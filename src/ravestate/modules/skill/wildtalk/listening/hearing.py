@@ -49,12 +49,15 @@ SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-ALIKE, SIMILAR = 0.87, 0.84
-"""The least similarity of an entry of the bank that decides the answer, and of one that is better than a stock answer."""
+ALIKE, SIMILAR = 0.55, 0.4
+"""The least probability that an entry of the bank suits: of one that decides the answer, and of one that is better than a
+stock answer."""
+ASKING = 0.05
+"""The probability that an entry needs less for a question: its answers suit more often than replies to statements."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
-CROSSED = 0.08
-"""The loss of similarity of an entry whose mood does not suit the talk."""
+CROSSED = 0.5
+"""The share of its probability that an entry loses if its mood does not suit the talk."""
 BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 _ASKING = word_set(
@@ -103,9 +106,11 @@ class Hearing:
     topic: Moment | None = None
     thing: str = ""
     """The thing about which the user asks the agent's opinion."""
+    asking: str = ""
+    """The sentence that asks something."""
     asked: Asked | None = None
     near: list[Found] = field(default_factory=list[Found])
-    """The entries of the bank that resemble the utterance, the most similar first."""
+    """The entries of the bank that resemble the utterance, the most suitable first."""
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
@@ -122,7 +127,7 @@ def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
 
 
 def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis, state: State) -> None:
-    asking = asking_sentence(seen)
+    asking = found.asking = asking_sentence(seen)
     found.moves = likely(phrases, seen)
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
@@ -142,7 +147,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
     found.near = near_in(phrases, seen, asking, state, feeling)
-    similarity = found.near[0].score if found.near else 0.0
+    nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
+    easier = ASKING if asking else 0.0
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
     low = {word.low for word in seen.tree.words}
@@ -163,8 +169,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
         "sure": score >= SURE,
-        "alike": similarity >= (EXACT if score >= EXACT or (feeling and roles.being and size <= BRIEFLY) else ALIKE),
-        "similar": similarity >= SIMILAR,
+        "alike": nearest.fit >= ALIKE - easier
+        and (nearest.score >= EXACT or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))),
+        "similar": nearest.fit >= SIMILAR - easier,
         "others": others,
         "asserting": verb and others,
         "called": called != "",
@@ -313,7 +320,7 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
 
 
 def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None) -> list[Found]:
-    """Return the entries of the bank that resemble an utterance or one of its sentences, the most similar first.
+    """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
 
     If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk.
     """
@@ -324,11 +331,11 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
         texts.append(seen.text)
     mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
     ranked: list[Found] = []
-    for one in phrases.bank.similar(texts):
+    for one in phrases.bank.similar(texts, seen.text):
         tone = one.moment.tone
-        loss = CROSSED * ((tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad"))
-        ranked.append(replace(one, score=one.score - loss))
-    return sorted(ranked, key=lambda one: -one.score)
+        crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
+        ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
+    return sorted(ranked, key=lambda one: -one.fit)
 
 
 def kind_of(sentence: str) -> str:

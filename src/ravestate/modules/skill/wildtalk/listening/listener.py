@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .games import GUESSER, HOLDER, Played, Turn, named
-from .hearing import ALIKE, ASKED, SIMILAR, Heard, Hearing, feeling_of, hear, is_living, near_in
+from .hearing import ALIKE, ASKED, ASKING, SIMILAR, Heard, Hearing, feeling_of, hear, is_living, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
@@ -72,7 +72,7 @@ class Listener:
         """
         for matcher in self._phrases.matchers:
             matcher.load()
-        self._phrases.bank.index.load()
+        self._phrases.bank.load()
 
     def performs(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance asks for a performance or belongs to it. No language model should answer it."""
@@ -96,12 +96,12 @@ class Listener:
         return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
 
     def knows(self, seen: Analysis) -> bool:
-        """Return whether the bank has almost the same words."""
+        """Return whether the bank has a reply that probably suits."""
         near = near_in(self._phrases, seen, "", State(), None)
-        return bool(near) and near[0].score >= ALIKE
+        return bool(near) and near[0].fit >= ALIKE
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
-        """Return the answer. Takes about a millisecond if the utterance has been encoded before."""
+        """Return the answer. Takes some 50 ms, most of them for the bank."""
         hearing = hear(self._phrases, heard, state)
         own = hearing.asked is not None and "wording" in hearing.tags  # "say that again" starts no other performance
         played = self._play(heard, state, chance, "" if own or state.asked else hearing.moment)
@@ -218,10 +218,10 @@ class Listener:
             yield _Source(moment.lines(*groups, "say", "again"), moment)
 
     def _bank(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the entries of the bank that resemble the utterance, the most similar first."""
-        least = ALIKE if "alike" in hearing.tags else SIMILAR
+        """Yield the entries of the bank that suit the utterance, the most suitable first."""
+        least = (ALIKE if "alike" in hearing.tags else SIMILAR) - (ASKING if hearing.asking else 0.0)
         for one in hearing.near:
-            if one.score >= least:
+            if one.fit >= least:
                 yield _Source(one.moment.lines("say"), one.moment)
 
     def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -229,7 +229,7 @@ class Listener:
         asked = hearing.asked
         if asked is not None:
             about = asked.kind, "" if asked.area is None else asked.area.name
-            yield _Source(asked.lines(self._phrases, state.tone), asked=about)
+            yield _Source(asked.lines(self._phrases, state.tone, hearing.asking), asked=about)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""

@@ -1,0 +1,143 @@
+"""How evenly are many contexts served?
+
+A thousand contexts of one policy run on one loop. First all of them have inputs in wait, which gives the most inputs a
+second. Then inputs come at half of this rate, each to a random context. The time of an input ends when its answer is
+written. It begins when the input was due, although the loop may be busy then. The loop never sleeps, so the clock
+is the process's own: other programs on the machine do not count.
+
+Evenly spaced inputs show the delays that are ours: garbage collection, and the contexts' turns on the loop. Inputs at
+random moments (exponential pauses) also wait for each other. The last figure tells how much of that any server has: the
+same moments, and a server that takes our time at full load for each input.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import time
+from collections.abc import Iterable, Sequence
+
+import ravestate as rs
+from benchmarks.bench import Bench
+from benchmarks.figures import Figure, compare, measured
+from benchmarks.peers.wire import serve
+
+CONTEXTS = 1_000
+LIMIT = 3.0
+"""The most that the 99th percentile may be, as a multiple of the median."""
+
+
+class Users:
+    """Contexts of one policy, and when each input was answered."""
+
+    def __init__(self) -> None:
+        self.answered: list[float] = []
+        self.left = 0
+        self.done = asyncio.Event()
+        module = rs.Module("users")
+        self.heard = module.slot("heard", 0, always=True)
+        output = module.slot("output", 0, always=True)
+        asked = module.signal("asked", int)
+
+        @module.rule(when=self.heard.changed, emits=asked)
+        async def classify(ctx: rs.RuleContext) -> None:
+            ctx.emit(asked, ctx.payload(self.heard.changed))
+
+        @module.rule(when=asked, writes=output)
+        async def answer(ctx: rs.RuleContext) -> None:
+            number = ctx[output] = ctx.payload(asked)
+            self.answered[number] = time.process_time()
+            self.left -= 1
+            if not self.left:
+                self.done.set()
+
+        @module.rule(when=self.heard.changed, writes=output)
+        async def fallback(ctx: rs.RuleContext) -> None:
+            raise AssertionError("the classifier has answered for it")
+
+        self.policy = rs.compile(module)
+
+    async def serve(self, contexts: Sequence[rs.Context], dues: Sequence[float]) -> list[float]:
+        """Put an input into a random context at each of these times (seconds); return how long each answer took."""
+        chosen = random.Random(1).choices(contexts, k=len(dues))
+        self.answered = [0.0] * len(dues)
+        self.left = len(dues)
+        self.done.clear()
+        begin = time.process_time()
+        for number, due in enumerate(dues):
+            while time.process_time() < begin + due:  # noqa: ASYNC110  # a timer may be a millisecond late
+                await asyncio.sleep(0)  # a timer of the loop would be late by up to a millisecond
+            chosen[number].put(self.heard, number)
+        await self.done.wait()
+        return [end - begin - due for end, due in zip(self.answered, dues, strict=True)]
+
+
+def load(inputs: int) -> dict[str, float]:
+    """Return, in seconds, the time of an input at full load, and percentiles of the times at half load."""
+
+    async def measure() -> dict[str, float]:
+        users = Users()
+        contexts = [rs.Context(users.policy) for _ in range(CONTEXTS)]
+        for context in contexts:
+            await context.start()
+        await users.serve(contexts, [0.0] * inputs)
+        full = max(await users.serve(contexts, [0.0] * inputs)) / inputs
+        even = await users.serve(contexts, [2 * full * number for number in range(inputs)])
+        dues, due, pauses = [], 0.0, random.Random(2)
+        for _ in range(inputs):
+            due += pauses.expovariate(1 / (2 * full))
+            dues.append(due)
+        mixed = await users.serve(contexts, dues)
+        for context in contexts:
+            await context.stop()
+        return {
+            "full": full,
+            "even 50": percentile(even, 50),
+            "even 99": percentile(even, 99),
+            "random 50": percentile(mixed, 50),
+            "random 99": percentile(mixed, 99),
+            "server 99": percentile(constant_server(dues, full), 99),
+        }
+
+    return asyncio.run(measure())
+
+
+def constant_server(dues: Sequence[float], each: float) -> list[float]:
+    """Return how long inputs at these times take with a server that takes `each` seconds for one (seconds)."""
+    free, times = 0.0, []
+    for due in dues:
+        free = max(free, due) + each
+        times.append(free - due)
+    return times
+
+
+def percentile(times: Sequence[float], percent: int) -> float:
+    """Return a percentile of some times."""
+    return sorted(times)[len(times) * percent // 100]
+
+
+def ask(bench: Bench) -> Iterable[Figure]:
+    """Compare the slowest percent of the inputs with the median."""
+    ours = bench.ours("benchmarks.questions.load")
+    found: dict[str, list[float]] = {}
+    for _ in bench.rounds(7, 2):
+        for name, value in ours.ask("load", inputs=bench.several(20_000, 5_000)).items():
+            found.setdefault(name, []).append(value)
+    yield measured("load", f"{CONTEXTS:,} contexts at full load: an input", found["full"])
+    yield compare(
+        "load",
+        "half load, even: 99 % within",
+        found["even 99"],
+        "50 % within",
+        found["even 50"],
+        target=f"<= {LIMIT:g}",
+        reach=lambda ratio: ratio <= LIMIT,
+    )
+    yield compare("load", "half load, random: 99 % within", found["random 99"], "50 % within", found["random 50"])
+    yield compare(
+        "load", "half load, random: 99 % within", found["random 99"], "a server of constant time", found["server 99"]
+    )
+
+
+if __name__ == "__main__":
+    serve(load)

@@ -1,0 +1,162 @@
+"""Benches: pairs of a rule that is the only writer of its slots.
+
+A new spike completes a hundred first spikes that wait for a counterpart. One pair runs, and the others take the next
+counterpart (L12). So only the first pair, the *head*, has an activation. The other first spikes sit on a bench,
+which takes the next counterpart as a whole.
+
+Such a rule has no rival, so a group refuses it only while the rule itself holds the slots there. If the head's group
+refuses, the next spike gets its activation at once, and asks in the same round. The order of a bench is that of the
+questions: no rule raises the signals, so an older spike has an older causal group. Before a group merges, its spikes
+leave their benches.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ravestate.engine.activation import GATHERING, RUNNING, WAITING, Activation
+from ravestate.engine.bench import Bench
+from ravestate.engine.group import NOTHING
+from ravestate.engine.spike import Spike
+from ravestate.policy.model import Half, Need
+
+if TYPE_CHECKING:
+    from ravestate.engine.holdings import Holdings
+
+
+class Benches:
+    """The part of the engine that gives counterparts to benches, and makes the activations of their heads."""
+
+    __slots__ = ("holdings", "state")
+
+    def __init__(self, holdings: Holdings) -> None:
+        self.holdings = holdings
+        self.state = holdings.state
+
+    def seat(self, half: Half, partner: Spike) -> None:
+        """Give a counterpart to all spikes of a half that lack one."""
+        del self.state.halves[half]
+        self._place(self.state.pools.pop(half), partner)
+
+    def check(self, partner: Spike) -> None:
+        """Give the benches of a counterpart another one if it is lost to them; else make sure that they have heads."""
+        state = self.state
+        for bench in list(state.benches.get(partner, {}).values()):
+            rule = bench.half.needs[0].clause.rule
+            lost = partner.refused is not None and rule.index in partner.refused
+            if lost or not state.is_live(partner) or partner.group.root().finished(rule.slots):
+                self._move(bench)
+            else:
+                self._lead(bench, partner)
+
+    def rise(self, spike: Spike) -> None:
+        """Create the activations of a spike on benches with counterparts: it is about to lose the spike (L12)."""
+        state = self.state
+        for half in state.halves_of(spike) if state.benches else ():
+            bench = state.bench_of(half, spike)
+            if bench is not None and bench.partner is not None:
+                self.make(bench, spike)
+
+    def settle(self) -> None:
+        """Make the heads of the benches whose heads have gone."""
+        state = self.state
+        while state.headless:
+            partner, _ = state.headless.popitem()
+            self.check(partner)
+
+    def next_heads(self, refused: Activation) -> list[Activation]:
+        """Return the activations that ask instead of one that was refused consent."""
+        state = self.state
+        heads: list[Activation] = []
+        for partner in refused.spikes:
+            benches = [*state.benches.get(partner, {}).values()] if partner is not None else []
+            asked = [b for b in benches if b.half.needs[0].clause is refused.clause and not _is_taken(b)]
+            heads += [self.make(bench, next(iter(bench.spikes))) for bench in asked]
+        return [head for head in heads if head in state.asking]
+
+    def make(self, bench: Bench, spike: Spike) -> Activation:
+        """Create the activation of a spike on a bench with a counterpart."""
+        holdings, need, partner = self.holdings, bench.half.needs[0], bench.partner
+        assert partner is not None
+        activation = holdings.new_activation(need.clause, self.state.entry_number(need, spike))
+        holdings.acquire(activation, need, spike)
+        holdings.acquire(activation, other_need(need), partner)
+        holdings.entries.part(spike, need)
+        holdings.waits.stir(activation)
+        holdings.update(activation)
+        return activation
+
+    def _place(self, bench: Bench, partner: Spike) -> None:
+        state = self.state
+        if state.benches is NOTHING:
+            state.benches = {}
+        found = state.benches.setdefault(partner, {})
+        other = found.get(bench.half)
+        if other is None:
+            bench.partner = partner
+            found[bench.half] = bench
+            partner.entries += 1
+            partner.group.root().enter(partner)
+        else:
+            bench = self._join(other, bench)
+            bench.partner = partner
+            found[bench.half] = bench
+        self._lead(bench, partner)
+
+    def _move(self, bench: Bench) -> None:
+        """Give a bench the oldest live counterpart that fits (L12), if there is one."""
+        state, half = self.state, bench.half
+        self.holdings.entries.vacate(bench)
+        need = other_need(half.needs[0])
+        for spike in state.live.get(need.signal.index, ()):
+            if state.fits(need, spike):
+                self._place(bench, spike)
+                return
+        pool = state.pools.get(half)
+        if pool is not None:
+            bench = self._join(pool, bench)
+            bench.partner = None
+        state.pools[half] = bench
+        state.halves[half] = bench.spikes
+        late, bench.late = bench.late, []
+        for spike in late:
+            if spike in bench.spikes:
+                self.holdings.entries.let_expire(spike, spike.born + half.max_age)
+
+    def _join(self, one: Bench, other: Bench) -> Bench:
+        """Make one bench of two: the longer one takes the spikes of the other."""
+        longer, shorter = (one, other) if len(one.spikes) >= len(other.spikes) else (other, one)
+        seats = self.state.seats[one.half]
+        for spike in shorter.spikes:
+            seats[spike] = longer
+        longer.join(shorter)
+        return longer
+
+    def _lead(self, bench: Bench, partner: Spike) -> None:
+        """Make a head, unless another activation asks for the counterpart before the spikes of the bench."""
+        need = bench.half.needs[0]
+        first = next(iter(bench.spikes))
+        cause = min(first.group.root().id, partner.group.root().id)
+        order = (cause, self.state.entry_number(need, first))
+        taken = _is_taken(bench)
+        for holder in partner.holders:
+            if holder.clause is not need.clause or holder.state == GATHERING:
+                continue
+            if holder.state >= RUNNING:
+                return
+            if holder.state == WAITING and not taken and holder not in self.state.asking:
+                continue  # another group refuses it
+            if (min([group.id for group in holder.firm_groups()]), holder.id) <= order:
+                return
+        self.make(bench, first)
+
+
+def other_need(need: Need) -> Need:
+    """Return the other need of a clause of two."""
+    return need.clause.needs[1 - need.index]
+
+
+def _is_taken(bench: Bench) -> bool:
+    """Return whether a slot of the rule is taken in the group of a bench's counterpart."""
+    assert bench.partner is not None
+    return not bench.partner.group.root().taken.keys().isdisjoint(bench.half.slotset)

@@ -1,0 +1,102 @@
+"""A process beside the agent: start it, end it, and get the last line of its errors."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import tempfile
+from collections.abc import Mapping, Sequence
+
+ENDING = 2.0
+"""The time that a process has to end by itself after its pipe is closed (seconds)."""
+
+
+class Child:
+    """A running process, in a session of its own, so that Ctrl-C does not reach it.
+
+    Args:
+        command: The program and its arguments.
+        piped: Whether standard input and output are pipes. If not, the input is empty, and the output counts as errors.
+        pass_fds: The file descriptors that the process inherits.
+        environment: Variables in addition to those of this process.
+
+    Raises:
+        OSError: The program cannot be started.
+    """
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        *,
+        piped: bool = False,
+        pass_fds: Sequence[int] = (),
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # `end` closes it
+        try:
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE if piped else subprocess.DEVNULL,
+                stdout=subprocess.PIPE if piped else self._errors,
+                stderr=self._errors,
+                bufsize=0,
+                pass_fds=pass_fds,
+                env={**os.environ, **(environment or {})},
+                start_new_session=True,
+            )
+        except OSError:
+            self._errors.close()
+            raise
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                os.set_blocking(pipe.fileno(), False)
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number, if it runs."""
+        return self._process.pid if self._process.poll() is None else None
+
+    @property
+    def stdin(self) -> int:
+        """The descriptor of the pipe into the process; it never blocks."""
+        assert self._process.stdin is not None, "the process has no pipes"
+        return self._process.stdin.fileno()
+
+    @property
+    def stdout(self) -> int:
+        """The descriptor of the pipe out of the process; it never blocks."""
+        assert self._process.stdout is not None, "the process has no pipes"
+        return self._process.stdout.fileno()
+
+    def kill(self) -> None:
+        """Kill the process, and leave the rest to `end`."""
+        self._process.kill()
+
+    def wait(self, seconds: float) -> None:
+        """Wait until the process has ended, but not longer than `seconds`."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(seconds)
+
+    def end(self, patience: float = 0.0) -> str:
+        """Make sure that the process is gone; return how it ended, with the last line of its errors.
+
+        Args:
+            patience: The seconds that it has to end by itself, before it is killed.
+        """
+        self.wait(patience)
+        hung = self._process.poll() is None
+        if hung:
+            self._process.kill()
+        code = self._process.wait()
+        how = "it did not end by itself" if hung else f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                with contextlib.suppress(OSError):
+                    pipe.close()
+        if not self._errors.closed:
+            self._errors.seek(0)
+            said = self._errors.read(1 << 16).decode("utf-8", "replace").strip().splitlines()
+            how += f": {said[-1]}" if said else ""
+            self._errors.close()
+        return how

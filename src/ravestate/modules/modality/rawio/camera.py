@@ -1,0 +1,39 @@
+"""Pictures from the user's camera, and the faces that the agent sees in them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A face that the agent sees in a picture of the user's camera.
+
+    Attributes:
+        box: x, y, width and height, in shares of the picture's size (0 to 1), from the upper left corner.
+        name: The person's name; empty if the agent does not know it.
+    """
+
+    box: tuple[float, float, float, float]
+    name: str = ""
+
+
+class Camera(Protocol):
+    """The camera of a user. Each picture is asked for, so the agent gets no more pictures than it can look at.
+
+    A platform with a camera, such as a web page, puts one into `rawio.camera`. A module that sees takes its pictures.
+    """
+
+    async def next(self) -> bytes | None:
+        """Ask for a picture, and wait for it. Return a JPEG; None once the camera is off."""
+        ...
+
+    def mark(self, faces: Sequence[Face]) -> None:
+        """Show the user the faces that the agent sees now."""
+        ...
+
+    def refuse(self, why: str) -> None:
+        """Turn the camera off, and tell the user why. A camera that is off stays off."""
+        ...

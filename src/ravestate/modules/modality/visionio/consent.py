@@ -1,0 +1,188 @@
+"""The rules of consent: asking whether the agent may remember a face, keeping it after a yes, and forgetting it."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+
+import ravestate as rs
+from ravestate.errors import RavestateError
+from ravestate.modules import idle, interloc, ontology, rawio, verbaliser
+from ravestate.modules.meta.nlp.answer import yesno_of
+from ravestate.modules.meta.verbaliser.intents import Intent
+
+from . import people
+from .names import Settings, agreed, asking, history, left, module, named, refused, visitors, withdrawn
+from .visitors import Question, in_front
+from .wishes import wish_of
+
+POLITE = 3.0
+"""The pause between a person's name and the question whether the agent may remember their face (seconds)."""
+ANSWERED = 60.0
+"""Seconds for which that question waits for its answer."""
+
+
+@module.rule(
+    when=named.min_age(POLITE).max_age(None).detached() | idle.bored,
+    reads=(visitors, ontology.memory, asking),
+    writes=(verbaliser.intent, rawio.output, visitors, asking),
+    weight=1.3,  # outranks the other questions that a bored agent asks
+    cooldown=20.0,
+    detached=True,
+    background=True,
+)
+async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Ask a person who has told their name whether the agent may remember their face."""
+    if not ctx.settings.ask:
+        return rs.Resign("visionio.ask is off")
+    memory = ctx[ontology.memory]
+    one = next(
+        (one for one in ctx[visitors].values() if one.item and not one.faces and one.good(ctx.settings.quality)), None
+    )
+    if one is None or memory is None:
+        return rs.Resign("there is nobody to ask, or no memory")
+    if _open(ctx) is not None:
+        return rs.Resign("the agent has asked somebody else")
+    ctx[visitors].add(one.key, replace(one, faces=True))
+    try:
+        present = await memory.together(lambda graph: people.has_faces(graph, one.node))
+    except RavestateError as error:
+        return rs.Resign(f"memory failed: {error}")
+    if present:
+        return rs.Resign("memory has their face")
+    ctx[asking] = Question(one.key, ctx.now)
+    ctx[verbaliser.intent] = Intent("ask_leave", {"name": one.name}, __package__)
+    return None
+
+
+def _open(ctx: rs.RuleContext) -> Question | None:
+    """Return the question that waits for its answer."""
+    question = ctx[asking]
+    return question if question is not None and ctx.now - question.time <= ANSWERED else None
+
+
+@module.rule(when=rawio.output.changed.max_age(None).detached(), writes=asking, background=True)
+async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Let the question lapse when the agent has said something else, because a yes may be the answer to that."""
+    question = ctx[asking]
+    if question is None or not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
+        return rs.Resign("there is no question, or these are no words")
+    ctx[asking] = None if question.said else replace(question, said=True)
+    return None
+
+
+@module.rule(
+    when=rawio.input.changed,
+    reads=(visitors, history),
+    writes=asking,
+    emits=(agreed, refused, withdrawn),
+)
+async def listen(ctx: rs.RuleContext) -> None:
+    """Notice the answer to the question, and the wish that the agent remember or forget a face."""
+    text, question = ctx.payload(rawio.input.changed), _open(ctx)
+    wish = await asyncio.to_thread(wish_of, text)
+    answer = yesno_of(text)
+    front = in_front(ctx[visitors], ctx[history])
+    if wish:
+        ctx.emit(withdrawn if wish == "forget" else agreed, front.key if front else "")
+    elif question is not None and answer and not answer.unsure:
+        ctx.emit(agreed if answer.yes and not answer.no else refused, question.key)
+    else:
+        return
+    ctx[asking] = None
+
+
+REPLIES = (verbaliser.intent, rawio.output, visitors)
+"""The slots that a reply writes. The output is one of them, so that no other rule answers the same words."""
+PRIORITY = 20.0
+"""The weight of the reply to a yes: above small talk, which has an answer to any yes. A no outranks it; to forget, both."""
+
+
+@module.rule(when=agreed, reads=ontology.memory, writes=REPLIES, detached=True, weight=PRIORITY)
+async def store(ctx: rs.RuleContext) -> None:
+    """File the vectors of a person who agrees."""
+    settings: Settings = ctx.settings
+    one, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
+    meant, name = "no_memory", one.name if one else None
+    vectors = one.good(settings.quality) if one else ()
+    if one is None or not vectors:
+        meant = "not_seen"
+    elif name is None:
+        meant = "no_name"
+    elif memory is not None:
+        try:
+            node, _ = await memory.together(lambda graph: people.keep(graph, one.node, vectors, settings.most))
+        except RavestateError as error:
+            ctx.log.error("%s", error)
+        else:
+            ctx[visitors].add(one.key, replace(one, node=node, known=True, faces=True))
+            meant = "kept"
+    ctx[verbaliser.intent] = Intent(meant, {"name": name}, __package__)
+
+
+@module.rule(when=refused, writes=REPLIES, detached=True, weight=PRIORITY + 1)
+async def respect(ctx: rs.RuleContext) -> None:
+    """Accept that a person does not want the agent to remember their face."""
+    one = ctx[visitors].get(ctx.payload(refused))
+    ctx[verbaliser.intent] = Intent("not_kept", {"name": one.name if one else None}, __package__)
+
+
+@module.rule(
+    when=withdrawn,
+    reads=(ontology.memory, interloc.users),
+    writes=(*REPLIES, history),
+    detached=True,
+    weight=PRIORITY + 2,
+)
+async def forget(ctx: rs.RuleContext) -> None:
+    """Remove a person's faces from memory. If memory knows the only user, this needs no camera."""
+    one, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
+    person, users = one.node if one is not None else None, list(ctx[interloc.users].values())
+    if person is None and len(users) == 1 and isinstance(users[0], interloc.Recognised):
+        person = users[0].node
+    meant = "not_seen"
+    if person is not None:
+        try:
+            removed = 0 if memory is None else await memory.together(lambda graph: people.forget_faces(graph, person))
+            meant = "forgotten" if removed else "had_none"
+        except RavestateError as error:
+            ctx.log.error("%s", error)
+            meant = "no_memory"
+        else:
+            ctx[history] = ()
+            if one is not None:
+                ctx[visitors].add(one.key, replace(one, faces=True, vectors=()))  # do not ask again
+    ctx[verbaliser.intent] = Intent(meant, {"name": person and person.get("name")}, __package__)
+
+
+@module.rule(
+    when=interloc.forgotten.max_age(None).detached(), reads=ontology.memory, writes=(visitors, history), background=True
+)
+async def forget_person(ctx: rs.RuleContext) -> None:
+    """Treat visitors whom memory has forgotten as strangers."""
+    memory = ctx[ontology.memory]
+    ctx[history] = ()
+    for one in ctx[visitors].values():
+        if one.known and (memory is None or await memory.get(one.node.id) is None):
+            stranger = replace(one, node=ontology.Node("Person"), known=False, faces=True, vectors=())
+            ctx[visitors].add(one.key, stranger)
+
+
+@module.rule(when=left.max_age(None).detached(), reads=ontology.memory, background=True)
+async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
+    """After a visit, file a vector of a person who has agreed before, because people change."""
+    settings: Settings = ctx.settings
+    one, memory = ctx.payload(left), ctx[ontology.memory]
+    vectors = one.good(max(0.7, settings.quality))[:1]
+    if memory is None or not one.known or one.mistaken or not vectors:
+        return rs.Resign("there is nothing to file")
+
+    def file(graph: ontology.Graph) -> None:
+        if people.has_faces(graph, one.node):
+            people.keep(graph, one.node.with_properties(), vectors, settings.most)
+
+    try:
+        await memory.together(file)
+    except RavestateError as error:
+        ctx.log.warning("%s", error)
+    return None

@@ -1,0 +1,133 @@
+"""Benches: first spikes of a sole writer share a counterpart, and all happens as if each had an activation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from engine.test_halves import activations, declared, pair, payloads, runs
+from properties.worlds import Act, Play, RuleOf, SignalOf, SlotOf, Want, World
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Emit, Event, Finish, Wipe
+from ravestate.engine.explain import explain
+
+
+def writer() -> Engine:
+    """Return an engine with one rule `a & b`, the only writer of its slot."""
+    m = rs.Module("m")
+    declared(m, "both", when=m.signal("a") & m.signal("b"), writes=m.slot("out", ""))
+    return Engine(rs.compile(m))
+
+
+def at_rest(engine: Engine) -> bool:
+    """Return whether no table holds a spike or an activation."""
+    state = engine.state
+    tables: list[Any] = [state.active, state.live, state.halves, state.seats, state.pools, state.benches]
+    return not any(tables)
+
+
+def burst(signal: str, count: int, first: int = 0) -> list[Event]:
+    """Return events that emit a signal."""
+    return [Emit(signal, n) for n in range(first, first + count)]
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_the_oldest_spikes_meet(together: bool) -> None:
+    engine = writer()
+    given = [*burst("m:a", 5), *burst("m:b", 5)]
+    found = runs(engine, *given) if together else [run for event in given for run in runs(engine, event)]
+    assert payloads(found) == [(n, n) for n in range(5)]
+    assert at_rest(engine)
+
+
+def test_a_counterpart_of_many_makes_one_activation() -> None:
+    engine = writer()
+    runs(engine, *burst("m:a", 20), Emit("m:b", 0), end=False)
+    assert activations(engine) == 1
+    assert engine.read(engine.policy.slot_of["core:pressure"].index) is True
+
+
+def test_the_bench_takes_no_new_counterpart_while_it_has_one() -> None:
+    engine = writer()
+    [run] = runs(engine, *burst("m:a", 3), Emit("m:b", 0), end=False)
+    assert not runs(engine, Emit("m:b", 1), end=False)
+    [following] = runs(engine, Finish(run.run, "done"), end=False)
+    assert payloads([following]) == [(1, 1)]
+
+
+def test_after_a_resignation_the_bench_takes_the_next_counterpart() -> None:
+    engine = writer()
+    [run] = runs(engine, *burst("m:a", 3), *burst("m:b", 2), end=False)
+    [following] = runs(engine, Finish(run.run, "resigned", "no"), end=False)
+    assert payloads([following]) == [(1, 1)]
+
+
+def test_a_spike_with_a_counterpart_does_not_grow_too_old() -> None:
+    engine = writer()
+    [run] = runs(engine, *burst("m:a", 2), Emit("m:b", 0), end=False)
+    runs(engine, Emit("m:b", 1), now=4.0)
+    runs(engine, now=8.0)
+    [following] = runs(engine, Finish(run.run, "done"), now=8.0)
+    assert payloads([following]) == [(1, 1)]
+    assert at_rest(engine)
+
+
+def test_a_spike_that_grew_too_old_with_its_counterpart_ends_with_it() -> None:
+    engine = writer()
+    [run] = runs(engine, *burst("m:a", 3), Emit("m:b", 0), end=False)
+    runs(engine, now=8.0)
+    assert engine.state.benches
+    assert not runs(engine, Finish(run.run, "done"), now=8.0)
+    assert at_rest(engine)
+    assert not runs(engine, Emit("m:b", 1), now=8.0)
+
+
+def test_a_wiped_counterpart_gives_way_to_the_next() -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b", limit=1)
+    declared(m, "both", when=a & b, writes=m.slot("out", ""))
+    engine = Engine(rs.compile(m))
+    assert payloads(runs(engine, *burst("m:a", 3), *burst("m:b", 2))) == [(0, 1)]
+    assert not runs(engine, Wipe("m:a"))
+    assert at_rest(engine)
+
+
+def test_a_spike_whose_group_refuses_lets_the_next_one_ask_in_the_same_round() -> None:
+    # The first a meets the first b and the third one, and its group can answer only once. The second a takes the third b
+    # in the same round, before the rule of the younger input.
+    both = RuleOf(when=((Want("s0"), Want("s1")),), writes=("v0",), acts=(Act(seconds=1.0),))
+    other = RuleOf(when=((Want("s2"),),), writes=("v1",))
+    inputs = tuple((0.0, ("emit", signal, n)) for n, signal in enumerate(("s1", "s1", "s0", "s0", "s1", "s2")))
+    world = World((SignalOf(),) * 3, (SlotOf(), SlotOf()), (both, other), inputs, together=True)
+    play = Play(world, budget=6).play()
+    starts = [line for line in play.heard if "< Run(" in line]
+    assert [line.split(" s <")[0] for line in starts][:3] == ["0"] * 3
+
+
+def test_an_explanation_shows_the_spikes_on_a_bench() -> None:
+    engine = writer()
+    runs(engine, *burst("m:a", 2), Emit("m:b", 0), end=False)
+    states = explain(engine, engine.policy.rule_plan("m:both")).activations
+    assert [(one.state, one.holds) for one in states] == [
+        ("running", (("m:a", 0.0), ("m:b", 0.0))),
+        ("waiting", (("m:a", 0.0), ("m:b", 0.0))),
+        ("gathering", (("m:b", 0.0),)),
+    ]
+
+
+def test_a_tracer_changes_no_run() -> None:
+    quiet, traced = writer(), writer()
+    [run] = runs(traced, *burst("m:a", 4), Emit("m:b", 0), end=False)
+    [same] = runs(quiet, *burst("m:a", 4), Emit("m:b", 0), end=False)
+    traced.tracer = lambda record: None
+    rest = [*burst("m:b", 2, 1), *burst("m:a", 1, 4)]
+    found = [payloads(runs(one, *rest, Finish(first.run, "done"))) for one, first in ((quiet, same), (traced, run))]
+    assert found[0] == found[1] == [(1, 1), (2, 2)]
+
+
+def test_a_rule_without_slots_needs_no_bench() -> None:
+    engine = pair()
+    runs(engine, *burst("m:a", 3))
+    assert not engine.state.seats

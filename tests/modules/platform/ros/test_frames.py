@@ -1,0 +1,47 @@
+"""The agent's end of the pipe to a bridge."""
+
+import asyncio
+import socket
+
+from modules.platform.ros.networks import PATIENCE, until
+from ravestate.modules.platform.ros.frames import Frames, Kind
+
+
+def test_the_fault_of_one_frame_loses_none_that_follow() -> None:
+    async def main() -> None:
+        got: list[int] = []
+        complaints: list[str] = []
+
+        def take(kind: Kind, channel: int, number: int, body: memoryview) -> None:
+            got.append(number)
+            if number == 1:
+                raise ValueError("a rule's fault")
+
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(lambda _, told: complaints.append(f"{told['message']}: {told['exception']}"))
+        ours, theirs = socket.socketpair()
+        one, other = Frames(ours, take, lambda: None), Frames(theirs, take, lambda: None)
+        for number in range(4):
+            other.send(Kind.MESSAGE, 1, number, b"text")
+        async with asyncio.timeout(PATIENCE):
+            await until(lambda: len(got) >= 4)
+        assert got == [0, 1, 2, 3]
+        assert complaints == ["a frame (MESSAGE) failed: a rule's fault"]
+        one.close()
+        other.close()
+
+    asyncio.run(main())
+
+
+def test_bytes_that_are_no_frames_end_the_link() -> None:
+    async def main() -> None:
+        lost: list[bool] = []
+        ours, theirs = socket.socketpair()
+        Frames(ours, lambda *_: None, lambda: lost.append(True))
+        theirs.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        async with asyncio.timeout(PATIENCE):
+            await until(lambda: lost)
+        assert theirs.recv(1) == b""
+        theirs.close()
+
+    asyncio.run(main())

@@ -1,0 +1,158 @@
+"""The camera over the WebSocket: pictures that the agent asks for, faces that it shows, and what clients do wrong."""
+
+import contextlib
+from collections.abc import AsyncGenerator
+
+import pytest
+from starlette.applications import Starlette
+from starlette.testclient import TestClient
+
+from modules.platform.webio.eyes import JPEG, eyes, glance, pictures
+from modules.platform.webio.visit import Visit, in_virtual_time, page, parrot, past
+from ravestate.modules import rawio, webio
+from ravestate.modules.platform.webio.fields import LONGEST_PICTURE
+from ravestate.modules.platform.webio.session import Session
+from ravestate.runtime.agent import Agent
+
+
+@contextlib.asynccontextmanager
+async def watching() -> AsyncGenerator[tuple[Session, Visit, Starlette]]:
+    """A visitor whose camera is on."""
+    async with page(eyes, privacy="We keep nothing.") as app, Visit(app) as visit:
+        assert (await visit.hello())["sight"] == "We keep nothing."
+        visit.tell("camera", on=True)
+        await past(0.1)
+        (session,) = app.state.sessions
+        yield session, visit, app
+
+
+def show(visit: Visit, number: int, data: bytes = JPEG) -> None:
+    visit.tell("picture", n=number)
+    visit.send(data)
+
+
+@in_virtual_time
+async def test_the_agent_gets_the_picture_that_it_asks_for_and_the_page_the_faces() -> None:
+    async with watching() as (session, visit, _):
+        assert visit.nothing_more()  # nobody has asked yet
+        session.context.emit(glance)
+        assert await visit.next() == {"type": "look", "n": 1}
+        show(visit, 1)
+        faces = [{"box": [0.25, 0.0, 0.5, 0.4], "name": "Anna"}, {"box": [0.9, 0.0, 0.1, 0.2]}]
+        assert await visit.next() == {"type": "faces", "faces": faces}
+        assert session.context.read(pictures) == (JPEG,)
+        session.context.emit(glance)
+        assert await visit.next() == {"type": "look", "n": 2}
+        await past(0.1)
+        assert visit.nothing_more()  # the same faces are not sent again
+
+
+@in_virtual_time
+async def test_a_picture_that_the_agent_has_not_asked_for_is_dropped() -> None:
+    async with watching() as (session, visit, _):
+        show(visit, 0)
+        show(visit, 1)
+        session.context.emit(glance)
+        assert await visit.next() == {"type": "look", "n": 1}
+        show(visit, 7, JPEG + b"late")
+        show(visit, 1)
+        show(visit, 1, JPEG + b"twice")
+        await visit.next()
+        assert session.context.read(pictures) == (JPEG,)
+
+
+@in_virtual_time
+async def test_a_camera_that_goes_off_ends_the_wait_of_the_agent() -> None:
+    async with watching() as (session, visit, _):
+        camera = session.context.read(rawio.camera)
+        assert camera is not None
+        session.context.emit(glance)
+        await visit.next()
+        visit.tell("camera", on=False)
+        await past(0.1)
+        assert session.context.read(rawio.camera) is None
+        assert session.context.read(pictures) == (None,)
+        assert await camera.next() is None
+        visit.tell("camera", on=True)
+        await past(0.1)
+        assert session.context.read(rawio.camera) not in (None, camera)
+
+
+@in_virtual_time
+async def test_a_lost_connection_turns_the_camera_off() -> None:
+    async with watching() as (session, visit, app):
+        await visit.drop()
+        await past(0.1)
+        assert session.context.read(rawio.camera) is None
+        async with Visit(app) as again:
+            await again.hello(session=visit.session)
+            again.tell("camera", on=True)
+            session.context.emit(glance)
+            await past(0.1)
+            session.context.emit(glance)
+            assert await again.next() == {"type": "look", "n": 1}
+
+
+@in_virtual_time
+async def test_the_window_that_turns_its_camera_on_takes_it_from_the_other() -> None:
+    async with watching() as (session, visit, app), Visit(app) as other:
+        await other.hello(session=visit.session)
+        other.tell("camera", on=True)
+        assert await visit.next() == {"type": "unseen", "text": "the camera is on in another window"}
+        session.context.emit(glance)
+        assert await other.next() == {"type": "look", "n": 1}
+        show(visit, 1, JPEG + b"from the wrong window")
+        show(other, 1)
+        await other.next()
+        assert session.context.read(pictures) == (JPEG,)
+        visit.tell("camera", on=False)  # it has none
+        await past(0.1)
+        assert session.context.read(rawio.camera) is not None
+
+
+@in_virtual_time
+async def test_an_agent_that_cannot_see_at_the_moment_turns_the_camera_off_and_may_see_later() -> None:
+    async with watching() as (session, visit, _):
+        first = session.context.read(rawio.camera)
+        assert first is not None
+        first.refuse("the agent cannot see at the moment")
+        first.refuse("twice")
+        assert await visit.next() == {"type": "unseen", "text": "the agent cannot see at the moment"}
+        assert await first.next() is None
+        first.mark([rawio.Face((0.0, 0.0, 1.0, 1.0))])
+        visit.tell("camera", on=True)
+        await past(0.1)
+        assert visit.nothing_more()
+        session.context.emit(glance)
+        assert await visit.next() == {"type": "look", "n": 1}
+
+
+@pytest.mark.parametrize("data", [b"", b"\x89PNG", JPEG + bytes(LONGEST_PICTURE)])
+def test_a_picture_that_is_no_small_jpeg_is_refused(data: bytes) -> None:
+    @in_virtual_time
+    async def refused() -> None:
+        async with watching() as (session, visit, _):
+            session.context.emit(glance)
+            await visit.next()
+            show(visit, 1, data)
+            assert (await visit.next())["code"] == "malformed"
+            show(visit, 1)  # the next one counts
+            assert (await visit.next())["type"] == "faces"
+
+    refused()
+
+
+@in_virtual_time
+async def test_an_agent_without_eyes_says_so() -> None:
+    async with page() as app, Visit(app) as visit:
+        assert "sight" not in await visit.hello()
+        await visit.next()
+        for kind, field in (("camera", {"on": True}), ("picture", {"n": 1})):
+            visit.tell(kind, **field)
+            assert (await visit.next())["code"] == "blind"
+
+
+def test_only_the_page_of_an_agent_that_sees_may_use_the_camera() -> None:
+    for modules, allowed in (((eyes,), "camera=(self)"), ((parrot,), "camera=()")):
+        with TestClient(webio.app(Agent(*modules, webio)), base_url="http://127.0.0.1:8420") as client:
+            assert allowed in client.get("/").headers["permissions-policy"]

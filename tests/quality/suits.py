@@ -1,0 +1,70 @@
+"""How well the listener judges whether the replies of an entry of its bank suit an utterance.
+
+    python tests/quality/suits.py
+
+learns the weights of `wildtalk.listening.suitability` from suits_rows.tsv and prints them; it takes half a minute.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ravestate.language.encoder import Encoder
+from ravestate.language.normal import plain
+from ravestate.language.reranker import Reranker
+from ravestate.modules.skill.wildtalk.listening.suitability import Evidence
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+if __package__:
+    from . import measure
+else:
+    import measure
+
+DECAY = 0.02
+"""The weight decay (L2) of normalised features."""
+STEPS, RATE = 1500, 0.5
+
+
+def evidence(name: str) -> tuple[list[Evidence], NDArray[Any]]:
+    """Return the evidence of each row of a set, and its label: 1 if the replies suit."""
+    lines = (measure.HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
+    rows = [line.split("\t") for line in lines if line and not line.startswith("#")]
+    groups = [(utterance, sentences.split(" | ")) for utterance, _, sentences in rows]
+    scores = iter(Reranker().score_pairs([(text, said) for said, texts in groups for text in texts]).tolist())
+    encoder = Encoder()
+    vectors = iter(encoder.encode([plain(text) for said, texts in groups for text in (said, *texts)]))
+    found: list[Evidence] = []
+    for _, texts in groups:
+        whole = next(vectors)
+        found.append(
+            Evidence(
+                [next(scores) for _ in texts],
+                [float(next(vectors) @ whole) for _ in texts],
+                [len(text.split()) for text in texts],
+            )
+        )
+    return found, np.array([int(label == "suits") for _, label, _ in rows])
+
+
+def weights() -> NDArray[Any]:
+    """Return the constant and the weights that a logistic regression learns from suits_rows.tsv."""
+    learnt, labels = evidence("suits_rows")
+    features = np.array([one.features() for one in learnt])
+    middle, spread = features.mean(axis=0), features.std(axis=0)
+    inputs = np.c_[np.ones(len(features)), (features - middle) / spread]
+    found = np.zeros(inputs.shape[1])
+    for _ in range(STEPS):
+        slope = inputs.T @ (1 / (1 + np.exp(-inputs @ found)) - labels) / len(labels)
+        found -= RATE * (slope + DECAY * np.r_[0.0, found[1:]])
+    raw = found[1:] / spread
+    return np.r_[found[0] - (raw * middle).sum(), raw]
+
+
+if __name__ == "__main__":
+    print("CONSTANT, MEAN, BEST, MEANING, LENGTH =", *np.round(weights(), 3))
+    sys.exit(0)

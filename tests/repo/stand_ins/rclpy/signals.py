@@ -1,8 +1,0 @@
-"""Whether ROS handles the signals of the process."""
-
-from enum import Enum
-
-
-class SignalHandlerOptions(Enum):
-    NO = 0
-    ALL = 3
