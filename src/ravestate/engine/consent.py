@@ -153,8 +153,7 @@ class Consent:
             or (strength != NO and self._is_held_beside(half, spike))  # or cover another clause of the half
             or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
-            self.halves.unfold(spike, half)
-            horizon.renew()
+            self.halves.unfold(spike, half)  # no derivation rests on the new activations
         elif strength == FIRM:
             _note_firm(refusal, roots)
             refusal.names[rival.rule.name] = None

@@ -9,6 +9,7 @@ intersections are fast.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from ravestate.policy.components import components
@@ -47,6 +48,8 @@ class Causes:
         self._ancestors: dict[int, frozenset[int]] = {}
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
+        self._contested: frozenset[int] | None = None
+        self._helpful: frozenset[int] | None = None
 
     def roots(self, signal: int) -> int:
         """Return the roots of the signal's pathways, as bits; roots are numbered separately from signals.
@@ -123,8 +126,14 @@ class Causes:
                     stack.append(cause.index)
         return frozenset(rules)
 
-    def leading_to_slots(self) -> frozenset[int]:
-        """Return the signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
+    @property
+    def helpful(self) -> frozenset[int]:
+        """The signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
+        if self._helpful is None:
+            self._helpful = self._find_helpful()
+        return self._helpful
+
+    def _find_helpful(self) -> frozenset[int]:
         found = {s.index for r in self.rules for c in r.clauses for slot, _ in c.guards for s in slot.signals}
         rules = [rule for rule in self.rules if rule.slots or not found.isdisjoint(rule.raises)]
         seen = set(rules)
@@ -158,6 +167,37 @@ class Causes:
             found = self._downstream[rule.index] = tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
         return found
 
+    @property
+    def contested(self) -> frozenset[int]:
+        """The slots that a chain of effects must remember, because no rule of the chain may write a slot again (L19).
+
+        A chain within one group is the shorter without a rule that occurs twice. So a slot that only one rule writes
+        matters only if the rule is on a cycle with a clause that joins groups.
+        """
+        if self._contested is None:
+            self._contested = self._find_contested()
+        return self._contested
+
+    def _find_contested(self) -> frozenset[int]:
+        firm = [rule for rule in self.rules if not rule.detached]
+        edges: list[dict[int, None]] = [{} for _ in self.signals]
+        for rule in firm:
+            for signal in rule.raises:
+                edges[signal].update(dict.fromkeys(_watched(rule)))
+        of = components([tuple(found) for found in edges]).of
+        cycles = {r.index: {of[s] for s in _watched(r)} & {of[s] for s in r.raises} for r in firm}
+        joined: set[int] = set()
+        for rule in firm:
+            if any(not clause.apart and clause.firm_bits.bit_count() > 1 for clause in rule.clauses):
+                joined |= cycles[rule.index]
+        writers = Counter(slot for rule in firm for slot in rule.slots)
+        return frozenset(
+            slot
+            for rule in firm
+            for slot in rule.slots
+            if writers[slot] > 1 or not joined.isdisjoint(cycles[rule.index])
+        )
+
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
         """Return the signals that may ever occur if those in `given` occur: a least fixed point over all rules."""
         reached = set(given)
@@ -182,3 +222,9 @@ class Causes:
 
 def _needs(rule: RulePlan) -> list[Need]:
     return [need for clause in rule.clauses for need in clause.needs]
+
+
+def _watched(rule: RulePlan) -> list[int]:
+    """Return the signals on which a rule depends: those that it hears, and the changes of the slots of its predicates."""
+    slots = [slot for clause in rule.clauses for slot, _ in clause.guards]
+    return [need.signal.index for need in _needs(rule)] + [signal.index for slot in slots for signal in slot.signals]

@@ -66,7 +66,7 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
     activation of the other clauses (``engine/conflict_sets.py``). A clause takes no part if its effects may help a rule
     that writes a slot. Other activations may have to wait for such effects (L16), so this clause needs an activation.
     """
-    helpful = causes.leading_to_slots()
+    helpful = causes.helpful
     for signal in signals:
         sets: dict[tuple[frozenset[int], bool], list[Clause]] = {}
         for need in signal.listeners:
@@ -85,7 +85,7 @@ def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
     A first spike changes nothing for such a clause but what it lacks, so a table of spikes is enough
     (``engine/halves.py``). As for a conflict set, none of the rule's effects may help a rule that writes a slot.
     """
-    helpful = causes.leading_to_slots()
+    helpful = causes.helpful
     writers = Counter(slot for rule in causes.rules for slot in rule.slots)
     for signal in signals:
         competing = {clause for clauses in signal.conflict_sets for clause in clauses}
