@@ -23,6 +23,7 @@ from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import FIRM, NO, Horizon
 from ravestate.engine.idle import Idle
 from ravestate.engine.refusal import Refusal
+from ravestate.engine.roster import causers, writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Half, Need, RulePlan
@@ -219,9 +220,10 @@ class Consent:
                 if bisect_left(half.ranks, (-first.base, first.index)) < bisect_left(half.ranks, limit):
                     return True
             rivals: dict[Clause, None] = {}
-            for member in group.members:
+            for member in writers(group, first.rule.slots, state.causes):
                 rivals[member.clause] = None
-                for theirs in state.causes.downstream(member.clause.rule):
+            for rule in causers(group, first.rule.slots, state.causes):
+                for theirs in state.causes.downstream(rule):
                     if theirs.base < last.base:
                         break  # the best clauses come first
                     rivals[theirs] = None
@@ -281,7 +283,7 @@ class Consent:
         clause = activation.clause
         slots = clause.rule.slotset
         for group in activation.firm_groups():
-            for other in group.members:
+            for other in writers(group, clause.rule.slots, self.state.causes):
                 theirs = other.clause
                 if (
                     theirs is not clause
@@ -307,14 +309,13 @@ class Consent:
         slots = clause.rule.slotset
         worth = self.state.standing.effective(clause)
         found: dict[Clause, list[Activation]] = {}
-        rules: dict[RulePlan, None] = {}
-        for member in group.members:
+        causes = self.state.causes
+        for member in writers(group, clause.rule.slots, causes):
             theirs = member.clause
-            rules[theirs.rule] = None
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                 found.setdefault(theirs, []).append(member)
-        for rule in rules:
-            for theirs in self.state.causes.downstream(rule):
+        for rule in causers(group, clause.rule.slots, causes):
+            for theirs in causes.downstream(rule):
                 if theirs.base < worth:
                     break  # the best clauses come first, and a cooldown only lowers a utility
                 if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):

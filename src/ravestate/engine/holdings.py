@@ -63,7 +63,10 @@ class Holdings:
         spike.holders[activation] = None
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            group.members[activation] = group.members.get(activation, 0) + 1
+            count = group.members.get(activation, 0)
+            group.members[activation] = count + 1
+            if group.roster is not None and not count:
+                group.roster.enter(activation)
         if len(activation.spikes) > 1:
             lacking = state.lacking.get(need)
             if lacking is not None:
@@ -317,6 +320,10 @@ class Holdings:
                 group.members[activation] = count - 1
             elif count:
                 del group.members[activation]
+                if not group.members:
+                    group.roster = None
+                elif group.roster is not None:
+                    group.roster.leave(activation)
             if group.interested:
                 state.dirty[group] = None
         if spike not in activation.spikes:

@@ -25,13 +25,14 @@ Otherwise, its strengths are final. A strength rises at most twice, so a cycle o
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence, Set
+from collections.abc import Generator, Mapping, Sequence, Set
 from typing import Any, Final
 
 from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.group import Group
 from ravestate.engine.idle import Idle
 from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
+from ravestate.engine.roster import by_rule
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need
 
@@ -99,7 +100,7 @@ class Horizon:
         self._open: list[Place] = []  # the places that rest on bounds
         self._risen = 0  # how often a bound has risen
         self._far: dict[tuple[int, Group], bool] = {}  # the results of `_outside`
-        self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
+        self._by_rule: dict[Group, Mapping[int, Mapping[Activation, None]]] = {}
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
         self.hopes: dict[tuple[int, int], int] = {}
@@ -130,14 +131,7 @@ class Horizon:
         self._known.clear()
         self._far.clear()
         self._still = None
-        for home in activation.firm_groups():
-            there = self._by_rule.get(home)
-            if there is not None:
-                same = there.get(rule.index, [])
-                if activation in same:
-                    same.remove(activation)
-                if not same:
-                    there.pop(rule.index, None)
+        self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
         """Return the bits of the needs for which a clause's activations in other groups may get a spike of the group."""
@@ -330,13 +324,11 @@ class Horizon:
                 best = max(best, strength)
         return best
 
-    def _rules(self, group: Group) -> dict[int, list[Activation]]:
+    def _rules(self, group: Group) -> Mapping[int, Mapping[Activation, None]]:
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
-            found = self._by_rule[group] = {}
-            for activation in group.members:
-                found.setdefault(activation.clause.rule.index, []).append(activation)
+            found = self._by_rule[group] = by_rule(group, self.state.causes)
         return found
 
     def _outside(self, need: Need, group: Group) -> bool:

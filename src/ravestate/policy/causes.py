@@ -48,6 +48,7 @@ class Causes:
         self._ancestors: dict[int, frozenset[int]] = {}
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
+        self._behind: dict[int, frozenset[int]] = {}
         self._contested: frozenset[int] | None = None
         self._helpful: frozenset[int] | None = None
 
@@ -165,6 +166,14 @@ class Causes:
                     if not need.clause.rule.detached:
                         stack.extend(need.clause.rule.raises)
             found = self._downstream[rule.index] = tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
+        return found
+
+    def slots_behind(self, rule: RulePlan) -> frozenset[int]:
+        """Return the slots that the rules of the `downstream` clauses write."""
+        found = self._behind.get(rule.index)
+        if found is None:
+            slots = [slot for clause in self.downstream(rule) for slot in clause.rule.slots]
+            found = self._behind[rule.index] = frozenset(slots)
         return found
 
     @property

@@ -1,0 +1,64 @@
+"""Workloads whose cost must grow as fast as their size, and the number of lines of the engine that each one executes.
+
+The lines can be counted in pure Python only, so ``test_growth.py`` runs this file in a process of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+import ravestate as rs
+from engine.test_halves import declared, runs
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Emit
+
+FEW, MANY = 20, 200
+ENGINE = "/ravestate/engine/"
+
+Work = Callable[[], None]
+
+
+def independent_writers(size: int) -> Work:
+    """Make rules on one input, each with a slot of its own."""
+    m = rs.Module("m")
+    heard = m.signal("heard")
+    for n in range(size):
+        declared(m, f"rule{n}", when=heard, writes=m.slot(f"out{n}", ""))
+    engine = Engine(rs.compile(m))
+
+    def work() -> None:
+        assert len(runs(engine, Emit("m:heard"))) == size
+
+    return work
+
+
+WORKLOADS: dict[str, Callable[[int], Work]] = {
+    "independent writers": independent_writers,
+}
+
+
+def lines(work: Work) -> int:
+    """Return how many lines of the engine a piece of work executes."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, argument: Any) -> Any:
+        nonlocal count
+        if ENGINE not in frame.f_code.co_filename:
+            return None
+        count += event == "line"
+        return trace
+
+    sys.settrace(trace)
+    try:
+        work()
+    finally:
+        sys.settrace(None)
+    return count
+
+
+if __name__ == "__main__":
+    print(json.dumps({name: [lines(make(size)) for size in (FEW, MANY)] for name, make in WORKLOADS.items()}))
