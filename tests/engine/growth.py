@@ -36,8 +36,39 @@ def independent_writers(size: int) -> Work:
     return work
 
 
+def fallbacks(size: int, *, cooldown: float = 0.0, guarded: bool = False) -> Work:
+    """Make fallbacks that wait for a topic; two inputs come so soon after each other that the first answer recovers."""
+    m = rs.Module("m")
+    heard, out, calm = m.signal("heard"), m.slot("out", ""), m.flag("calm", default=True)
+    declared(m, "topic", when=heard & m.signal("topic"), writes=out)
+    when = heard & calm.holds(bool) if guarded else heard
+    for n in range(size):
+        declared(m, f"fallback{n}", when=when, writes=out, cooldown=cooldown)
+    engine = Engine(rs.compile(m))
+
+    def work() -> None:
+        for now in (0.0, 3.0):
+            assert not runs(engine, Emit("m:heard"), now=now)
+            engine.advance(now + 1.0)
+            assert len(runs(engine, now=now + 1.0)) == 1
+
+    return work
+
+
+def recovering_fallbacks(size: int) -> Work:
+    """Make fallbacks with a cooldown."""
+    return fallbacks(size, cooldown=20.0)
+
+
+def guarded_fallbacks(size: int) -> Work:
+    """Make fallbacks with a predicate on a slot."""
+    return fallbacks(size, guarded=True)
+
+
 WORKLOADS: dict[str, Callable[[int], Work]] = {
     "independent writers": independent_writers,
+    "recovering fallbacks": recovering_fallbacks,
+    "guarded fallbacks": guarded_fallbacks,
 }
 
 

@@ -22,6 +22,7 @@ from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import FIRM, NO, Horizon
 from ravestate.engine.idle import Idle
+from ravestate.engine.leaders import Leaders
 from ravestate.engine.refusal import Refusal
 from ravestate.engine.roster import causers, writers
 from ravestate.engine.spike import Spike
@@ -32,12 +33,13 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan
 class Consent:
     """The part of the engine that asks causal groups for consent, and puts rivals under pressure."""
 
-    __slots__ = ("halves", "holdings", "state")
+    __slots__ = ("halves", "holdings", "leaders", "state")
 
     def __init__(self, state: State, holdings: Holdings, halves: Halves) -> None:
         self.state = state
         self.holdings = holdings
         self.halves = halves
+        self.leaders = Leaders(state)
 
     def ask(self, activation: Activation, idle: Sequence[Idle] = (), *, commit: bool = True) -> Refusal:
         """Ask every causal group of a ready activation for consent. Return the refusal; an empty refusal is consent.
@@ -47,6 +49,10 @@ class Consent:
             idle: Activations that count as doing nothing.
             commit: Whether rivals come under pressure, and give up when their patience is over.
         """
+        asks = commit and not idle
+        following = self.leaders.refuse(activation) if asks else None
+        if following is not None:
+            return following
         refusal = Refusal()
         clause = activation.clause
         standing = self.state.standing
@@ -81,6 +87,8 @@ class Consent:
                 eliminated = True
         if eliminated and refusal.names:
             return self.ask(activation, idle)  # the verdict on an earlier rival may depend on the eliminated one
+        if asks and refusal.names and not refusal.taken:
+            self.leaders.add(activation)
         if horizon is not None:
             refusal.interests.update(horizon.visited)
             refusal.hopes = horizon.hopes
