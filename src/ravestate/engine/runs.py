@@ -223,6 +223,10 @@ class Runs:
             for slot in run.clause.rule.slots:
                 group.free(slot, run)
             self.state.dirty[group] = None
+        for spike in run.stands_on if self.state.alternatives else ():
+            for other in list(spike.holders):  # another clause of the rule must not take its alternatives along
+                if other.clause.rule is run.clause.rule and other is not run and other in self.state.alternatives:
+                    self.sets.unfold(other)
         self.holdings.give_up(run, "resigned")
         self.sets.substitute(run)
 
