@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
+from functools import partial
 from types import FrameType
 from typing import Any
 
@@ -55,20 +56,30 @@ def fallbacks(size: int, *, cooldown: float = 0.0, guarded: bool = False) -> Wor
     return work
 
 
-def recovering_fallbacks(size: int) -> Work:
-    """Make fallbacks with a cooldown."""
-    return fallbacks(size, cooldown=20.0)
+def pairs(size: int, rival: str, **options: Any) -> Work:
+    """Make a pair `a & b` beside another writer of its slot. All spikes come at once."""
+    m = rs.Module("m")
+    a, b, c, out = m.signal("a", limit=9999), m.signal("b", limit=9999), m.signal("c"), m.slot("out", "")
+    declared(m, "both", when=a & b, writes=out)
+    declared(m, "other", when={"a": a, "b": b, "c": c, "a & c": a & c}[rival], writes=out, **options)
+    engine = Engine(rs.compile(m))
+    given = [*(Emit("m:a", n) for n in range(size)), *(Emit("m:b", n) for n in range(size))]
 
+    def work() -> None:
+        assert len(runs(engine, *given)) == size
 
-def guarded_fallbacks(size: int) -> Work:
-    """Make fallbacks with a predicate on a slot."""
-    return fallbacks(size, guarded=True)
+    return work
 
 
 WORKLOADS: dict[str, Callable[[int], Work]] = {
     "independent writers": independent_writers,
-    "recovering fallbacks": recovering_fallbacks,
-    "guarded fallbacks": guarded_fallbacks,
+    "recovering fallbacks": partial(fallbacks, cooldown=20.0),
+    "guarded fallbacks": partial(fallbacks, guarded=True),
+    "pairs beside a fallback": partial(pairs, rival="a"),
+    "pairs beside a fallback for their second spike": partial(pairs, rival="b"),
+    "pairs beside a recovering fallback": partial(pairs, rival="a", cooldown=5.0),
+    "pairs beside a writer of another cause": partial(pairs, rival="c", weight=5.0),
+    "pairs beside another pair": partial(pairs, rival="a & c"),
 }
 
 

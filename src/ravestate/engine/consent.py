@@ -66,7 +66,7 @@ class Consent:
             if group.taken and _note_taken(refusal, group, clause.rule):
                 continue
             for half, spike in self._rival_halves(clause, group) if group.entries else ():
-                if clause.rule.cooldown:
+                if clause.rule.cooldown and not half.sole:
                     self.halves.unfold(spike, half)
                 elif (best := self._best(half, spike, clause)) is not None:
                     horizon = horizon or self._horizon(activation, idle)
@@ -154,6 +154,11 @@ class Consent:
         """
         rival, half, group = best.clause, best.half, spike.group.root()
         assert half is not None
+        bench = self.state.bench_of(half, spike)
+        if bench is not None and bench.partner is not None:  # it is ready
+            _note_firm(refusal, tuple([one for one in bench.partner.holders if one.clause is rival]))
+            refusal.names[rival.rule.name] = None
+            return False
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
             horizon.judge(rival, None, group)[0] != NO  # its stand-by is a rival as well

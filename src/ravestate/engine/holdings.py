@@ -17,7 +17,7 @@ from ravestate.engine.activation import (
     Activation,
 )
 from ravestate.engine.benches import Benches
-from ravestate.engine.deadlines import RIPEN
+from ravestate.engine.deadlines import PATIENCE, RIPEN
 from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.loops import MANY
@@ -52,6 +52,12 @@ class Holdings:
         if state.hoping:
             self.waits.stir_rule(rule)
         return activation
+
+    def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
+        """Give an activation a patience in a group that began before the activation was created (L16)."""
+        activation.pressed = {group: until}
+        if until > self.state.now:
+            self.state.deadlines.add(until, PATIENCE, (group, activation))
 
     # ------------------------------------------------------------------------------------ taking
 

@@ -49,6 +49,7 @@ class Causes:
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
         self._behind: dict[int, frozenset[int]] = {}
+        self._parts: list[int] | None = None  # root → the first root of its part
         self._contested: frozenset[int] | None = None
         self._helpful: frozenset[int] | None = None
 
@@ -59,6 +60,48 @@ class Causes:
         signal in common if and only if the two signals share a root.
         """
         return self._roots[self.components.of[signal]]
+
+    def parts(self, clause: Clause) -> frozenset[int]:
+        """Return the parts of the policy in whose causal groups a clause may have a stake.
+
+        A part is a set of roots whose spikes may belong to one causal group: a rule raises a signal from spikes of both,
+        or one write of a slot raises both (L11, L12).
+        """
+        if self._parts is None:
+            self._parts = self._find_parts()
+        return frozenset([self._parts[root] for root in self._roots_of(_firm(clause))])
+
+    def _roots_of(self, signals: Iterable[int]) -> list[int]:
+        bits = 0
+        for signal in signals:
+            bits |= self.roots(signal)
+        found: list[int] = []
+        while bits:
+            found.append(bits.bit_length() - 1)
+            bits ^= 1 << found[-1]
+        return found
+
+    def _find_parts(self) -> list[int]:
+        above = list(range(max([roots.bit_length() for roots in self._roots], default=0)))
+
+        def first(root: int) -> int:
+            while above[root] != root:
+                above[root] = above[above[root]]
+                root = above[root]
+            return root
+
+        raisers = [rule for rule in self.rules if rule.raises and not rule.detached]
+        joins = [_firm(clause) for rule in raisers for clause in rule.clauses if not clause.apart]
+        writes: dict[int, list[int]] = {}
+        for signal in self.signals:
+            if signal.slot is not None and not self.direct[signal.index]:
+                writes.setdefault(signal.slot, []).append(signal.index)
+        for signals in [signals for signals in (*joins, *writes.values()) if len(signals) > 1]:
+            roots = self._roots_of(signals)
+            for root in roots[1:]:
+                one, other = first(roots[0]), first(root)
+                above[max(one, other)] = min(one, other)
+        return [first(root) for root in range(len(above))]
 
     def _find_roots(self) -> list[int]:
         of = self.components.of
@@ -231,6 +274,10 @@ class Causes:
 
 def _needs(rule: RulePlan) -> list[Need]:
     return [need for clause in rule.clauses for need in clause.needs]
+
+
+def _firm(clause: Clause) -> list[int]:
+    return [need.signal.index for need in clause.needs if not need.detached]
 
 
 def _watched(rule: RulePlan) -> list[int]:
