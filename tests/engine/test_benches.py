@@ -131,3 +131,18 @@ def test_a_rule_without_slots_needs_no_bench() -> None:
     engine = pair()
     runs(engine, *burst("m:a", 3))
     assert not engine.state.seats
+
+
+def test_a_fallback_asks_again_when_a_bench_loses_its_last_counterpart() -> None:
+    m = rs.Module("m")
+    a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
+    declared(m, "both", when=a & b, writes=out)
+    declared(m, "fallback", when=a, writes=out)
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, *burst("m:a", 2))
+    [run] = runs(engine, Emit("m:b", 0), now=0.5, end=False)
+    engine.advance(1.0)
+    assert not runs(engine, now=1.0, end=False)
+    [other] = runs(engine, Finish(run.run, "done"), now=2.0, end=False)
+    assert other.rule.name == "m:fallback"  # the patience of `both`, which was ready meanwhile, is over
+    assert payloads([other]) == [(1,)]

@@ -75,3 +75,21 @@ def test_an_exception_without_a_repr_is_a_failure_like_any_other(trace: bool) ->
     with simulate(m, trace=trace) as sim:
         sim.emit(a)
         assert sim.read(out) == "fallback"
+
+
+def test_a_rule_that_resigns_leaves_the_spike_to_the_rules_behind_its_other_clause(trace: bool) -> None:
+    m = rs.Module("m")
+    a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
+
+    @m.rule(when=a, writes=out)
+    async def fallback(ctx: Any) -> None:
+        ctx[out] = "fallback"
+
+    @m.rule(when=(a & b) | a, writes=out, weight=2.0)
+    async def resigns(ctx: Any) -> None:
+        raise rs.Resign("not today")
+
+    with simulate(m, trace=trace) as sim:
+        sim.emit(b)
+        sim.emit(a)
+        assert sim.read(out) == "fallback"

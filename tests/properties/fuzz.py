@@ -1,8 +1,8 @@
 """Random worlds, played on the engine and on the interpreter of the laws (``laws/model.py``).
 
-``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, fresh ones or those from FIRST. An even seed is
-any world, an odd seed a world of pairs (``pair_worlds.py``). It prints the smallest world for each of the first MOST
-differences.
+``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, fresh ones or those from FIRST. A third of the
+seeds are any worlds, a third worlds of pairs (``pair_worlds.py``), and a third crowds (``crowd_worlds.py``). It prints
+the smallest world for each of the first MOST differences.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import time
 from typing import Any
 
 from laws.model import Model
+from properties.crowd_worlds import crowd_world_of
 from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
@@ -29,6 +30,9 @@ STEPS = 3_000
 
 
 ENOUGH = "too long to go on"
+
+
+WORLDS = (world_of, pair_world_of, crowd_world_of)
 
 
 class Enough(Exception):
@@ -126,7 +130,7 @@ def main(count: int, first: int, most: int = 1) -> int:
     for seed in range(first, first + count):
         if seed > first and (seed - first) % 500 == 0:
             print(f"{seed - first} of {count} seeds: {len(faults)} differences", file=sys.stderr, flush=True)
-        world = pair_world_of(seed) if seed % 2 else world_of(seed)
+        world = WORLDS[seed % 3](seed)
         fault = verdict(world)
         if fault:
             print(f"seed {seed}: {fault}", flush=True)

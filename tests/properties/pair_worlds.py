@@ -24,14 +24,17 @@ def _world(chance: random.Random) -> World:
     if chance.random() < 0.25:  # each rule is the only writer of its slot
         slots = [f"v{n}" for n in range(len(rules))]
         rules = [replace(rule, writes=(slot,), cooldown=0.0) for rule, slot in zip(rules, slots, strict=True)]
+    if chance.random() < 0.25:  # one pair beside a few rivals
+        pair = replace(_rule(chance, ["s0", "s1"], ["v0"]), when=((Want("s0"), Want("s1")),), writes=("v0",))
+        signals, slots = signals[:3], ["v0"]
+        rules = [replace(rule, emits=(), acts=(_act(chance, ()),)) for rule in (pair, *rules[:2])]
+        rules = [replace(rule, writes=("v0",)) for rule in rules]
+    most, gaps = (12, (0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 1.1, 2.5)) if chance.random() < 0.7 else (24, (0.0,) * 9 + (0.4,))
     return World(
         signals=tuple(SignalOf(limit=chance.choice((100, 100, 100, 2)), input=chance.random() < 0.3) for _ in signals),
         slots=tuple(SlotOf() for _ in slots),
         rules=tuple(rules),
-        inputs=tuple(
-            (chance.choice((0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 1.1, 2.5)), _op(chance, signals))
-            for _ in range(chance.randint(3, 12))
-        ),
+        inputs=tuple((chance.choice(gaps), _op(chance, signals)) for _ in range(chance.randint(most // 4, most))),
         together=chance.random() < 0.3,
         patience=chance.choice((1.0, 1.0, 0.5)),
     )

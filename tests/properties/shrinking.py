@@ -54,7 +54,7 @@ def smaller_rules(rule: RuleOf) -> Iterator[RuleOf]:
     for name in ("detached", "background", "thread", "weight", "cooldown", "patience", "until", "timeout"):
         if getattr(rule, name) != getattr(plain, name):
             yield replace(rule, **{name: getattr(plain, name)})
-    for name in ("writes", "emits", "acts", "when", "until"):
+    for name in ("writes", "emits", "reads", "acts", "when", "until"):
         parts = getattr(rule, name)
         for n in range(len(parts)):
             if len(parts) > (1 if name in ("acts", "when") else 0):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from properties.crowd_worlds import crowd_world_of
 from properties.fuzz import difference, verdict
 from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
@@ -15,6 +16,7 @@ from properties.worlds import World
 
 SEEDS = 2_000
 PAIR_SEEDS = 400
+CROWD_SEEDS = 400
 PARTS = 20
 
 
@@ -28,6 +30,12 @@ def test_the_engine_keeps_to_the_laws(part: int) -> None:
 def test_the_engine_keeps_to_the_laws_where_pairs_compete(part: int) -> None:
     for seed in range(part, PAIR_SEEDS, PARTS):
         check(pair_world_of(seed), seed)
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+def test_the_engine_keeps_to_the_laws_in_a_crowd(part: int) -> None:
+    for seed in range(part, CROWD_SEEDS, PARTS):
+        check(crowd_world_of(seed), seed)
 
 
 def check(world: World, seed: int) -> None:

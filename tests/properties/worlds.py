@@ -134,6 +134,7 @@ class RuleOf(Brief):
     patience: float | None = None
     until: tuple[Clause, ...] = ()
     timeout: float | None = None
+    reads: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -223,6 +224,7 @@ def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
 
     declare = names.module.rule(
         when=names.condition(spec.when),
+        reads=[names.slots[slot] for slot in spec.reads],
         writes=[names.slots[slot] for slot in spec.writes],
         emits=[names.signals[signal] for signal in spec.emits],
         weight=spec.weight,

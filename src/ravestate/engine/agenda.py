@@ -108,6 +108,7 @@ class Agenda:
             elif self._ask(activation):
                 self.runs.start(activation)
                 written.update(rule.slots)
+        self.consent.leaders.clear()
         for turn in later:
             heapq.heappush(queue, turn)
             places[turn[4]] = turn

@@ -1,13 +1,13 @@
-"""Benches: pairs of a rule that is the only writer of its slots.
+"""Benches: pairs of a rule that no better rule competes with.
 
 A new spike completes a hundred first spikes that wait for a counterpart. One pair runs, and the others take the next
 counterpart (L12). So only the first pair, the *head*, has an activation. The other first spikes sit on a bench,
 which takes the next counterpart as a whole.
 
-Such a rule has no rival, so a group refuses it only while the rule itself holds the slots there. If the head's group
-refuses, the next spike gets its activation at once, and asks in the same round. The order of a bench is that of the
-questions: no rule raises the signals, so an older spike has an older causal group. Before a group merges, its spikes
-leave their benches.
+Such a rule waits for no rival, so a group refuses it only while a slot is taken there. If the head's group refuses, the
+next spike gets its activation at once, and asks in the same round. The order of a bench is that of the questions: no rule
+raises the signals, so an older spike has an older causal group. Before a group merges, its spikes leave their benches. To
+the rivals that it goes before, a spike on a bench with a counterpart is a ready activation (`Consent`).
 """
 
 from __future__ import annotations
@@ -79,6 +79,9 @@ class Benches:
         holdings, need, partner = self.holdings, bench.half.needs[0], bench.partner
         assert partner is not None
         activation = holdings.new_activation(need.clause, self.state.entry_number(need, spike))
+        until = self.state.entry_patience(need, spike)
+        if until is not None:
+            holdings.put_under_pressure(activation, spike.group.root(), until)
         holdings.acquire(activation, need, spike)
         holdings.acquire(activation, other_need(need), partner)
         holdings.entries.part(spike, need)
@@ -118,6 +121,10 @@ class Benches:
             bench.partner = None
         state.pools[half] = bench
         state.halves[half] = bench.spikes
+        for spike in bench.spikes:
+            group = spike.group.root()
+            if group.interested:
+                state.dirty[group] = None  # a rival that was ready may be under pressure now
         late, bench.late = bench.late, []
         for spike in late:
             if spike in bench.spikes:

@@ -22,7 +22,9 @@ from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import FIRM, NO, Horizon
 from ravestate.engine.idle import Idle
+from ravestate.engine.leaders import Leaders
 from ravestate.engine.refusal import Refusal
+from ravestate.engine.roster import causers, writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Half, Need, RulePlan
@@ -31,12 +33,13 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan
 class Consent:
     """The part of the engine that asks causal groups for consent, and puts rivals under pressure."""
 
-    __slots__ = ("halves", "holdings", "state")
+    __slots__ = ("halves", "holdings", "leaders", "state")
 
     def __init__(self, state: State, holdings: Holdings, halves: Halves) -> None:
         self.state = state
         self.holdings = holdings
         self.halves = halves
+        self.leaders = Leaders(state)
 
     def ask(self, activation: Activation, idle: Sequence[Idle] = (), *, commit: bool = True) -> Refusal:
         """Ask every causal group of a ready activation for consent. Return the refusal; an empty refusal is consent.
@@ -46,6 +49,10 @@ class Consent:
             idle: Activations that count as doing nothing.
             commit: Whether rivals come under pressure, and give up when their patience is over.
         """
+        asks = commit and not idle
+        following = self.leaders.refuse(activation) if asks else None
+        if following is not None:
+            return following
         refusal = Refusal()
         clause = activation.clause
         standing = self.state.standing
@@ -59,7 +66,7 @@ class Consent:
             if group.taken and _note_taken(refusal, group, clause.rule):
                 continue
             for half, spike in self._rival_halves(clause, group) if group.entries else ():
-                if clause.rule.cooldown:
+                if clause.rule.cooldown and not half.sole:
                     self.halves.unfold(spike, half)
                 elif (best := self._best(half, spike, clause)) is not None:
                     horizon = horizon or self._horizon(activation, idle)
@@ -80,6 +87,8 @@ class Consent:
                 eliminated = True
         if eliminated and refusal.names:
             return self.ask(activation, idle)  # the verdict on an earlier rival may depend on the eliminated one
+        if asks and refusal.names and not refusal.taken:
+            self.leaders.add(activation)
         if horizon is not None:
             refusal.interests.update(horizon.visited)
             refusal.hopes = horizon.hopes
@@ -145,6 +154,11 @@ class Consent:
         """
         rival, half, group = best.clause, best.half, spike.group.root()
         assert half is not None
+        bench = self.state.bench_of(half, spike)
+        if bench is not None and bench.partner is not None:  # it is ready
+            _note_firm(refusal, tuple([one for one in bench.partner.holders if one.clause is rival]))
+            refusal.names[rival.rule.name] = None
+            return False
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
             horizon.judge(rival, None, group)[0] != NO  # its stand-by is a rival as well
@@ -153,8 +167,7 @@ class Consent:
             or (strength != NO and self._is_held_beside(half, spike))  # or cover another clause of the half
             or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
-            self.halves.unfold(spike, half)
-            horizon.renew()
+            self.halves.unfold(spike, half)  # no derivation rests on the new activations
         elif strength == FIRM:
             _note_firm(refusal, roots)
             refusal.names[rival.rule.name] = None
@@ -220,9 +233,10 @@ class Consent:
                 if bisect_left(half.ranks, (-first.base, first.index)) < bisect_left(half.ranks, limit):
                     return True
             rivals: dict[Clause, None] = {}
-            for member in group.members:
+            for member in writers(group, first.rule.slots, state.causes):
                 rivals[member.clause] = None
-                for theirs in state.causes.downstream(member.clause.rule):
+            for rule in causers(group, first.rule.slots, state.causes):
+                for theirs in state.causes.downstream(rule):
                     if theirs.base < last.base:
                         break  # the best clauses come first
                     rivals[theirs] = None
@@ -282,7 +296,7 @@ class Consent:
         clause = activation.clause
         slots = clause.rule.slotset
         for group in activation.firm_groups():
-            for other in group.members:
+            for other in writers(group, clause.rule.slots, self.state.causes):
                 theirs = other.clause
                 if (
                     theirs is not clause
@@ -308,14 +322,13 @@ class Consent:
         slots = clause.rule.slotset
         worth = self.state.standing.effective(clause)
         found: dict[Clause, list[Activation]] = {}
-        rules: dict[RulePlan, None] = {}
-        for member in group.members:
+        causes = self.state.causes
+        for member in writers(group, clause.rule.slots, causes):
             theirs = member.clause
-            rules[theirs.rule] = None
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                 found.setdefault(theirs, []).append(member)
-        for rule in rules:
-            for theirs in self.state.causes.downstream(rule):
+        for rule in causers(group, clause.rule.slots, causes):
+            for theirs in causes.downstream(rule):
                 if theirs.base < worth:
                     break  # the best clauses come first, and a cooldown only lowers a utility
                 if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):

@@ -144,7 +144,10 @@ def _activation(state: State, activation: Activation) -> ActivationState:
     refusal = activation.refusal
     if refusal is not None:
         mine = state.effective(clause)
-        for rival in refusal.names:
+        ahead = (
+            refusal.leader.refusal.names if refusal.leader is not None and refusal.leader.refusal is not None else {}
+        )
+        for rival in {**ahead, **refusal.names}:
             theirs = max(state.effective(c) for c in state.policy.rule_plan(rival).clauses)
             waits.append((rival, max(0.0, theirs - mine)))
     bounds = [activation.ripens, min(activation.pressed.values(), default=NEVER), activation.deadline]

@@ -8,6 +8,7 @@ from ravestate.errors import EngineError
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
+    from ravestate.engine.roster import Roster
     from ravestate.engine.spike import Spike
 
 
@@ -44,11 +45,12 @@ class Group:
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something ends in the group.
         pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
+        roster: The members of a large group by slot and by rule (``roster.py``), once a question has needed them.
         answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
             them for the trace, while there is a tracer.
     """
 
-    __slots__ = ("answers", "entries", "id", "interested", "into", "members", "pressed", "taken")
+    __slots__ = ("answers", "entries", "id", "interested", "into", "members", "pressed", "roster", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
@@ -59,6 +61,7 @@ class Group:
         self.interested: dict[Activation, None] = NOTHING
         self.entries: dict[Spike, None] = NOTHING
         self.pressed: dict[int, float] | None = None
+        self.roster: Roster | None = None
         self.answers: dict[int, tuple[str, int]] = NOTHING
 
     def root(self) -> Group:
@@ -127,6 +130,7 @@ class Group:
         for slot, holders in other.taken.items():
             mine = self.taken.get(slot, ())
             self.take(slot, None if mine is None or holders is None else mine + holders)
+        self.roster = other.roster = None
         for activation, count in other.members.items():
             self.members[activation] = self.members.get(activation, 0) + count
         for activation in other.interested:

@@ -5,7 +5,7 @@ occur. If a hundred first spikes wait for a counterpart, a new spike fits them a
 first spike is an entry in a table (``entries.py``). The engine makes activations when a second spike arrives:
 
 - for a rule that writes no slot: one activation, with the oldest first spike
-- for the only writer of a slot: also one activation, but all first spikes hold the second (``benches.py``)
+- for the best writer of a slot: also one activation, but all first spikes hold the second (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses
 
 Entries are *unfolded* into ordinary activations for a tracer, to merge groups, and to retire or add a rule. `Consent`
@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from ravestate.engine.activation import Activation
 from ravestate.engine.conflict_sets import ConflictSets
-from ravestate.engine.deadlines import PATIENCE
 from ravestate.engine.entries import Entries
 from ravestate.engine.group import Group
 from ravestate.engine.holdings import Holdings
@@ -109,12 +108,7 @@ class Halves:
         """Put a clause's activation under the pressure that its stand-by had in a group, if it had any (L16)."""
         until = (group.pressed or {}).get(activation.clause.index)
         if until is not None:
-            self._press(activation, group, until)
-
-    def _press(self, activation: Activation, group: Group, until: float) -> None:
-        activation.pressed = {group: until}
-        if until > self.state.now:
-            self.state.deadlines.add(until, PATIENCE, (group, activation))
+            self.holdings.put_under_pressure(activation, group, until)
 
     def _make(self, need: Need, spike: Spike) -> Activation:
         """Create the activation of a clause for which a half holds a spike."""
@@ -126,7 +120,7 @@ class Halves:
         self.holdings.acquire(activation, need, spike)
         until = self.state.entry_patience(need, spike)
         if until is not None:
-            self._press(activation, spike.group.root(), until)
+            self.holdings.put_under_pressure(activation, spike.group.root(), until)
         self.entries.part(spike, need)
         self.state.lacking.setdefault(clause.needs[1 - need.index], {})[activation] = None
         return activation

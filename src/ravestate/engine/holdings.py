@@ -17,7 +17,7 @@ from ravestate.engine.activation import (
     Activation,
 )
 from ravestate.engine.benches import Benches
-from ravestate.engine.deadlines import RIPEN
+from ravestate.engine.deadlines import PATIENCE, RIPEN
 from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.loops import MANY
@@ -53,6 +53,12 @@ class Holdings:
             self.waits.stir_rule(rule)
         return activation
 
+    def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
+        """Give an activation a patience in a group that began before the activation was created (L16)."""
+        activation.pressed = {group: until}
+        if until > self.state.now:
+            self.state.deadlines.add(until, PATIENCE, (group, activation))
+
     # ------------------------------------------------------------------------------------ taking
 
     def acquire(self, activation: Activation, need: Need, spike: Spike) -> None:
@@ -63,7 +69,10 @@ class Holdings:
         spike.holders[activation] = None
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            group.members[activation] = group.members.get(activation, 0) + 1
+            count = group.members.get(activation, 0)
+            group.members[activation] = count + 1
+            if group.roster is not None and not count:
+                group.roster.enter(activation)
         if len(activation.spikes) > 1:
             lacking = state.lacking.get(need)
             if lacking is not None:
@@ -317,6 +326,10 @@ class Holdings:
                 group.members[activation] = count - 1
             elif count:
                 del group.members[activation]
+                if not group.members:
+                    group.roster = None
+                elif group.roster is not None:
+                    group.roster.leave(activation)
             if group.interested:
                 state.dirty[group] = None
         if spike not in activation.spikes:

@@ -17,17 +17,22 @@ An activation that waits for the asking activation cannot help before the latter
 
 A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`: it yields
 the steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
+
+A derivation that needs itself reads its own *bound*: the strength that is proven so far, at first `NO`. All strengths
+that rest on a bound are open. If a bound has risen when the oldest derivation of a cycle ends, the cycle is derived again.
+Otherwise, its strengths are final. A strength rises at most twice, so a cycle of n signals takes at most 2n turns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence, Set
+from collections.abc import Generator, Mapping, Sequence, Set
 from typing import Any, Final
 
 from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.group import Group
 from ravestate.engine.idle import Idle
 from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
+from ravestate.engine.roster import by_rule
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Need
 
@@ -36,6 +41,13 @@ SPECULATIVE: Final = 1
 FIRM: Final = 2
 
 SlotNumbers = frozenset[int]
+Place = tuple[int, Group, SlotNumbers]
+"""The object of a derivation: a signal (its number) comes in a group, by rules that write none of some slots."""
+
+FINAL: Final = 1 << 60
+STALE: Final = -1
+"""Instead of the depth of an open derivation: the strength is final, or only a bound that nobody may read any more."""
+
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
 
@@ -60,9 +72,12 @@ class Horizon:
 
     __slots__ = (
         "_by_rule",
-        "_cuts",
+        "_depth",
+        "_far",
         "_known",
-        "_path",
+        "_open",
+        "_risen",
+        "_since",
         "_still",
         "hopes",
         "idle",
@@ -78,10 +93,14 @@ class Horizon:
         self.still = still
         self.idle = idle
         self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
-        self._cuts = 0  # how often a cycle was cut
-        self._path: set[tuple[int, Group]] = set()  # the signals whose derivation is in progress
-        self._known: dict[tuple[int, Group, SlotNumbers], tuple[int, tuple[Activation, ...]]] = {}
-        self._by_rule: dict[Group, dict[int, list[Activation]]] = {}
+        # For each place: its strength, the roots of a firm one, and the depth of the oldest open derivation it rests on.
+        self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
+        self._depth = 0  # how many derivations are in progress
+        self._since = FINAL  # the depth of the oldest one whose bound the derivation in progress has read
+        self._open: list[Place] = []  # the places that rest on bounds
+        self._risen = 0  # how often a bound has risen
+        self._far: dict[tuple[int, Group], bool] = {}  # the results of `_outside`
+        self._by_rule: dict[Group, Mapping[int, Mapping[Activation, None]]] = {}
         self.roots: list[Activation] = []
         self.visited: dict[Group, None] = {}
         self.hopes: dict[tuple[int, int], int] = {}
@@ -92,10 +111,7 @@ class Horizon:
         return activation in self.still or (bool(self.idle) and self._is_idle(activation))
 
     def _is_idle(self, activation: Activation) -> bool:
-        for idle in self.idle:
-            if activation in idle:
-                return True
-        return False
+        return any([activation in idle for idle in self.idle])
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
         """Return how viable a clause is in a group, and the live activations on which a firm result rests.
@@ -109,20 +125,12 @@ class Horizon:
 
     def forget(self, activation: Activation) -> None:
         """Leave out an activation that is about to end, and what was derived while it lived."""
+        rule = activation.clause.rule
+        if self.state.causes.helpful.isdisjoint(rule.raises):
+            return  # no derivation rests on it
         self._known.clear()
+        self._far.clear()
         self._still = None
-        for home in activation.firm_groups():
-            there = self._by_rule.get(home)
-            if there is not None:
-                same = there.get(activation.clause.rule.index, [])
-                if activation in same:
-                    same.remove(activation)
-                if not same:
-                    there.pop(activation.clause.rule.index, None)
-
-    def renew(self) -> None:
-        """Forget what was derived before activations were created."""
-        self._known.clear()
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
@@ -244,58 +252,83 @@ class Horizon:
 
     def _comes(self, signal: int, group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which a signal lies in the horizon of a group."""
-        if (signal, group) in self._path:
-            self._cuts += 1
-            return NO
         if self._rules(group).keys().isdisjoint(self.state.causes.ancestors(signal)):
             return NO
         known = self._known.get((signal, group, slots))
-        if known is None:
-            return (yield self._caused(signal, group, slots))
+        if known is None or known[2] == STALE:
+            return (yield self._derive((signal, group, slots), NO if known is None else known[0]))
+        self._since = min(self._since, known[2])
         self.roots.extend(known[1])
         return known[0]
 
+    def _derive(self, place: Place, bound: int) -> Step:
+        """Return the strength of a place; `bound` is proven already."""
+        known, mark = self._known, len(self.roots)
+        depth, first, before = self._depth, len(self._open), self._since
+        self._depth += 1
+        while True:
+            known[place] = bound, (), depth
+            self._since, risen = FINAL, self._risen
+            best = yield from self._caused(*place)
+            since = self._since
+            if best == FIRM:
+                self._close(first, STALE)
+                known[place] = FIRM, tuple(dict.fromkeys(self.roots[mark:])), FINAL
+                since = FINAL
+            elif since < depth:  # it is part of the cycle of an older derivation
+                self._risen += best > bound
+                known[place] = best, (), since
+                self._open.append(place)
+            elif since == FINAL or (best == bound and risen == self._risen):
+                self._close(first, FINAL)
+                known[place] = best, (), FINAL
+                since = FINAL
+            else:
+                self._close(first, STALE)
+                bound = best
+                continue
+            self._depth -= 1
+            self._since = min(before, since)
+            return best
+
+    def _close(self, first: int, since: int) -> None:
+        """Make the strengths of the open places from the position `first` final or stale."""
+        for place in self._open[first:]:
+            self._known[place] = self._known[place][0], (), since
+        del self._open[first:]
+
     def _caused(self, signal: int, group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which one of the rules that may raise a signal will do so."""
-        cuts, mark = self._cuts, len(self.roots)
+        mark = len(self.roots)
         by_rule, retired = self._by_rule[group], self.state.retired
-        self._path.add((signal, group))
         best = NO
         for rule in self.state.causes.causes[signal]:
             if not rule.slotset.isdisjoint(slots) or rule.index in retired:
                 continue
-            inner = slots | rule.slotset if rule.slots else slots
+            inner = slots | (rule.slotset & self.state.causes.contested) if rule.slots else slots
             ways: list[tuple[Clause, Activation | None]] = []
             for activation in by_rule.get(rule.index, ()):
                 if activation.state >= RUNNING:
                     self.roots.append(activation)
-                    best = FIRM
-                    break
+                    return FIRM
                 if not self.is_still(activation):
                     ways.append((activation.clause, activation))
-            if best != FIRM:
-                for clause in rule.clauses:
-                    ways += [(clause, activation) for activation in self.elsewhere(clause, group)]
-                    ways.append((clause, None))
-                for clause, helper in ways:
-                    strength = yield self._viable(clause, helper, group, inner)
-                    best = max(best, strength)
-                    if best == FIRM:
-                        break
-            if best == FIRM:
-                break
-        self._path.discard((signal, group))
-        if self._cuts == cuts:  # the result does not depend on the path that led here
-            self._known[signal, group, slots] = best, tuple(self.roots[mark:])
+            for clause in rule.clauses:
+                ways += [(clause, activation) for activation in self.elsewhere(clause, group)]
+                ways.append((clause, None))
+            for clause, helper in ways:
+                strength = yield self._viable(clause, helper, group, inner)
+                if strength == FIRM:
+                    return FIRM
+                del self.roots[mark:]
+                best = max(best, strength)
         return best
 
-    def _rules(self, group: Group) -> dict[int, list[Activation]]:
+    def _rules(self, group: Group) -> Mapping[int, Mapping[Activation, None]]:
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
-            found = self._by_rule[group] = {}
-            for activation in group.members:
-                found.setdefault(activation.clause.rule.index, []).append(activation)
+            found = self._by_rule[group] = by_rule(group, self.state.causes)
         return found
 
     def _outside(self, need: Need, group: Group) -> bool:
@@ -303,12 +336,18 @@ class Horizon:
         signal = need.signal
         if signal.input:
             return True
+        found = self._far.get((signal.index, group))
+        if found is None:
+            found = self._far[signal.index, group] = self._is_far(signal.index, group)
+        return found
+
+    def _is_far(self, signal: int, group: Group) -> bool:
         causes = self.state.causes
-        wide = causes.wide_ancestors(signal.index)
+        wide = causes.wide_ancestors(signal)
         if wide:
-            hope = (OUTSIDE, signal.index)
+            hope = (OUTSIDE, signal)
             most = self.hopes.setdefault(hope, 0)
-            narrow = causes.ancestors(signal.index)
+            narrow = causes.ancestors(signal)
             live = self.state.active
             for rule in wide if len(wide) < len(live) else live:
                 alive = len(live.get(rule, ()))

@@ -26,11 +26,12 @@ class Refusal:
         pressed: Whether a rival may never be ready, so that only its patience ends the wait.
         hopes: Things outside its groups on which the refusal depends (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
+        leader: The activation that speaks for this one (``leaders.py``), or None.
         recheck: The earliest time at which recovering utilities, the patience of a rival without an activation, or the
             age of a spike may lift it (seconds).
     """
 
-    __slots__ = ("blockers", "firm", "hopes", "interests", "names", "pressed", "recheck", "taken")
+    __slots__ = ("blockers", "firm", "hopes", "interests", "leader", "names", "pressed", "recheck", "taken")
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
@@ -38,6 +39,7 @@ class Refusal:
         self.names: dict[str, None] = {}
         self.blockers: dict[Activation, None] = {}
         self.firm: list[tuple[Activation, ...]] = []
+        self.leader: Activation | None = None
         self.taken = False
         self.pressed = False
         self.recheck = NEVER

@@ -15,6 +15,7 @@ from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.loops import MANY, TURNS
 from ravestate.engine.outcomes import DONE, FAILED, RESIGNED, verdict
+from ravestate.engine.roster import writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.engine.watch import Watch
@@ -200,7 +201,7 @@ class Runs:
         for group in groups:
             for spike in list(group.entries) if state.benches else ():
                 self.holdings.benches.rise(spike)
-            for other in list(group.members):
+            for other in list(writers(group, rule.slots, state.causes)):
                 if (
                     other is not run
                     and other.state < RUNNING
@@ -222,6 +223,10 @@ class Runs:
             for slot in run.clause.rule.slots:
                 group.free(slot, run)
             self.state.dirty[group] = None
+        for spike in run.stands_on if self.state.alternatives else ():
+            for other in list(spike.holders):  # another clause of the rule must not take its alternatives along
+                if other.clause.rule is run.clause.rule and other is not run and other in self.state.alternatives:
+                    self.sets.unfold(other)
         self.holdings.give_up(run, "resigned")
         self.sets.substitute(run)
 

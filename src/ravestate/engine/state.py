@@ -212,6 +212,8 @@ class State:
         for activations in self.active.values():
             for activation in activations:
                 activation.clause = clauses[activation.clause.index]
+                for group in activation.firm_groups():
+                    group.roster = None
         tables: list[Iterable[Spike]] = [*self.live.values(), self.watched_by]
         for spikes in tables:
             for spike in spikes:

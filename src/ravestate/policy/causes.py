@@ -9,6 +9,7 @@ intersections are fast.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from ravestate.policy.components import components
@@ -47,6 +48,10 @@ class Causes:
         self._ancestors: dict[int, frozenset[int]] = {}
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
+        self._behind: dict[int, frozenset[int]] = {}
+        self._parts: list[int] | None = None  # root → the first root of its part
+        self._contested: frozenset[int] | None = None
+        self._helpful: frozenset[int] | None = None
 
     def roots(self, signal: int) -> int:
         """Return the roots of the signal's pathways, as bits; roots are numbered separately from signals.
@@ -55,6 +60,48 @@ class Causes:
         signal in common if and only if the two signals share a root.
         """
         return self._roots[self.components.of[signal]]
+
+    def parts(self, clause: Clause) -> frozenset[int]:
+        """Return the parts of the policy in whose causal groups a clause may have a stake.
+
+        A part is a set of roots whose spikes may belong to one causal group: a rule raises a signal from spikes of both,
+        or one write of a slot raises both (L11, L12).
+        """
+        if self._parts is None:
+            self._parts = self._find_parts()
+        return frozenset([self._parts[root] for root in self._roots_of(_firm(clause))])
+
+    def _roots_of(self, signals: Iterable[int]) -> list[int]:
+        bits = 0
+        for signal in signals:
+            bits |= self.roots(signal)
+        found: list[int] = []
+        while bits:
+            found.append(bits.bit_length() - 1)
+            bits ^= 1 << found[-1]
+        return found
+
+    def _find_parts(self) -> list[int]:
+        above = list(range(max([roots.bit_length() for roots in self._roots], default=0)))
+
+        def first(root: int) -> int:
+            while above[root] != root:
+                above[root] = above[above[root]]
+                root = above[root]
+            return root
+
+        raisers = [rule for rule in self.rules if rule.raises and not rule.detached]
+        joins = [_firm(clause) for rule in raisers for clause in rule.clauses if not clause.apart]
+        writes: dict[int, list[int]] = {}
+        for signal in self.signals:
+            if signal.slot is not None and not self.direct[signal.index]:
+                writes.setdefault(signal.slot, []).append(signal.index)
+        for signals in [signals for signals in (*joins, *writes.values()) if len(signals) > 1]:
+            roots = self._roots_of(signals)
+            for root in roots[1:]:
+                one, other = first(roots[0]), first(root)
+                above[max(one, other)] = min(one, other)
+        return [first(root) for root in range(len(above))]
 
     def _find_roots(self) -> list[int]:
         of = self.components.of
@@ -123,8 +170,14 @@ class Causes:
                     stack.append(cause.index)
         return frozenset(rules)
 
-    def leading_to_slots(self) -> frozenset[int]:
-        """Return the signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
+    @property
+    def helpful(self) -> frozenset[int]:
+        """The signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
+        if self._helpful is None:
+            self._helpful = self._find_helpful()
+        return self._helpful
+
+    def _find_helpful(self) -> frozenset[int]:
         found = {s.index for r in self.rules for c in r.clauses for slot, _ in c.guards for s in slot.signals}
         rules = [rule for rule in self.rules if rule.slots or not found.isdisjoint(rule.raises)]
         seen = set(rules)
@@ -158,6 +211,45 @@ class Causes:
             found = self._downstream[rule.index] = tuple(sorted(clauses, key=lambda c: (-c.base, c.index)))
         return found
 
+    def slots_behind(self, rule: RulePlan) -> frozenset[int]:
+        """Return the slots that the rules of the `downstream` clauses write."""
+        found = self._behind.get(rule.index)
+        if found is None:
+            slots = [slot for clause in self.downstream(rule) for slot in clause.rule.slots]
+            found = self._behind[rule.index] = frozenset(slots)
+        return found
+
+    @property
+    def contested(self) -> frozenset[int]:
+        """The slots that a chain of effects must remember, because no rule of the chain may write a slot again (L19).
+
+        A chain within one group is the shorter without a rule that occurs twice. So a slot that only one rule writes
+        matters only if the rule is on a cycle with a clause that joins groups.
+        """
+        if self._contested is None:
+            self._contested = self._find_contested()
+        return self._contested
+
+    def _find_contested(self) -> frozenset[int]:
+        firm = [rule for rule in self.rules if not rule.detached]
+        edges: list[dict[int, None]] = [{} for _ in self.signals]
+        for rule in firm:
+            for signal in rule.raises:
+                edges[signal].update(dict.fromkeys(_watched(rule)))
+        of = components([tuple(found) for found in edges]).of
+        cycles = {r.index: {of[s] for s in _watched(r)} & {of[s] for s in r.raises} for r in firm}
+        joined: set[int] = set()
+        for rule in firm:
+            if any(not clause.apart and clause.firm_bits.bit_count() > 1 for clause in rule.clauses):
+                joined |= cycles[rule.index]
+        writers = Counter(slot for rule in firm for slot in rule.slots)
+        return frozenset(
+            slot
+            for rule in firm
+            for slot in rule.slots
+            if writers[slot] > 1 or not joined.isdisjoint(cycles[rule.index])
+        )
+
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
         """Return the signals that may ever occur if those in `given` occur: a least fixed point over all rules."""
         reached = set(given)
@@ -182,3 +274,13 @@ class Causes:
 
 def _needs(rule: RulePlan) -> list[Need]:
     return [need for clause in rule.clauses for need in clause.needs]
+
+
+def _firm(clause: Clause) -> list[int]:
+    return [need.signal.index for need in clause.needs if not need.detached]
+
+
+def _watched(rule: RulePlan) -> list[int]:
+    """Return the signals on which a rule depends: those that it hears, and the changes of the slots of its predicates."""
+    slots = [slot for clause in rule.clauses for slot, _ in clause.guards]
+    return [need.signal.index for need in _needs(rule)] + [signal.index for slot in slots for signal in slot.signals]

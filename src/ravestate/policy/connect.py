@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -66,7 +65,7 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
     activation of the other clauses (``engine/conflict_sets.py``). A clause takes no part if its effects may help a rule
     that writes a slot. Other activations may have to wait for such effects (L16), so this clause needs an activation.
     """
-    helpful = causes.leading_to_slots()
+    helpful = causes.helpful
     for signal in signals:
         sets: dict[tuple[frozenset[int], bool], list[Clause]] = {}
         for need in signal.listeners:
@@ -85,24 +84,43 @@ def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
     A first spike changes nothing for such a clause but what it lacks, so a table of spikes is enough
     (``engine/halves.py``). As for a conflict set, none of the rule's effects may help a rule that writes a slot.
     """
-    helpful = causes.leading_to_slots()
-    writers = Counter(slot for rule in causes.rules for slot in rule.slots)
+    helpful = causes.helpful
+    best = _best_writers(causes)
     for signal in signals:
         competing = {clause for clauses in signal.conflict_sets for clause in clauses}
         halves: dict[Any, list[Need]] = {}
         for need in signal.listeners:
             if _is_plain(need.clause) and helpful.isdisjoint(need.clause.rule.raises):
-                halves.setdefault(_likeness(need, causes), []).append(need)
+                key = need if _is_sole(need.clause, best, causes) else _likeness(need, causes)
+                halves.setdefault(key, []).append(need)
         signal.halves = tuple(Half(tuple(needs)) for needs in halves.values())
         for half in signal.halves:
-            clause = half.needs[0].clause
-            half.sole = (
-                bool(half.slotset)
-                and not half.kin
-                and all(writers[slot] == 1 for slot in half.slotset)
-                and not any(causes.causes[need.signal.index] for need in clause.needs)
-            )
+            half.sole = _is_sole(half.needs[0].clause, best, causes)
         signal.others = tuple(n for n in signal.listeners if n.half is None and n.clause not in competing)
+
+
+def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
+    """Return the best clause that writes a slot in the causal groups of a part of the policy (`Causes.parts`)."""
+    best: dict[tuple[int, int], Clause] = {}
+    for rule in causes.rules:
+        for clause in rule.clauses if rule.slots else ():
+            for part in causes.parts(clause):
+                for slot in rule.slots:
+                    other = best.setdefault((slot, part), clause)
+                    if (-clause.base, clause.index) < (-other.base, other.index):
+                        best[slot, part] = clause
+    return best
+
+
+def _is_sole(clause: Clause, best: dict[tuple[int, int], Clause], causes: Causes) -> bool:
+    """Return whether no rule raises the signals of a plain clause, and no better clause competes with it."""
+    slots = clause.rule.slots
+    return (
+        bool(slots)
+        and not clause.apart
+        and not any(causes.causes[need.signal.index] for need in clause.needs)
+        and all(best[slot, part] is clause for slot in slots for part in causes.parts(clause))
+    )
 
 
 def _is_plain(clause: Clause) -> bool:

@@ -209,7 +209,8 @@ class Half:
         slotset: The numbers of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
         places: Number of a rule → the place of its need in `needs`.
-        sole: Whether the half has one rule, no other rule writes its slots, and no rule raises its signals.
+        sole: Whether the half has one rule, no rule raises its signals, and no better rule writes its slots for the
+            same cause.
     """
 
     needs: tuple[Need, ...]
