@@ -120,8 +120,10 @@ def waits_for_a_reason(play: Play) -> None:
     for waiter in list(engine.state.waiting):
         assert waiter.state == State.WAITING
         assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
-        assert engine.agenda.consent.ask(waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
-    assert not stalemate(engine.agenda.consent, engine.state.waiting), "activations wait for each other alone"
+        assert engine.parts.agenda.consent.ask(waiter, commit=False), (
+            f"{waiter} waits, and no group would refuse consent"
+        )
+    assert not stalemate(engine.parts.agenda.consent, engine.state.waiting), "activations wait for each other alone"
 
 
 def joined(play: Play) -> None:
@@ -284,8 +286,8 @@ def empty(play: Play) -> None:
         "free",
     ):
         assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
-    assert not engine.agenda.queue
-    assert not engine.agenda.places
+    assert not engine.parts.agenda.queue
+    assert not engine.parts.agenda.places
     assert engine.next_deadline() is None
     assert len(engine.state.deadlines) == 0
     assert engine.state.busy == 0

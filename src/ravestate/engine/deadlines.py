@@ -1,6 +1,6 @@
 """The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or needs no deadline.
 
-`Deadlines` knows which entries still count. ``engine.py`` has a table, `DUE`, of handlers for entries that are due.
+`Deadlines` knows which entries still count. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
 """
 
 from __future__ import annotations
