@@ -89,7 +89,7 @@ class Deadlines:
             group, rival = owner[0].root(), owner[1]
             return rival.state < RUNNING and rival.pressed.get(group) == time
         if kind == EXPIRE:
-            return bool(owner.holders) or self.state.is_live(owner)
+            return owner.is_held or self.state.is_live(owner)
         if kind == FORGET:
             return self.state.is_live(owner)
         if kind == TIMEOUT:
