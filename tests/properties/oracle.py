@@ -180,14 +180,9 @@ def consistent(engine: Any) -> None:
         assert (state == State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
         assert (state >= State.RUNNING) == (engine.state.running.get(activation.id) is activation)
         for group in activation.firm_groups():
-            count = sum(
-                1
-                for need, spike in zip(clause.needs, activation.spikes, strict=True)
-                if spike is not None and not need.detached and spike.group.root() is group
-            )
-            assert group.members.get(activation) == count, f"{group} counts {activation} wrongly"
+            assert group.has(activation), f"{group} does not know of {activation}"
             for member in group.members:
-                assert member.state != State.ENDED, f"{member} has ended, and is in {group}"
+                assert group in member.firm_groups(), f"{member} holds nothing of {group}, and is in it"
             for waiter in group.interested:
                 assert waiter in engine.state.waiting, f"{waiter} does not wait, and is in {group}"
             for slot, holders in group.taken.items():

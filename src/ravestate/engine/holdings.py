@@ -63,7 +63,7 @@ class Holdings:
         spike.hold(activation)
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            group.members[activation] = group.members.get(activation, 0) + 1
+            group.join(activation)
         if len(activation.spikes) > 1:
             lacking = state.lacking.get(need)
             if lacking is not None:
@@ -312,11 +312,8 @@ class Holdings:
         activation.missing |= need.bit
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            count = group.members.get(activation, 0)
-            if count > 1:
-                group.members[activation] = count - 1
-            elif count:
-                del group.members[activation]
+            if len(activation.spikes) == 1 or group not in activation.firm_groups():
+                group.part(activation)
             if group.interested:
                 state.dirty[group] = None
         if spike not in activation.spikes:

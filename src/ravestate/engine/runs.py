@@ -197,7 +197,7 @@ class Runs:
         for group in groups:
             for spike in list(group.entries) if state.benches else ():
                 self.holdings.benches.rise(spike)
-            for other in list(group.members):
+            for other in group.members:
                 if (
                     other is not run
                     and other.state < RUNNING

@@ -81,7 +81,10 @@ class Spike:
     @property
     def holders(self) -> tuple[Activation, ...]:
         """The activations that hold the spike, in the order in which they took it."""
-        return tuple(self._others) if self._holder is None else (self._holder, *self._others)
+        holder = self._holder
+        if self._others:
+            return tuple(self._others) if holder is None else (holder, *self._others)
+        return () if holder is None else (holder,)
 
     def hold(self, holder: Activation) -> None:
         """Note that an activation holds the spike."""
