@@ -640,7 +640,7 @@ def test_a_burst_for_rules_of_one_slot_is_answered_in_order() -> None:
     world = World(S3, V1, (RuleOf(when=on("s0"), writes=("v0",)),), ((0.0, ("emit", "s0", 0)),) * 50, together=True)
     play = Play(world, budget=50).play()
     assert runs(play) == ["r0"] * 50
-    assert not play.engine.agenda.places
+    assert not play.engine.parts.agenda.places
 
 
 def test_an_alternative_that_waits_behind_a_rival_puts_it_under_pressure_from_the_first_moment() -> None:

@@ -120,8 +120,10 @@ def waits_for_a_reason(play: Play) -> None:
     for waiter in list(engine.state.waiting):
         assert waiter.state == State.WAITING
         assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
-        assert engine.agenda.consent.ask(waiter, commit=False), f"{waiter} waits, and no group would refuse consent"
-    assert not stalemate(engine.agenda.consent, engine.state.waiting), "activations wait for each other alone"
+        assert engine.parts.agenda.consent.ask(waiter, commit=False), (
+            f"{waiter} waits, and no group would refuse consent"
+        )
+    assert not stalemate(engine.parts.agenda.consent, engine.state.waiting), "activations wait for each other alone"
 
 
 def joined(play: Play) -> None:
@@ -178,14 +180,9 @@ def consistent(engine: Any) -> None:
         assert (state == State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
         assert (state >= State.RUNNING) == (engine.state.running.get(activation.id) is activation)
         for group in activation.firm_groups():
-            count = sum(
-                1
-                for need, spike in zip(clause.needs, activation.spikes, strict=True)
-                if spike is not None and not need.detached and spike.group.root() is group
-            )
-            assert group.members.get(activation) == count, f"{group} counts {activation} wrongly"
+            assert group.has(activation), f"{group} does not know of {activation}"
             for member in group.members:
-                assert member.state != State.ENDED, f"{member} has ended, and is in {group}"
+                assert group in member.firm_groups(), f"{member} holds nothing of {group}, and is in it"
             for waiter in group.interested:
                 assert waiter in engine.state.waiting, f"{waiter} does not wait, and is in {group}"
             for slot, holders in group.taken.items():
@@ -284,8 +281,8 @@ def empty(play: Play) -> None:
         "free",
     ):
         assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
-    assert not engine.agenda.queue
-    assert not engine.agenda.places
+    assert not engine.parts.agenda.queue
+    assert not engine.parts.agenda.places
     assert engine.next_deadline() is None
     assert len(engine.state.deadlines) == 0
     assert engine.state.busy == 0

@@ -66,3 +66,31 @@ async def test_a_spare_task_that_is_in_use_is_not_lent_twice() -> None:
     spares.leave()
     await turns()
     assert one.task.done()
+
+
+@on_loop
+async def test_context_variables_need_not_be_comparable() -> None:
+    class Vector:
+        """A value whose comparison fails, as that of an array does."""
+
+        __hash__ = None  # type: ignore[assignment]
+
+        def __eq__(self, other: object) -> bool:
+            raise ValueError("the truth value of an array is ambiguous")
+
+    held: contextvars.ContextVar[Vector] = contextvars.ContextVar("held")
+    held.set(Vector())
+    async with rs.Context(m) as one:
+        held.set(Vector())
+        async with rs.Context(m) as other:
+            assert [(await ask(context))[1] for context in (one, other)] == ["none", "none"]
+
+
+@on_loop
+async def test_contexts_with_equal_context_variables_share_them() -> None:
+    spares = Spares.join(asyncio.get_running_loop())
+    first = spares.variables()
+    assert spares.variables() is first
+    shade.set("green")
+    assert spares.variables() is not first
+    spares.leave()

@@ -138,7 +138,7 @@ class Consent:
                     self.eliminate(member)
                     eliminated = True
                 continue
-            apart = apart or (member is not None and member not in group.members)
+            apart = apart or (member is not None and not group.has(member))
             refusal.names[rival.rule.name] = None
         return eliminated
 

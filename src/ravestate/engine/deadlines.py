@@ -1,6 +1,6 @@
 """The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or needs no deadline.
 
-`Deadlines` knows which entries still count. ``engine.py`` has a table, `DUE`, of handlers for entries that are due.
+`Deadlines` knows which entries still count. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class Deadlines:
             group, rival = owner[0].root(), owner[1]
             return rival.state < RUNNING and rival.pressed.get(group) == time
         if kind == EXPIRE:
-            return bool(owner.holders) or self.state.is_live(owner)
+            return owner.is_held or self.state.is_live(owner)
         if kind == FORGET:
             return self.state.is_live(owner)
         if kind == TIMEOUT:

@@ -74,7 +74,7 @@ class Entries:
             group.leave(spike)
         if half.slotset and group.interested:
             state.dirty[group] = None
-        if not (spike.holders or spike.entries):
+        if not (spike.is_held or spike.entries):
             self.forget(spike)
 
     def _leave(self, spike: Spike, half: Half) -> None:
@@ -103,7 +103,7 @@ class Entries:
         partner.entries -= 1
         if not partner.entries:
             partner.group.root().leave(partner)
-            if not partner.holders:
+            if not partner.is_held:
                 self.forget(partner)
 
     def refuse_for_good(self, spike: Spike, rule: RulePlan) -> None:
@@ -160,5 +160,5 @@ class Entries:
 
     def on_forget(self, spike: Spike) -> None:
         """Remove a spike that is too old for every detached need, if nothing holds it."""
-        if not (spike.holders or spike.entries):
+        if not (spike.is_held or spike.entries):
             self.forget(spike)

@@ -41,7 +41,6 @@ class Group:
 
     Attributes:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
-        members: Activation with non-detached spikes of the group → the number of these spikes; the first to join comes first.
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something ends in the group.
         pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
@@ -50,12 +49,13 @@ class Group:
             them for the trace, while there is a tracer.
     """
 
-    __slots__ = ("answers", "entries", "id", "interested", "into", "members", "pressed", "roster", "taken")
+    __slots__ = ("_member", "_others", "answers", "entries", "id", "interested", "into", "pressed", "roster", "taken")
 
     def __init__(self, id: int) -> None:
         self.id = id
         self.into: Group | None = None  # the group into which this group has merged, if it has
-        self.members: dict[Activation, int] = {}
+        self._member: Activation | None = None  # most groups never have a second one, and need no table
+        self._others: dict[Activation, None] = NOTHING
         # Most groups never need the following tables, so each table is created on first use.
         self.taken: dict[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: dict[Activation, None] = NOTHING
@@ -70,6 +70,49 @@ class Group:
         while group.into is not None:
             group = group.into
         return group
+
+    @property
+    def members(self) -> tuple[Activation, ...]:
+        """The activations with non-detached spikes of the group; the first to join comes first."""
+        member = self._member
+        if self._others:
+            return tuple(self._others) if member is None else (member, *self._others)
+        return () if member is None else (member,)
+
+    @property
+    def count(self) -> int:
+        """The number of members."""
+        return len(self._others) + (self._member is not None)
+
+    def has(self, activation: Activation) -> bool:
+        """Return whether an activation is a member."""
+        return activation is self._member or activation in self._others
+
+    def join(self, activation: Activation) -> None:
+        """Note that an activation has a non-detached spike of the group."""
+        if self.has(activation):
+            return
+        if self._others:
+            self._others[activation] = None
+        elif self._member is None:
+            self._member = activation
+        else:
+            self._others = {activation: None}
+        if self.roster is not None:
+            self.roster.enter(activation)
+
+    def part(self, activation: Activation) -> None:
+        """Note that an activation has no non-detached spike of the group any more."""
+        if activation is self._member:
+            self._member = None
+        elif activation in self._others:
+            self._others.pop(activation)
+        else:
+            return
+        if not self.count:
+            self.roster = None
+        elif self.roster is not None:
+            self.roster.leave(activation)
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
         """Take a slot for the runs `holders`; None takes it for good. Runs share a slot if their groups have merged."""
@@ -131,8 +174,8 @@ class Group:
             mine = self.taken.get(slot, ())
             self.take(slot, None if mine is None or holders is None else mine + holders)
         self.roster = other.roster = None
-        for activation, count in other.members.items():
-            self.members[activation] = self.members.get(activation, 0) + count
+        for activation in other.members:
+            self.join(activation)
         for activation in other.interested:
             self.concern(activation)
         for spike in other.entries:
@@ -146,7 +189,8 @@ class Group:
                 activation.pressed[self] = min(until, activation.pressed.get(self, until))
         if other.answers:
             self.answers = {**other.answers, **self.answers}
-        other.members = {}
+        other._member = None
+        other._others = NOTHING
         other.taken = other.interested = other.answers = other.entries = NOTHING
 
     def __repr__(self) -> str:

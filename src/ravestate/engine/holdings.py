@@ -66,13 +66,10 @@ class Holdings:
         state = self.state
         activation.spikes[need.index] = spike
         activation.missing &= ~need.bit
-        spike.holders[activation] = None
+        spike.hold(activation)
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            count = group.members.get(activation, 0)
-            group.members[activation] = count + 1
-            if group.roster is not None and not count:
-                group.roster.enter(activation)
+            group.join(activation)
         if len(activation.spikes) > 1:
             lacking = state.lacking.get(need)
             if lacking is not None:
@@ -205,7 +202,7 @@ class Holdings:
 
     def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
-        for holder in list(spike.holders):
+        for holder in spike.holders:
             if holder.state == GATHERING:
                 old = [need for need in _of_spike(holder, spike) if spike.born + need.max_age <= time]
                 self.lose(holder, old, "age")
@@ -267,7 +264,7 @@ class Holdings:
         for spike in run.stands_on:
             if spike in self.state.benches:
                 self.benches.check(spike)
-            for other in list(spike.holders) if len(spike.holders) > 1 else ():
+            for other in spike.holders:
                 if other is not run and other.clause.rule is rule and other.state < RUNNING:
                     self.lose(other, [n for n in _of_spike(other, spike) if not n.detached], reason, run)
 
@@ -321,20 +318,13 @@ class Holdings:
         activation.missing |= need.bit
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            count = group.members.get(activation, 0)
-            if count > 1:
-                group.members[activation] = count - 1
-            elif count:
-                del group.members[activation]
-                if not group.members:
-                    group.roster = None
-                elif group.roster is not None:
-                    group.roster.leave(activation)
+            if len(activation.spikes) == 1 or group not in activation.firm_groups():
+                group.part(activation)
             if group.interested:
                 state.dirty[group] = None
         if spike not in activation.spikes:
-            del spike.holders[activation]
-            if not (spike.holders or spike.entries):
+            spike.release(activation)
+            if not (spike.is_held or spike.entries):
                 self.entries.forget(spike)
         if reason and state.tracer is not None:
             rule, run = ("", 0) if by is None else (by.clause.rule.name, by.id)
@@ -356,7 +346,7 @@ class Holdings:
             self.entries.drop(spike, half)
         if spike in state.benches:
             self.benches.check(spike)
-        for holder in list(spike.holders):
+        for holder in spike.holders:
             if holder.state < RUNNING:
                 self.lose(holder, _of_spike(holder, spike), "withdrawn")
             else:

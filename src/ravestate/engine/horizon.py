@@ -158,7 +158,7 @@ class Horizon:
             and one.state == GATHERING
             and one.missing & open_bits
             and not self.is_still(one)
-            and one not in group.members
+            and not group.has(one)
         ]
 
     def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: SlotNumbers) -> Step:

@@ -17,10 +17,10 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ravestate.engine.activation import READY
-from ravestate.engine.group import NO_NUMBERS
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
+    from ravestate.engine.memory import Memory
     from ravestate.policy.model import RulePlan
 
 MANY: Final = 500
@@ -55,7 +55,7 @@ class Lineage(NamedTuple):
 
 
 class Loops:
-    """The runs of the present instant, and the deferred turns of loops.
+    """The runs of the present instant, and the deferred turns of loops. Rules that an error names go to `memory`.
 
     Attributes:
         runs: How many runs there have been in this instant.
@@ -63,14 +63,14 @@ class Loops:
         deferred: The activations that wait until nothing else is ready, oldest first.
     """
 
-    __slots__ = ("_instant", "_named", "_next", "_turns", "deferred", "late", "runs")
+    __slots__ = ("_instant", "_memory", "_next", "_turns", "deferred", "late", "runs")
 
-    def __init__(self) -> None:
+    def __init__(self, memory: Memory) -> None:
+        self._memory = memory
         self.runs = self.late = self._turns = 0
         self._next: Activation | None = None
         self.deferred: deque[Activation] | None = None  # made on first use: an empty one takes 600 bytes
         self._instant = 0
-        self._named = NO_NUMBERS
 
     @property
     def full(self) -> bool:
@@ -124,10 +124,10 @@ class Loops:
         self._turns += 1
         loop.turns += 1
         loop.rules[rule] = None
-        new = loop.turns == TURNS and {one.index for one in loop.rules} - self._named
+        new = loop.turns == TURNS and {one.index for one in loop.rules} - self._memory.looped
         if not new:
             return ()
-        self._named |= new
+        self._memory.looped |= new
         return sorted(loop.rules, key=attrgetter("index"))
 
     def _lines(self, activation: Activation) -> list[Lineage]:

@@ -69,7 +69,7 @@ class Matching:
         if state.tracer is not None:
             state.tracer(trace.Merged(state.now, merged.id, root.id))
         done = {slot for slot, holders in root.taken.items() if holders is None}
-        for activation in list(root.members):
+        for activation in root.members:
             if activation.state < RUNNING and not activation.clause.rule.slotset.isdisjoint(done):
                 self.holdings.lose_group(activation, root, "consumed")
         for spike in list(root.entries):
@@ -161,7 +161,7 @@ class Matching:
                 self._offer(need, spike)
         if signal.conflict_sets:
             self.sets.offer(signal, spike)
-        if not (spike.holders or spike.entries):
+        if not (spike.is_held or spike.entries):
             self.entries.forget(spike)
 
     def _offer(self, need: Need, spike: Spike) -> None:

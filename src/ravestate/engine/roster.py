@@ -79,19 +79,19 @@ class Roster:
 
 def writers(group: Group, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
     """Return the members that may write one of the slots, the first to join first. In a small group, return all."""
-    return group.members if len(group.members) <= FEW else _roster(group, causes).writers(slots)
+    return group.members if group.count <= FEW else _roster(group, causes).writers(slots)
 
 
 def causers(group: Group, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
     """Return the rules of the members that may trigger a writer of one of the slots. In a small group, return all."""
-    if len(group.members) <= FEW:
+    if group.count <= FEW:
         return dict.fromkeys([member.clause.rule for member in group.members])
     return _roster(group, causes).causers(slots)
 
 
 def by_rule(group: Group, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
     """Return a map from the numbers of the members' rules to their activations."""
-    if len(group.members) > FEW:
+    if group.count > FEW:
         return _roster(group, causes).rules
     found: dict[int, dict[Activation, None]] = {}
     for member in group.members:

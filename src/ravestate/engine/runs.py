@@ -24,19 +24,14 @@ from ravestate.policy.model import RulePlan
 
 
 class Runs:
-    """The part of the engine that starts, cancels and settles runs.
+    """The part of the engine that starts, cancels and settles runs."""
 
-    Args:
-        report_ends: Whether each run ends with an `Ended` effect.
-    """
+    __slots__ = ("holdings", "sets", "state")
 
-    __slots__ = ("holdings", "report_ends", "sets", "state")
-
-    def __init__(self, state: State, holdings: Holdings, sets: ConflictSets, report_ends: bool) -> None:
+    def __init__(self, state: State, holdings: Holdings, sets: ConflictSets) -> None:
         self.state = state
         self.holdings = holdings
         self.sets = sets
-        self.report_ends = report_ends
 
     def start(self, activation: Activation) -> None:
         """Start an activation: it takes its slots in its groups, and its function runs (L17)."""
@@ -162,7 +157,7 @@ class Runs:
         if state.tracer is not None:
             text = reason or (said(exception) if exception is not None else "")
             state.tracer(trace.Settled(state.now, run.id, rule.name, outcome, text, fired, exception))
-        if self.report_ends:
+        if state.report_ends:
             state.out.append(Ended(run.id, rule.name, outcome, fired))
         on_error = outcome == FAILED and _handles_error(run)
         self.holdings.end(run)
@@ -173,6 +168,8 @@ class Runs:
     def _tire(self, rule: RulePlan) -> None:
         """Note that a rule with a cooldown has run: the activations whose order this changes ask again (L9, L15)."""
         state = self.state
+        if state.ran is NOTHING:
+            state.ran = state.standing.ran = {}
         state.ran[rule.index] = state.now
         state.reordered = True
         for waiter in state.waiting:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from ravestate.engine.group import NOTHING
 from ravestate.policy.model import SignalPlan
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ class Spike:
         rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
         before: The number of the last activation that is older than the spike.
         lineage: In an instant with many runs: the rules that led to the spike (L23).
-        holders: The activations that hold the spike, in the order in which they took it.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         entries: How many halves hold the spike without an activation (``halves.py``).
         parted: The numbers of the clauses in these halves that do not hold the spike: they gave it up, or have an
@@ -29,12 +29,13 @@ class Spike:
     """
 
     __slots__ = (
+        "_holder",
+        "_others",
         "before",
         "born",
         "entries",
         "expiring",
         "group",
-        "holders",
         "id",
         "lineage",
         "parents",
@@ -65,11 +66,42 @@ class Spike:
         self.rule = rule
         self.before = before
         self.lineage: Lineage | None = None
-        self.holders: dict[Activation, None] = {}
+        self._holder: Activation | None = None  # most spikes never have a second one, and need no table
+        self._others: dict[Activation, None] = NOTHING
         self.expiring: tuple[float, ...] = ()
         self.entries = 0
         self.parted: set[int] | None = None
         self.refused: set[int] | None = None
+
+    @property
+    def is_held(self) -> bool:
+        """Whether an activation holds the spike."""
+        return self._holder is not None or bool(self._others)
+
+    @property
+    def holders(self) -> tuple[Activation, ...]:
+        """The activations that hold the spike, in the order in which they took it."""
+        holder = self._holder
+        if self._others:
+            return tuple(self._others) if holder is None else (holder, *self._others)
+        return () if holder is None else (holder,)
+
+    def hold(self, holder: Activation) -> None:
+        """Note that an activation holds the spike."""
+        if self._others:
+            if holder is not self._holder:
+                self._others[holder] = None
+        elif self._holder is None:
+            self._holder = holder
+        elif holder is not self._holder:
+            self._others = {holder: None}
+
+    def release(self, holder: Activation) -> None:
+        """Note that one of the holders gives the spike up."""
+        if holder is self._holder:
+            self._holder = None
+        else:
+            del self._others[holder]
 
     def refuse(self, rule: int) -> None:
         """Note that a rule gives the spike up for good."""

@@ -11,7 +11,7 @@ The other parts of the engine share one state. Beside `State.adopt`, these files
 - `headless`: ``holdings.py`` and ``benches.py``
 - `pressed`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
 - `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: also ``agenda.py``
-- `running`, `ran`, `watches`: ``runs.py``; `watched_by`: also ``holdings.py``; `retired`: ``engine.py``
+- `running`, `ran`, `watches`: ``runs.py``; `watched_by`: also ``holdings.py``; `retired`: ``parts.py``
 - `values`: ``slots.py``; a first read also adds the default
 
 Any part may add to the work that is still to be done: `asking`, `free`, `dirty`, `stirred`, `errors`, `out`.
@@ -19,10 +19,8 @@ Any part may add to the work that is still to be done: `asking`, `free`, `dirty`
 
 from __future__ import annotations
 
-import copy
 from collections import OrderedDict
 from collections.abc import Iterable, Sequence
-from types import MappingProxyType
 from typing import Any
 
 from ravestate.declare.condition import Holds
@@ -32,9 +30,10 @@ from ravestate.engine.bench import Bench
 from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
-from ravestate.engine.group import NO_NUMBERS, NOTHING, Group
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.idle import Idle
 from ravestate.engine.loops import Lineage, Loops
+from ravestate.engine.memory import Memory
 from ravestate.engine.spike import Spike
 from ravestate.engine.standing import Standing
 from ravestate.engine.trace import Tracer
@@ -42,36 +41,30 @@ from ravestate.engine.watch import Watch
 from ravestate.policy.model import Clause, Half, Need, RulePlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
-"""Types whose values contexts may share. A slot's default of any other type is copied for each context."""
 
+class State(Memory):
+    """The memory, live spikes and activations of an engine, and the work that is still to be done.
 
-class State:
-    """The slots, live spikes and activations of an engine, and the work that is still to be done.
+    It takes the memory over from an engine that begins to work.
 
     Args:
         policy: A policy from ``rs.compile``.
-        patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (L16).
     """
 
     __slots__ = (
-        "activations",
         "active",
         "activity",
         "acts",
         "alternatives",
         "asking",
         "benches",
-        "blamed",
         "busy",
         "causes",
         "deadlines",
         "dirty",
-        "dropped",
         "errors",
         "free",
         "gated",
-        "groups",
         "halves",
         "headless",
         "hope_counts",
@@ -79,50 +72,35 @@ class State:
         "lacking",
         "live",
         "loops",
-        "now",
         "out",
-        "patience",
-        "policy",
         "pools",
         "pressed",
         "pressure",
-        "ran",
         "refused",
         "reordered",
-        "retired",
         "running",
         "seats",
         "signal_of",
         "slot_of",
-        "spikes",
         "standing",
         "stirred",
         "stuck",
         "tracer",
-        "unseen",
-        "values",
         "waiting",
-        "watched",
         "watched_by",
         "watches",
     )
 
-    def __init__(self, policy: Policy, patience: float) -> None:
-        self.policy = policy
+    def __init__(self, policy: Policy) -> None:
+        super().__init__(policy, 0.0, False)
         self.signal_of = policy.signal_of
         self.slot_of = policy.slot_of
         self.causes = policy.causes
         self.activity = policy.slot_of["core:activity"]
         self.pressure = policy.slot_of["core:pressure"]
-        self.patience = patience
-        self.now = 0.0
         self.tracer: Tracer | None = None
         self.deadlines = Deadlines(self)
-        # Many contexts never need some of the following tables. Each of these is `NOTHING` until its owner first writes it.
-        self.values: dict[int, Any] = {}
-        """Number of a slot that was written or read → its value."""
-        self.unseen: dict[int, dict[str, Any]] = NOTHING
-        """Number of a collection that was not read since its last change → its items. Changing them needs no copy."""
+        # Many engines never need some of the following tables. Each of these is `NOTHING` until its owner first writes it.
         self.live: dict[int, dict[Spike, None]] = {}
         """Number of a signal → its live spikes, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
@@ -169,36 +147,37 @@ class State:
         them have had an activation; the activation number just before theirs."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
-        self.ran: dict[int, float] = {}
-        """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.standing = Standing(self.ran)
-        self.retired = NO_NUMBERS
-        """The numbers of the rules that have retired."""
         self.watches: dict[Clause, dict[Activation, Watch]] = NOTHING
         """Clause of an `until` condition → its runs, and how far each has met the clause."""
         self.watched_by: dict[Spike, dict[Watch, None]] = NOTHING
         """Spike → the watches that hold it."""
-        self.dropped: dict[str, int] = NOTHING
-        """Signal's name → how many of its spikes were dropped by its limit (L23)."""
-        self.watched: dict[str, int] = {}
-        """The names of the signals whose spikes are reported as effects, as the keys of a table."""
         self.out: list[Effect] = []
         """The effects that the runtime has not taken yet."""
         self.acts = False
         """Whether one of these effects starts or cancels a run."""
         self.errors: tuple[tuple[RuleFailure, Lineage | None], ...] = ()
         """Failures that ``core:error`` has not reported yet, each with the rules that led to it."""
-        self.blamed = NO_NUMBERS
-        """The ids of the predicates whose failure was reported."""
-        self.loops = Loops()
+        self.loops = Loops(self)
         self.busy = 0
         """How many activations count for ``core:activity``."""
-        self.activations = 0
-        """The number of the newest activation."""
-        self.spikes = 0
-        """The number of the newest spike."""
-        self.groups = 0
-        """The number of the newest causal group."""
+
+    def begin(self, memory: Memory) -> None:
+        """Take over the memory of an engine that begins to work."""
+        self.take(memory)
+        self.standing.ran = memory.ran
+
+    def end(self, memory: Memory) -> None:
+        """Give the memory back to an engine that comes to rest, and keep nothing of it."""
+        memory.take(self)
+        self.values = self.unseen = self.ran = self.dropped = self.watched = self.standing.ran = NOTHING
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nothing is live, no effect is to be taken, and nobody traces what happens."""
+        if self.live or self.active or self.out or self.errors or self.tracer is not None:
+            return False
+        return self.deadlines.next() is None
 
     def adopt(self, policy: Policy) -> None:
         """Replace the policy by one that begins with the same rules in the same order, and has more."""
@@ -307,19 +286,6 @@ class State:
         return None
 
     # ------------------------------------------------------------------------------------ slots and predicates
-
-    def read(self, slot: int) -> Any:
-        """Return the value of the slot with this number."""
-        if self.unseen:
-            self.unseen.pop(slot, None)
-        try:
-            return self.values[slot]
-        except KeyError:
-            default: Any = self.policy.slot_plans[slot].slot.default
-            if not isinstance(default, PASSIVE):
-                default = copy.deepcopy(default)  # contexts share no state
-            self.values[slot] = default
-            return self.values[slot]
 
     def is_open(self, clause: Clause) -> bool:
         """Return whether the clause's predicates on slots are true. A predicate that raises is false, and is reported."""

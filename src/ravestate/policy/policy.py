@@ -46,6 +46,8 @@ class Policy:
 
     def __post_init__(self, completion: Completion) -> None:
         self.pathways = Pathways(completion)
+        self.spare: list[Any] = []
+        """Parts of engines (``engine/parts.py``) that serve no engine at present."""
         clauses = [clause for rule in self.rule_plans for clause in (*rule.clauses, *rule.until)]
         self.clause_plans = {clause.index: clause for clause in clauses}
         self.guarded = frozenset(slot.index for clause in clauses for slot, _ in clause.guards)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextvars
 import functools
 import logging
 from typing import TYPE_CHECKING, Any
@@ -33,12 +32,13 @@ class AsyncRules:
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner) -> None:
-        self.cleaning: list[asyncio.Task[Any]] = []
+        self.cleaning: tuple[asyncio.Task[Any], ...] = ()
         """The tasks that have just been cancelled. Their last writes come before any other effect."""
         self._loop = loop
         self._runner = runner
-        self._variables = contextvars.copy_context()
-        self._spares: Spares | None = Spares.join(loop)
+        spares = Spares.join(loop)
+        self._variables = spares.variables()
+        self._spares: Spares | None = spares
         self._tasks: dict[RuleContext, EagerTask] = {}
         self._grace: dict[RuleContext, asyncio.TimerHandle] = {}
         self._spare: EagerTask | None = None
@@ -85,7 +85,7 @@ class AsyncRules:
         task = self._tasks[ctx].task
         ctx.cancelled = reason
         task.cancel()
-        self.cleaning.append(task)
+        self.cleaning = (*self.cleaning, task)
         if len(self.cleaning) == 1:
             self._loop.call_soon(self._wait_for_cleaning, CLEANING)
         self._grace[ctx] = self._loop.call_later(GRACE, self._grace_is_over, ctx)
@@ -124,7 +124,7 @@ class AsyncRules:
         if turns and not all(task.done() for task in self.cleaning):
             self._loop.call_soon(self._wait_for_cleaning, turns - 1)
         else:
-            self.cleaning.clear()
+            self.cleaning = ()
             self._runner.pump()
 
     def _grace_is_over(self, ctx: RuleContext) -> None:

@@ -114,7 +114,7 @@ class Context:
         hooks = hooks or NO_HOOKS
         engine = Engine(self._policy, patience=self._patience, report_ends=hooks.on_ended is not None)
         loop = asyncio.get_running_loop()
-        self._runner = Runner(engine, loop, self.settings, self._seed, self.ask_to_stop, hooks, self._journal)
+        self._runner = Runner(engine, loop, self.settings, self._seed, self, hooks, self._journal)
         if self._observers:
             self._attach()
         self._runner.receive(Start())

@@ -109,7 +109,7 @@ class EagerTask:
 
     def suits(self, variables: contextvars.Context) -> bool:
         """Return whether the task has these context variables."""
-        return self._clean is variables or self._clean == variables
+        return are_equal(self._clean, variables)
 
     def close(self) -> None:
         """End the spare task, unless it has adopted a coroutine."""
@@ -120,3 +120,13 @@ class EagerTask:
         """End the task although its coroutine does not end: close the coroutine where it is."""
         self.abandoned = True
         self.task.cancel()
+
+
+def are_equal(one: contextvars.Context, other: contextvars.Context) -> bool:
+    """Return whether two sets of context variables are equal. Values that cannot be compared count as different."""
+    if one is other:
+        return True
+    try:
+        return one == other
+    except Exception:  # a value's own comparison may raise anything
+        return False

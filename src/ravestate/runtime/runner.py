@@ -10,13 +10,14 @@ from asyncio.tasks import _enter_task, _leave_task  # pyright: ignore[reportPriv
 from collections.abc import Callable, Mapping
 from threading import get_ident
 from time import perf_counter
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from ravestate.declare.rule import Rule
 from ravestate.declare.wording import said, short
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Emit, Event, Finish, Write
+from ravestate.engine.parts import Parts
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnded
 from ravestate.policy.policy import Policy
@@ -46,11 +47,17 @@ THREAD: Final = get_ident  # the compiled build finds a constant at once, and lo
 log = logging.getLogger("ravestate")
 
 
+class Stoppable(Protocol):
+    """The part of a `Context` that its runner uses."""
+
+    def ask_to_stop(self) -> None: ...
+
+
 class Runner:
     """Gives events to an engine, and performs the effects that the engine returns.
 
-    `Context` and `RuleContext` (see `rule_context.Host`) call its public methods. The runner calls `stop` when a rule
-    asks the context to end, or when the engine fails. It calls `journal` with each event before the engine takes the
+    `Context` and `RuleContext` (see `rule_context.Host`) call its public methods. The runner asks the `agent` to stop
+    when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the engine takes the
     event, and with `Taken` before the runner takes effects.
     """
 
@@ -60,7 +67,7 @@ class Runner:
         loop: asyncio.AbstractEventLoop,
         settings: Mapping[str, Any],
         seed: int | None,
-        stop: Callable[[], None],
+        agent: Stoppable,
         hooks: Hooks,
         journal: Callable[[Event | Taken, float], None] | None,
     ) -> None:
@@ -72,7 +79,7 @@ class Runner:
         self.fault: RavestateError | None = None
         """The error that ends the context, from a rule (``ctx.stop``) or from the engine; None without an error."""
         self._engine = engine
-        self._ask_to_stop = stop
+        self._agent = agent
         self._hooks = hooks
         self._journal = journal
         self._is_virtual = hooks.on_endless is not None
@@ -83,7 +90,7 @@ class Runner:
         self._async = AsyncRules(loop, self)
         self._plain: PlainRules | None = None  # made for the first plain function
         self._waits: Waits | None = None  # made for the first task that waits
-        self._todo: list[Effect] = []  # the effects that are still to be performed, the next one last
+        self._todo: list[Effect] | None = None  # the effects that are still to be performed, the next one last
         self._due = False  # whether the engine may have effects
         self._scheduled = False  # whether the loop will call `_turn`
         self._settled = 0  # how often `settle` has spared the loop a turn since the last one
@@ -123,28 +130,29 @@ class Runner:
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
         """Raise a signal for a run, or for code outside (None). Any thread may call this."""
-        if self._takes_the_short_way():
-            self._engine.emit(signal, payload, run)
+        parts = self._short_way()
+        if parts is not None:
+            parts.emit(signal, payload, run)
         else:
             self.receive(Emit(signal, payload, run))
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
         """Write a slot for a run, or for code outside (None). Any thread may call this."""
-        if self._takes_the_short_way():
-            self._engine.write(slot, value, run)
+        parts = self._short_way()
+        if parts is not None:
+            parts.write(slot, value, run)
         else:
             self.receive(Write(slot, value, run))
 
-    def _takes_the_short_way(self) -> bool:
-        """Prepare the engine for an event without a record, and return True; or return False, for `receive`."""
+    def _short_way(self) -> Parts | None:
+        """Return the parts of the engine, for an event without a record; or None if the event must go to `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
-            return False
+            return None
         if self._pumping:
-            self._engine.pass_time(self._instant)
-        else:
-            self._engine.pass_time(self.clock.now())
-            self._schedule()
-        return True
+            return self._engine.parts_at(self._instant)
+        parts = self._engine.parts_at(self.clock.now())
+        self._schedule()
+        return parts
 
     def receive(self, event: Event) -> None:
         """Give the engine an event. Any thread may call this."""
@@ -232,7 +240,7 @@ class Runner:
 
     def _work_off(self, rounds: int) -> bool:
         """Take and perform the engine's effects, for at most `rounds` rounds; return whether there were any effects."""
-        engine, cleaning = self._engine, self._async.cleaning
+        engine, rules = self._engine, self._async
         began = self.clock.now()
         if began != self._instant:
             self._rounds = 0
@@ -247,17 +255,17 @@ class Runner:
         around = asyncio.current_task(self.loop)
         if around is not None:  # rules start outside any task
             _leave_task(self.loop, around)
-        todo = self._todo
+        todo = self._todo or []
         try:
             for _ in range(rounds):
-                if (self._is_virtual or cleaning) and self._held():
+                if (self._is_virtual or rules.cleaning) and self._held():
                     break  # the end of these functions or rules schedules the next call
                 self._rounds += 1
                 if not todo:
                     if self._journal is not None:
                         self._journal(Taken(), engine.now)
                     try:
-                        todo += engine.effects()
+                        todo = self._todo = engine.effects()
                     except Exception as error:
                         self._break(error)
                         return False
@@ -265,7 +273,7 @@ class Runner:
                         break
                     todo.reverse()
                 some = True
-                while todo and not ((self._is_virtual or cleaning) and self._held()):
+                while todo and not ((self._is_virtual or rules.cleaning) and self._held()):
                     self._perform(todo.pop())
                 if not self._is_virtual and perf_counter() > turn_ends:
                     self._schedule()
@@ -277,7 +285,9 @@ class Runner:
             raise
         finally:
             self._pumping = False
-            self._async.rest()
+            rules.rest()
+            if not todo:
+                self._todo = None
             if around is not None:
                 _enter_task(self.loop, around)
         return some
@@ -311,7 +321,7 @@ class Runner:
         fault = self.fault
         self.listeners.fail(lambda signal: fault)
         self.waits.end(fault)
-        self._ask_to_stop()
+        self._agent.ask_to_stop()
 
     # ------------------------------------------------------------------------------------ time
 
@@ -415,8 +425,9 @@ class Runner:
             del self._contexts[ctx.run]
         if not (ctx.ended or self.closed):
             ctx.ended = "the function has returned"
-            if result is None and exception is None and self._takes_the_short_way():
-                self._engine.done(ctx.run)
+            parts = self._short_way() if result is None and exception is None else None
+            if parts is not None:
+                parts.done(ctx.run)
             else:
                 outcome = result if exception is None else exception
                 if ctx.cancelled and isinstance(outcome, asyncio.CancelledError):
@@ -455,7 +466,7 @@ class Runner:
     def stop(self, failure: RavestateError | None) -> None:
         """Ask the context to end. If there are several calls, the first `failure` is raised."""
         self.fault = self.fault or failure
-        self._ask_to_stop()
+        self._agent.ask_to_stop()
 
     async def close(self, *, at_once: bool = False) -> None:
         """Cancel all runs and wait until they have cleaned up; with `at_once`, do not wait. No rule starts any more."""

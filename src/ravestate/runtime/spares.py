@@ -7,7 +7,7 @@ import contextvars
 from weakref import WeakKeyDictionary
 
 from ravestate.runtime.blocking import StepTimer
-from ravestate.runtime.eager_task import EagerTask
+from ravestate.runtime.eager_task import EagerTask, are_equal
 
 
 class Spares:
@@ -18,6 +18,7 @@ class Spares:
         self._loop = loop
         self._spare: EagerTask | None = None
         self._users = 0
+        self._variables = contextvars.copy_context()
 
     @staticmethod
     def join(loop: asyncio.AbstractEventLoop) -> Spares:
@@ -36,6 +37,13 @@ class Spares:
             if self._spare is not None:
                 self._spare.close()
                 self._spare = None
+
+    def variables(self) -> contextvars.Context:
+        """Return a copy of the present context variables. Callers with the same variables get the same copy."""
+        variables = contextvars.copy_context()
+        if not are_equal(variables, self._variables):
+            self._variables = variables
+        return self._variables
 
     def take(self, variables: contextvars.Context) -> EagerTask:
         """Return a spare task with these context variables. `give` takes it back if it is still free."""
