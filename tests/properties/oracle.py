@@ -266,6 +266,7 @@ def empty(play: Play) -> None:
         "waiting",
         "alternatives",
         "halves",
+        "lines",
         "seats",
         "pools",
         "benches",
