@@ -8,9 +8,13 @@ Each workload runs on the bare engine, whose rules do nothing. It runs at one si
 - Fallbacks: an input among n rules `input & topic_i` and n rules on the input alone.
 - Stalemates: n inputs, each of which makes two pairs of rules wait for each other.
 - Burst: n spikes at once, for a rule that writes a slot and one that writes none.
+- Pairs beside a fallback, or beside another pair: as pairs, but another rule writes the same slot.
+- Shared half: n spikes of each of two signals for a rule `a & b`; a second rule `a & c` waits as well.
+- Recovering and guarded fallbacks: an input among n fallbacks with a cooldown, or with a predicate on a slot.
+- Independent writers: an input among n rules, each with a slot of its own.
+- Cliques: topics that raise each other, with n links; each topic has a rule for one slot, and nothing occurs.
 
-The first two and the last two have ten times as many spikes, so ten times the time is linear. The others have one input
-among ten times as many rules.
+Ten times as many spikes, rules or links may take about ten times the time.
 """
 
 from __future__ import annotations
@@ -29,7 +33,7 @@ from ravestate.engine.events import Emit, Event, Finish
 SPIKES, RULES = 50, 100
 FACTOR = 10
 LINEAR = 13.0
-"""The most that ten times as many spikes may cost."""
+"""The most that ten times the size may cost."""
 LIMIT = 1_000_000
 
 
@@ -132,6 +136,67 @@ def burst(size: int, *, writes: bool) -> float:
     return time.process_time() - begin
 
 
+def timed(engine: Engine, given: Sequence[Event], expected: int, until: float = 0.0) -> float:
+    """Return the seconds of processor time from events to their runs; `until` is the end of the wait for rivals."""
+    begin = time.process_time()
+    runs = play(engine, given)
+    while (due := engine.next_deadline()) is not None and due <= until:
+        engine.advance(due)
+        runs += play(engine, (), None, due)
+    assert runs == expected, runs
+    return time.process_time() - begin
+
+
+def rival_pairs(size: int, *, shared: bool) -> float:
+    m = rs.Module("m")
+    a, b, c, out = m.signal("a", limit=LIMIT), m.signal("b", limit=LIMIT), m.signal("c"), m.slot("out", "")
+    declare(m, "both", when=a & b, writes=out)
+    declare(m, "rival", when=a & c if shared else a, writes=out)
+    given = [*(Emit("m:a", n) for n in range(size)), *(Emit("m:b", n) for n in range(size))]
+    return timed(Engine(rs.compile(m)), given, size)
+
+
+def shared_half(size: int) -> float:
+    m = rs.Module("m")
+    a, b, c = m.signal("a", limit=LIMIT), m.signal("b", limit=LIMIT), m.signal("c")
+    declare(m, "one", when=a & b)
+    declare(m, "other", when=a & c)
+    given = [*(Emit("m:a", n) for n in range(size)), *(Emit("m:b", n) for n in range(size))]
+    return timed(Engine(rs.compile(m)), given, size)
+
+
+def fallbacks(size: int, *, guarded: bool) -> float:
+    m = rs.Module("m")
+    heard, out, calm = m.signal("heard"), m.slot("out", ""), m.flag("calm", default=True)
+    declare(m, "topic", when=heard & m.signal("topic"), writes=out)
+    for n in range(size):
+        if guarded:
+            declare(m, f"fallback{n}", when=heard & calm.holds(bool), writes=out)
+        else:
+            declare(m, f"fallback{n}", when=heard, writes=out, cooldown=20.0)
+    return timed(Engine(rs.compile(m)), [Emit("m:heard")], 1, until=1.0)
+
+
+def independent(size: int) -> float:
+    m = rs.Module("m")
+    heard = m.signal("heard")
+    for n in range(size):
+        declare(m, f"rule{n}", when=heard, writes=m.slot(f"out{n}", ""))
+    return timed(Engine(rs.compile(m)), [Emit("m:heard")], size)
+
+
+def cliques(links: int) -> float:
+    m = rs.Module("m")
+    heard, out = m.signal("heard"), m.slot("out", "")
+    topics = [m.signal(f"topic{n}") for n in range(round((links + 0.25) ** 0.5 + 0.5))]
+    declare(m, "begins", when=heard & m.signal("hint"), emits=topics[0])
+    for n, topic in enumerate(topics):
+        declare(m, f"leads{n}", when=topic, emits=[other for other in topics if other is not topic])
+        declare(m, f"about{n}", when=heard & topic, writes=out)
+    declare(m, "fallback", when=heard, writes=out)
+    return timed(Engine(rs.compile(m)), [Emit("m:heard")], 1, until=1.0)
+
+
 def grow(workload: str, size: int) -> float:
     """Return the seconds of processor time of a workload at a size."""
     match workload:
@@ -153,6 +218,20 @@ def grow(workload: str, size: int) -> float:
             return topics(size, raised=True)
         case "fallbacks":
             return topics(size, raised=True, fallbacks=size)
+        case "pairs beside a fallback":
+            return rival_pairs(size, shared=False)
+        case "pairs beside another pair":
+            return rival_pairs(size, shared=True)
+        case "shared half":
+            return shared_half(size)
+        case "recovering fallbacks":
+            return fallbacks(size, guarded=False)
+        case "guarded fallbacks":
+            return fallbacks(size, guarded=True)
+        case "independent writers":
+            return independent(size)
+        case "cliques":
+            return cliques(size)
         case _:
             raise ValueError(workload)
 
@@ -167,6 +246,13 @@ SIZES = {
     "topics, inputs": RULES,
     "topics, raised": RULES,
     "fallbacks": RULES,
+    "pairs beside a fallback": SPIKES,
+    "pairs beside another pair": SPIKES,
+    "shared half": 5 * SPIKES,
+    "recovering fallbacks": RULES,
+    "guarded fallbacks": RULES,
+    "independent writers": RULES,
+    "cliques": 90,
 }
 """Workload → the size of the smaller run."""
 

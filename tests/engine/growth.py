@@ -71,6 +71,21 @@ def pairs(size: int, rival: str, **options: Any) -> Work:
     return work
 
 
+def shared_half(size: int) -> Work:
+    """Make two pairs that share a half; all second spikes are for one of them."""
+    m = rs.Module("m")
+    a, b, c = m.signal("a", limit=9999), m.signal("b", limit=9999), m.signal("c")
+    declared(m, "one", when=a & b)
+    declared(m, "other", when=a & c)
+    engine = Engine(rs.compile(m))
+    given = [*(Emit("m:a", n) for n in range(size)), *(Emit("m:b", n) for n in range(size))]
+
+    def work() -> None:
+        assert len(runs(engine, *given)) == size
+
+    return work
+
+
 WORKLOADS: dict[str, Callable[[int], Work]] = {
     "independent writers": independent_writers,
     "recovering fallbacks": partial(fallbacks, cooldown=20.0),
@@ -79,6 +94,7 @@ WORKLOADS: dict[str, Callable[[int], Work]] = {
     "pairs beside a fallback for their second spike": partial(pairs, rival="b"),
     "pairs beside a recovering fallback": partial(pairs, rival="a", cooldown=5.0),
     "pairs beside a writer of another cause": partial(pairs, rival="c", weight=5.0),
+    "pairs that share a half": shared_half,
     "pairs beside another pair": partial(pairs, rival="a & c"),
 }
 

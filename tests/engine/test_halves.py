@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from typing import Any
 
 import pytest
@@ -164,3 +165,25 @@ def test_activations_without_consent_start_in_batches() -> None:
             if isinstance(effect, Run):
                 engine.receive(Finish(effect.run, "done"), 0.0)
     assert sizes == [100, 100, 50]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_each_rule_of_a_shared_half_takes_the_spikes_in_order(seed: int) -> None:
+    m = rs.Module("m")
+    a, b, c = (m.signal(name, limit=9999) for name in "abc")
+    declared(m, "one", when=a & b)
+    declared(m, "other", when=a & c)
+    engine, chance = Engine(rs.compile(m)), random.Random(seed)
+    given = dict.fromkeys("abc", 0)
+    found: dict[str, list[tuple[Any, ...]]] = {"m:one": [], "m:other": []}
+    for turn in range(400):
+        name = chance.choices("abc", (10, 5, 4) if turn < 200 else (1, 10, 10))[0]
+        for run in runs(engine, Emit(f"m:{name}", given[name])):
+            found[run.rule.name].append(tuple(run.payloads.values()))
+        given[name] += 1
+    assert len(found["m:one"]) == min(given["a"], given["b"])
+    assert len(found["m:other"]) == min(given["a"], given["c"])
+    assert all(pair == (n, n) for each in found.values() for n, pair in enumerate(each))
+    engine.advance(10.0)
+    assert not runs(engine, now=10.0)
+    assert not (engine.state.live or engine.state.halves or engine.state.lines)

@@ -263,6 +263,7 @@ def empty(play: Play) -> None:
         "waiting",
         "alternatives",
         "halves",
+        "lines",
         "seats",
         "pools",
         "benches",

@@ -28,7 +28,12 @@ def _world(chance: random.Random) -> World:
         pair = replace(_rule(chance, ["s0", "s1"], ["v0"]), when=((Want("s0"), Want("s1")),), writes=("v0",))
         signals, slots = signals[:3], ["v0"]
         rules = [replace(rule, emits=(), acts=(_act(chance, ()),)) for rule in (pair, *rules[:2])]
-        rules = [replace(rule, writes=("v0",)) for rule in rules]
+        writes = ("v0",) if chance.random() < 0.7 else ()
+        alike = chance.random() < 0.4  # all of them are pairs with the same first signal
+        rules = [
+            replace(rule, writes=writes, when=((Want("s0"), Want(chance.choice(signals[1:]))),) if alike else rule.when)
+            for rule in rules
+        ]
     most, gaps = (12, (0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 1.1, 2.5)) if chance.random() < 0.7 else (24, (0.0,) * 9 + (0.4,))
     return World(
         signals=tuple(SignalOf(limit=chance.choice((100, 100, 100, 2)), input=chance.random() < 0.3) for _ in signals),

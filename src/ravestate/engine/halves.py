@@ -16,14 +16,21 @@ explanation unfolds nothing.
 
 from __future__ import annotations
 
+from collections import OrderedDict
+from typing import Final
+
 from ravestate.engine.activation import Activation
 from ravestate.engine.conflict_sets import ConflictSets
 from ravestate.engine.entries import Entries
-from ravestate.engine.group import Group
+from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.holdings import Holdings
+from ravestate.engine.line import Line
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Half, Need, SignalPlan
+
+MANY: Final = 8
+"""The number of useless spikes that a search may pass before the half gets a `Line`."""
 
 
 class Halves:
@@ -139,18 +146,34 @@ class Halves:
         if need.kin != need.bit:
             found: list[Spike] = sorted((s for s in group.entries if state.keeps(partner, s)), key=waiting.__getitem__)
         else:
-            found = []
-            for first in waiting:  # mypyc would make a list of a generator
-                if state.keeps(partner, first):
-                    found.append(first)
-                    if free:
-                        break
+            found = self._find(partner, waiting)
         for first in found[:1] if free else found:
             activation = self._make(partner, first)
             self.holdings.acquire(activation, need, spike)
             self.holdings.waits.stir(activation)
             self.holdings.update(activation)
         return free and bool(found)
+
+    def _find(self, need: Need, waiting: OrderedDict[Spike, int]) -> list[Spike]:
+        """Return the spikes that a half holds for a need, oldest first; for a rule that writes no slot, only the oldest."""
+        state, half, found, passed = self.state, need.half, list[Spike](), 0
+        assert half is not None
+        free = not need.clause.rule.slots
+        line = state.lines.get(half)
+        if line is not None:
+            return line.find(need, state, all_=not free)
+        for first in waiting:
+            if state.keeps(need, first):
+                found.append(first)
+                if free:
+                    break
+            else:
+                passed += 1
+        if passed > MANY:
+            if state.lines is NOTHING:
+                state.lines = {}
+            state.lines[half] = Line(waiting)
+        return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
         """Make the activation of each clause whose stand-by was under pressure, and is no stand-by any more."""
