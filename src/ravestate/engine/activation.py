@@ -81,7 +81,6 @@ GATHERING: Final = 0
 READY: Final = 1
 WAITING: Final = 2
 RUNNING: Final = 3
-CANCELLING: Final = 4
 ENDED: Final = 5
 NAMES: Final = tuple(state.name.lower() for state in State)
 """The names of the states."""
@@ -193,3 +192,8 @@ class Activation:
 
     def __repr__(self) -> str:
         return f"{self.clause}@{self.id}"
+
+
+def by_age(activation: Activation) -> int:
+    """Return the sort key for activations, the oldest first."""
+    return activation.id

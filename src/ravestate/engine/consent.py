@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import NEVER, RUNNING, Activation
+from ravestate.engine.activation import NEVER, RUNNING, Activation, by_age
 from ravestate.engine.deadlines import PATIENCE
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.halves import Halves
@@ -114,7 +114,7 @@ class Consent:
             self.halves.unfold_clause(rival)
         living = [*members, *horizon.elsewhere(rival, group)]
         if len(living) > 1:
-            living.sort(key=_age)  # oldest first: an old activation with a young spike covers younger activations
+            living.sort(key=by_age)  # oldest first: an old activation with a young spike covers younger activations
         for member in (*living, None):
             if member is None:
                 if apart:
@@ -139,7 +139,7 @@ class Consent:
                     eliminated = True
                 continue
             apart = apart or (member is not None and not group.has(member))
-            refusal.names[rival.rule.name] = None
+            refusal.name(rival)
         return eliminated
 
     def _judge_half(
@@ -157,7 +157,7 @@ class Consent:
         bench = self.state.bench_of(half, spike)
         if bench is not None and bench.partner is not None:  # it is ready
             _note_firm(refusal, tuple([one for one in bench.partner.holders if one.clause is rival]))
-            refusal.names[rival.rule.name] = None
+            refusal.name(rival)
             return False
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
@@ -170,7 +170,7 @@ class Consent:
             self.halves.unfold(spike, half)  # no derivation rests on the new activations
         elif strength == FIRM:
             _note_firm(refusal, roots)
-            refusal.names[rival.rule.name] = None
+            refusal.name(rival)
         elif strength != NO:
             return self._press_half(refusal, half, spike, clause, commit=commit)
         return False
@@ -201,9 +201,10 @@ class Consent:
         for count, until in list(pressed):
             end = min(count, ahead)
             if until > state.now:
-                kept = [n.clause.rule.name for n in half.best[begin:end] if state.keeps(n, spike)]
+                kept = [n.clause for n in half.best[begin:end] if state.keeps(n, spike)]
+                for theirs in kept:
+                    refusal.name(theirs)
                 if kept:
-                    refusal.names.update(dict.fromkeys(kept))
                     refusal.pressed = True
                     refusal.recheck = min(refusal.recheck, until)
             elif commit and begin < end and self.holdings.entries.refuse_best(spike, half, begin, end):
@@ -343,7 +344,7 @@ def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
     for slot in rule.slots:
         for holder in group.taken.get(slot) or ():
             refusal.taken = True
-            refusal.names[holder.clause.rule.name] = None
+            refusal.name(holder.clause)
             refusal.blockers[holder] = None
     return True
 
@@ -359,10 +360,6 @@ def _is_covered(younger: Activation, older: Sequence[Activation]) -> bool:
     """Return whether one of the older activations, which are still to run, holds all spikes of a younger one."""
     spikes = younger.firm_spikes() if older else ()
     return any([all([spike in one.spikes for spike in spikes]) for one in older])
-
-
-def _age(activation: Activation) -> int:
-    return activation.id
 
 
 def _place(rival: tuple[Clause, list[Activation]]) -> int:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, RUNNING, WAITING, Activation
+from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, RUNNING, WAITING, Activation, by_age
 from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
 from ravestate.engine.refusal import Refusal
 from ravestate.engine.state import State
@@ -147,9 +147,8 @@ def _activation(state: State, activation: Activation) -> ActivationState:
         ahead = (
             refusal.leader.refusal.names if refusal.leader is not None and refusal.leader.refusal is not None else {}
         )
-        for rival in {**ahead, **refusal.names}:
-            theirs = max(state.effective(c) for c in state.policy.rule_plan(rival).clauses)
-            waits.append((rival, max(0.0, theirs - mine)))
+        for rule, rival in {**ahead, **refusal.names}.items():
+            waits.append((rule, max(0.0, state.effective(rival) - mine)))
     bounds = [activation.ripens, min(activation.pressed.values(), default=NEVER), activation.deadline]
     if activation.state == GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)
@@ -174,7 +173,7 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
     found = {rule: [*active] for rule, active in state.active.items()}
     for rule, others in stand_ins(state).items():
         found.setdefault(rule, []).extend(others)
-    return {rule: [_activation(state, one) for one in sorted(all_, key=_age)] for rule, all_ in found.items()}
+    return {rule: [_activation(state, one) for one in sorted(all_, key=by_age)] for rule, all_ in found.items()}
 
 
 def stand_ins(state: State) -> dict[int, list[Activation]]:
@@ -196,7 +195,7 @@ def stand_ins(state: State) -> dict[int, list[Activation]]:
                 other = state.stand_in(need, spike)
                 other.spikes[counterpart.index], other.missing = partner, 0
                 other.state, other.refusal = WAITING, Refusal()
-                other.refusal.names[need.clause.rule.name] = None
+                other.refusal.name(need.clause)
                 other.refusal.blockers.update(dict.fromkeys(h for h in partner.holders if h.state >= RUNNING))
                 found.setdefault(need.clause.rule.index, []).append(other)
     for best, (clauses, made, base) in state.alternatives.items():
@@ -209,7 +208,8 @@ def stand_ins(state: State) -> dict[int, list[Activation]]:
             other.spikes[0], other.missing, other.state = spike, 0, READY
             if best.state >= WAITING:
                 other.state, other.refusal = WAITING, Refusal()
-                other.refusal.names[best.clause.rule.name] = other.refusal.blockers[best] = None
+                other.refusal.name(best.clause)
+                other.refusal.blockers[best] = None
             found.setdefault(clause.rule.index, []).append(other)
     return found
 
@@ -286,7 +286,3 @@ def _missing(state: State, rule: RulePlan, records: Sequence[Record]) -> Iterato
             for cause in state.policy.causes.all_causes[signal.index]
         ]
         yield f"{signal.name} has not occurred" + (f": {'; '.join(raisers)}" if raisers else "")
-
-
-def _age(activation: Activation) -> int:
-    return activation.id

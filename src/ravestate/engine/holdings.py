@@ -15,6 +15,7 @@ from ravestate.engine.activation import (
     RUNNING,
     WAITING,
     Activation,
+    by_age,
 )
 from ravestate.engine.benches import Benches
 from ravestate.engine.deadlines import PATIENCE, RIPEN
@@ -82,7 +83,7 @@ class Holdings:
     def offer_to_lacking(self, need: Need, spike: Spike) -> None:
         """Offer a new spike to every activation that lacks it, oldest first (L12)."""
         lacking = self.state.lacking[need]
-        for activation in sorted(lacking, key=_age) if len(lacking) > 1 else tuple(lacking):
+        for activation in sorted(lacking, key=by_age) if len(lacking) > 1 else tuple(lacking):
             if need.kin != need.bit and not self.is_coherent(activation, need, spike):
                 continue
             if activation.missing & need.bit:  # an earlier offer may have met the need
@@ -384,7 +385,3 @@ class Holdings:
 def _of_spike(activation: Activation, spike: Spike) -> list[Need]:
     """Return the needs that an activation meets with a spike."""
     return [need for need in activation.clause.needs if activation.spikes[need.index] is spike]
-
-
-def _age(activation: Activation) -> int:
-    return activation.id

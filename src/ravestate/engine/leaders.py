@@ -76,7 +76,7 @@ class Leaders:
         refusal = Refusal()
         refusal.leader = leader.activation
         refusal.interests[groups[0]] = None
-        refusal.names[first.rule.name] = None
+        refusal.name(first)
         refusal.blockers[leader.activation] = None
         refusal.firm.append((leader.activation,))
         if clause.rule.cooldown or first.rule.cooldown or leader.recovering:

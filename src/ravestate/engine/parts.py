@@ -169,7 +169,8 @@ class Parts:
         state.adopt(event.policy)
         state.asking.update(state.waiting)
         for plan in plans[len(known) :]:
-            for need in (need for clause in plan.clauses for need in clause.needs if need.detached):
+            looking = [clause for clause in plan.clauses if clause.asks_detached]
+            for need in (need for clause in looking for need in clause.needs if need.detached):
                 for spike in state.live.get(need.signal.index, ()):
                     if spike.born + need.min_age > state.now:  # a spike sets these times at its birth for older rules
                         state.deadlines.add(spike.born + need.min_age, LOOK, (need, spike))

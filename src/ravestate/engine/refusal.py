@@ -8,6 +8,7 @@ from ravestate.engine.activation import NEVER, Activation
 
 if TYPE_CHECKING:
     from ravestate.engine.group import Group
+    from ravestate.policy.model import Clause
 
 RULE: Final = 0
 OUTSIDE: Final = 1
@@ -19,7 +20,7 @@ class Refusal:
     """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
 
     Attributes:
-        names: The names of the rules that the activation waits for.
+        names: Name of a rule that the activation waits for → the best of its clauses that compete.
         blockers: The live activations on whose progress the refusal depends.
         firm: For each rival that will be ready, or fail, by work in progress: the activations at work.
         taken: Whether a slot is taken.
@@ -36,13 +37,19 @@ class Refusal:
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
         self.hopes: dict[tuple[int, int], int] = {}
-        self.names: dict[str, None] = {}
+        self.names: dict[str, Clause] = {}
         self.blockers: dict[Activation, None] = {}
         self.firm: list[tuple[Activation, ...]] = []
         self.leader: Activation | None = None
         self.taken = False
         self.pressed = False
         self.recheck = NEVER
+
+    def name(self, rival: Clause) -> None:
+        """Note that the activation waits for a clause."""
+        known = self.names.get(rival.rule.name)
+        if known is None or known.base < rival.base:
+            self.names[rival.rule.name] = rival
 
     @property
     def bounded(self) -> bool:

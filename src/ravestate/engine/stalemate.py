@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ravestate.engine.activation import Activation
+from ravestate.engine.activation import Activation, by_age
 from ravestate.engine.consent import Consent
 from ravestate.engine.idle import Idle
 
@@ -41,9 +41,9 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             freed = {one for one in stuck if any([stuck.isdisjoint(roots) for roots in _firm(one)])}
             stuck -= freed
         while stuck:
-            new = Idle(one for one in sorted(stuck, key=_age) if known is None or one not in known)
+            new = Idle(one for one in sorted(stuck, key=by_age) if known is None or one not in known)
             idle = (new,) if known is None else (new, known)
-            answers = [(one, consent.ask(one, idle, commit=False)) for one in sorted(stuck, key=_age)]
+            answers = [(one, consent.ask(one, idle, commit=False)) for one in sorted(stuck, key=by_age)]
             moved = [(one, refusal) for one, refusal in answers if refusal]
             if not moved:
                 break
@@ -66,7 +66,3 @@ def _hangs(activation: Activation) -> bool:
     """
     refusal = activation.refusal
     return refusal is not None and bool(refusal.firm) and not refusal.bounded
-
-
-def _age(activation: Activation) -> int:
-    return activation.id

@@ -128,5 +128,9 @@ def patience_of_rivals(state: State, activation: Activation) -> float | None:
         times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names and t > state.now]
         for spike in group.entries if state.pressed else ():
             for half, pressed in state.pressed.get(spike, {}).items():
-                times += [t for _, t in pressed if t > state.now and half.best[0].clause.rule.name in names]
+                begin = 0
+                for end, until in pressed:
+                    if until > state.now and any([n.clause.rule.name in names for n in half.best[begin:end]]):
+                        times.append(until)
+                    begin = end
     return max(times, default=None)

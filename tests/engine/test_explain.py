@@ -1,0 +1,80 @@
+"""Explanations are as exact in a crowd as for two rules: until when a rule waits, and by how much it is behind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import ravestate as rs
+from engine.test_halves import declared, runs
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import AddRule, Emit, Finish
+from ravestate.engine.explain import ActivationState, explain
+
+
+def alive(engine: Engine, rule: str) -> ActivationState:
+    """Return the rule's only live activation."""
+    [activation] = explain(engine, engine.policy.rule_plan(rule)).activations
+    return activation
+
+
+def test_the_end_of_a_wait_outlives_the_best_of_the_rivals() -> None:
+    m = rs.Module("m")
+    heard, out = m.signal("heard"), m.slot("out", "")
+    topics = [m.signal(f"topic{n}") for n in range(4)]
+    for n, topic in enumerate(topics):
+        declared(m, f"about{n}", when=heard & topic, writes=out)
+    declared(m, "fallback", when=heard, writes=out)
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, Emit("m:heard"), end=False)
+    for n in range(3):
+        [run] = runs(engine, Emit(f"m:topic{n}"), now=0.1, end=False)
+        engine.receive(Finish(run.run, "resigned"), 0.1)
+        assert not runs(engine, now=0.1, end=False)
+        waits = alive(engine, "m:fallback")
+        assert {rule for rule, _ in waits.waits_for} == {f"m:about{k}" for k in range(n + 1, 4)}
+        assert waits.until == 1.0
+
+
+def test_the_nats_are_those_of_the_clause_that_competes() -> None:
+    m = rs.Module("m")
+    heard, hint, other, out = m.signal("heard"), m.signal("hint"), m.signal("other"), m.slot("out", "")
+    declared(m, "two", when=(heard & hint) | other.where(bool).where(callable), writes=out)
+    declared(m, "fallback", when=heard, writes=out)
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, Emit("m:heard"))
+    mine, theirs = (engine.policy.rule_plan(f"m:{rule}").clauses[0].utility for rule in ("fallback", "two"))
+    best = engine.policy.rule_plan("m:two").clauses[1].utility
+    assert best > theirs
+    assert alive(engine, "m:fallback").waits_for == (("m:two", pytest.approx(theirs - mine)),)
+
+
+def test_followers_name_the_rivals_of_their_leader() -> None:
+    m = rs.Module("m")
+    heard, out = m.signal("heard"), m.slot("out", "")
+    declared(m, "topic", when=heard & m.signal("topic"), writes=out)
+    for n in range(3):
+        declared(m, f"fallback{n}", when=heard, writes=out, cooldown=5.0)
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, Emit("m:heard"))
+    for n in range(1, 3):
+        names = [rule for rule, _ in alive(engine, f"m:fallback{n}").waits_for]
+        assert names == ["m:topic", "m:fallback0"]
+
+
+def test_a_new_rule_that_only_looks_needs_no_deadline_for_earlier_spikes() -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    declared(m, "both", when=b & a.detached())
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, Emit("m:a"))
+    due = engine.next_deadline()
+
+    @m.rule(when=a.detached().min_age(2.0))
+    async def later(ctx: Any) -> None:
+        """Look at spikes that occur from now on."""
+
+    engine.receive(AddRule(engine.policy.with_rule(later)), 0.0)
+    assert not runs(engine)
+    assert engine.next_deadline() == due
