@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable
-from typing import Final
+from typing import Any, Final
 
 from ravestate.engine.activation import READY, WAITING, Activation
 from ravestate.engine.consent import Consent
 from ravestate.engine.idle import Idle
+from ravestate.engine.line import Line
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
@@ -41,9 +42,9 @@ class Agenda:
         self.runs = runs
         self.slots = slots
         self.consent = consent
-        self.queue: list[Turn] = []
+        self.queue = Line()
         """The activations that ask in this instant, the best first."""
-        self.places: dict[Activation, Turn] = {}
+        self.places: dict[Activation, Any] = {}
         """Activation in the queue → its place that counts. Other places that it has in the queue are out of date."""
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
@@ -89,9 +90,9 @@ class Agenda:
         else:
             self._line_up(asking)
         written: set[int] = set()
-        later: list[Turn] = []
+        later: list[Any] = []
         while queue:
-            turn = heapq.heappop(queue)
+            turn = queue.pop()  # not unpacked: it is compared as it is
             activation = turn[4]
             if places.get(activation) != turn:
                 continue  # it has another place by now
@@ -109,8 +110,8 @@ class Agenda:
                 self.runs.start(activation)
                 written.update(rule.slots)
         for turn in later:
-            heapq.heappush(queue, turn)
             places[turn[4]] = turn
+        queue.join(later)
         if not (queue or state.asking or state.dirty or state.stirred or state.acts or state.free):
             self._break_stalemate()
 
@@ -137,13 +138,15 @@ class Agenda:
         state.reordered = False
         self.time = state.now
         self.recovering = self.recovering and bool(queue)
+        turns: list[Any] = []
         for activation in asking:
             if activation.state in (READY, WAITING):
-                turn = self._turn(activation)
+                turn: Any = self._turn(activation)
                 if places.get(activation) != turn:
                     places[activation] = turn
-                    heapq.heappush(queue, turn)
+                    turns.append(turn)
                     self.recovering = self.recovering or activation.clause.rule.cooldown > 0
+        queue.join(turns)
 
     def _may_ask(self, activation: Activation) -> bool:
         """Return whether an activation may ask: it is ready or waits, its guards are true, no loop defers it (L23)."""
@@ -176,8 +179,8 @@ class Agenda:
         self.consent.holdings.update(activation)
         return False
 
-    def _turn(self, activation: Activation) -> Turn:
-        """Return the activation's place in the queue: older causes first, and the best first within a cause."""
+    def _turn(self, activation: Activation) -> Any:
+        """Return the activation's place in the queue, a `Turn`: older causes first, and the best first within a cause."""
         groups = activation.firm_groups()
         cause = groups[0].id if len(groups) == 1 else min([group.id for group in groups])
         return (cause, *self.state.order(activation), activation)
