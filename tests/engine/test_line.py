@@ -19,7 +19,7 @@ def test_the_least_place_comes_first(steps: list[list[int] | str]) -> None:
             line.join([(number,) for number in step])
             model = sorted([*model, *step])
         elif model:
-            assert line.pop() == (model.pop(0),)
-        assert bool(line) == bool(model)
+            assert line.take() == (model.pop(0),)
+        assert bool(line.line) == bool(model)
     line.clear()
-    assert not line
+    assert not line.line

@@ -70,7 +70,13 @@ class Agenda:
         """Whether activations may ask for consent now."""
         state = self.state
         return bool(
-            self.queue or state.asking or state.dirty or state.stirred or state.headless or state.refused or state.stuck
+            self.queue.line
+            or state.asking
+            or state.dirty
+            or state.stirred
+            or state.headless
+            or state.refused
+            or state.stuck
         )
 
     def consent_round(self) -> None:
@@ -80,10 +86,11 @@ class Agenda:
         activation sees the values that the rule writes before the rule first suspends.
         """
         state, queue, places = self.state, self.queue, self.places
+        line = queue.line
         state.standing.now = state.now
         self.consent.holdings.benches.settle()
         asking = self.consent.holdings.waits.wake()
-        if not queue and len(asking) == 1:
+        if not line and len(asking) == 1:
             for activation in asking:
                 if self._may_ask(activation) and self._ask(activation):
                     self.runs.start(activation)
@@ -91,8 +98,8 @@ class Agenda:
             self._line_up(asking)
         written: set[int] = set()
         later: list[Any] = []
-        while queue:
-            turn = queue.pop()  # not unpacked: it is compared as it is
+        while line:
+            turn = queue.take()  # not unpacked: it is compared as it is
             activation = turn[4]
             if places.get(activation) != turn:
                 continue  # it has another place by now
@@ -111,14 +118,21 @@ class Agenda:
                 written.update(rule.slots)
         for turn in later:
             places[turn[4]] = turn
-        queue.join(later)
-        if not (queue or state.asking or state.dirty or state.stirred or state.acts or state.free):
+        if later:
+            queue.join(later)
+        if not (
+            line or state.asking or state.dirty or state.stirred or state.acts or state.free.new or state.free.line
+        ):
             self._break_stalemate()
 
     def settle_flags(self) -> bool:
         """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
         state = self.state
-        pressure = bool(state.benches) or _presses(state.waiting) or _presses(state.alternatives)
+        pressure = bool(
+            state.benches
+            or (state.waiting and _presses(state.waiting))
+            or (state.alternatives and _presses(state.alternatives))
+        )
         if pressure != state.values.get(state.pressure.index, False):
             self.slots.set_flag(state.pressure, pressure)
             return True
@@ -137,7 +151,7 @@ class Agenda:
             places.clear()
         state.reordered = False
         self.time = state.now
-        self.recovering = self.recovering and bool(queue)
+        self.recovering = self.recovering and bool(queue.line)
         turns: list[Any] = []
         for activation in asking:
             if activation.state in (READY, WAITING):

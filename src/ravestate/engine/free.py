@@ -10,19 +10,18 @@ from ravestate.engine.line import Line
 Place = tuple[int, int, int, Activation]
 
 
-class Free:
+class Free(Line):
     """A queue of ready activations. Most join at its end; those that lost a spike and took another join anywhere.
 
     Attributes:
         new: The activations without a place so far.
-        line: The places of the others.
     """
 
-    __slots__ = ("line", "new")
+    __slots__ = ("new",)
 
     def __init__(self) -> None:
+        super().__init__()
         self.new: list[Activation] = []
-        self.line = Line()
 
     def pop(self) -> Activation | None:
         """Remove the first activation that is still ready, and return it; None if there is none."""
@@ -31,19 +30,16 @@ class Free:
             activation = new.pop()
             return activation if activation.state == READY else None
         if new:
-            line.join([_place(activation) for activation in new])
+            self.join([_place(activation) for activation in new])
             new.clear()
         while line:
-            place = line.pop()
+            place = self.take()
             activation = place[3]
             if activation.place == place:  # else it was added again since
                 activation.place = None
                 if activation.state == READY:
                     return activation
         return None
-
-    def __bool__(self) -> bool:
-        return bool(self.new or self.line)
 
 
 def _place(activation: Activation) -> Any:

@@ -7,40 +7,42 @@ from typing import Any
 
 
 class Line:
-    """A queue of places, which are tuples; the least one is the first."""
+    """A queue of places, which are tuples; the least one is the first.
 
-    __slots__ = ("_between", "_line")
+    Attributes:
+        line: The places that joined before all others, the first one last. It is empty only if the queue is.
+    """
+
+    __slots__ = ("_between", "line")
 
     def __init__(self) -> None:
-        self._line: list[Any] = []  # the first one last
-        self._between: list[Any] = []  # a heap of the places that did not come before all others
+        self.line: list[Any] = []
+        self._between: list[Any] = []  # a heap of the other places
 
     def join(self, places: list[Any]) -> None:
         """Add places."""
         if len(places) > 1:
             places.sort(reverse=True)
-        line = self._line
+        line = self.line
         for place in places:
             if not line or place < line[-1]:
                 line.append(place)
             else:
                 heapq.heappush(self._between, place)
 
-    def pop(self) -> Any:
+    def take(self) -> Any:
         """Remove the first place, and return it."""
-        line = self._line
-        if self._between:
-            if not line:
-                line = self._line = sorted(self._between, reverse=True)
-                self._between.clear()
-            elif self._between[0] < line[-1]:
-                return heapq.heappop(self._between)
+        line, between = self.line, self._between
+        if between:
+            if between[0] < line[-1]:
+                return heapq.heappop(between)
+            if len(line) == 1:
+                line += sorted(between, reverse=True)
+                between.clear()
+                return line.pop(0)
         return line.pop()
 
     def clear(self) -> None:
         """Remove all places."""
-        self._line.clear()
+        self.line.clear()
         self._between.clear()
-
-    def __bool__(self) -> bool:
-        return bool(self._line or self._between)
