@@ -282,7 +282,7 @@ def empty(play: Play) -> None:
         "free",
     ):
         assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
-    assert not engine.parts.agenda.queue
+    assert not engine.parts.agenda.queue.line
     assert not engine.parts.agenda.places
     assert engine.next_deadline() is None
     assert len(engine.state.deadlines) == 0

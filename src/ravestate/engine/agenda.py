@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable
-from typing import Final
+from typing import Any, Final
 
 from ravestate.engine.activation import READY, WAITING, Activation
 from ravestate.engine.consent import Consent
 from ravestate.engine.idle import Idle
+from ravestate.engine.line import Line
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
@@ -41,9 +42,9 @@ class Agenda:
         self.runs = runs
         self.slots = slots
         self.consent = consent
-        self.queue: list[Turn] = []
+        self.queue = Line()
         """The activations that ask in this instant, the best first."""
-        self.places: dict[Activation, Turn] = {}
+        self.places: dict[Activation, Any] = {}
         """Activation in the queue → its place that counts. Other places that it has in the queue are out of date."""
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
@@ -69,7 +70,13 @@ class Agenda:
         """Whether activations may ask for consent now."""
         state = self.state
         return bool(
-            self.queue or state.asking or state.dirty or state.stirred or state.headless or state.refused or state.stuck
+            self.queue.line
+            or state.asking
+            or state.dirty
+            or state.stirred
+            or state.headless
+            or state.refused
+            or state.stuck
         )
 
     def consent_round(self) -> None:
@@ -79,19 +86,20 @@ class Agenda:
         activation sees the values that the rule writes before the rule first suspends.
         """
         state, queue, places = self.state, self.queue, self.places
+        line = queue.line
         state.standing.now = state.now
         self.consent.holdings.benches.settle()
         asking = self.consent.holdings.waits.wake()
-        if not queue and len(asking) == 1:
+        if not line and len(asking) == 1:
             for activation in asking:
                 if self._may_ask(activation) and self._ask(activation):
                     self.runs.start(activation)
         else:
             self._line_up(asking)
         written: set[int] = set()
-        later: list[Turn] = []
-        while queue:
-            turn = heapq.heappop(queue)
+        later: list[Any] = []
+        while line:
+            turn = queue.take()  # not unpacked: it is compared as it is
             activation = turn[4]
             if places.get(activation) != turn:
                 continue  # it has another place by now
@@ -110,15 +118,22 @@ class Agenda:
                 written.update(rule.slots)
         self.consent.leaders.clear()
         for turn in later:
-            heapq.heappush(queue, turn)
             places[turn[4]] = turn
-        if not (queue or state.asking or state.dirty or state.stirred or state.acts or state.free):
+        if later:
+            queue.join(later)
+        if not (
+            line or state.asking or state.dirty or state.stirred or state.acts or state.free.new or state.free.line
+        ):
             self._break_stalemate()
 
     def settle_flags(self) -> bool:
         """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
         state = self.state
-        pressure = bool(state.benches) or _presses(state.waiting) or _presses(state.alternatives)
+        pressure = bool(
+            state.benches
+            or (state.waiting and _presses(state.waiting))
+            or (state.alternatives and _presses(state.alternatives))
+        )
         if pressure != state.values.get(state.pressure.index, False):
             self.slots.set_flag(state.pressure, pressure)
             return True
@@ -137,14 +152,16 @@ class Agenda:
             places.clear()
         state.reordered = False
         self.time = state.now
-        self.recovering = self.recovering and bool(queue)
+        self.recovering = self.recovering and bool(queue.line)
+        turns: list[Any] = []
         for activation in asking:
             if activation.state in (READY, WAITING):
-                turn = self._turn(activation)
+                turn: Any = self._turn(activation)
                 if places.get(activation) != turn:
                     places[activation] = turn
-                    heapq.heappush(queue, turn)
+                    turns.append(turn)
                     self.recovering = self.recovering or activation.clause.rule.cooldown > 0
+        queue.join(turns)
 
     def _may_ask(self, activation: Activation) -> bool:
         """Return whether an activation may ask: it is ready or waits, its guards are true, no loop defers it (L23)."""
@@ -177,8 +194,8 @@ class Agenda:
         self.consent.holdings.update(activation)
         return False
 
-    def _turn(self, activation: Activation) -> Turn:
-        """Return the activation's place in the queue: older causes first, and the best first within a cause."""
+    def _turn(self, activation: Activation) -> Any:
+        """Return the activation's place in the queue, a `Turn`: older causes first, and the best first within a cause."""
         groups = activation.firm_groups()
         cause = groups[0].id if len(groups) == 1 else min([group.id for group in groups])
         return (cause, *self.state.order(activation), activation)

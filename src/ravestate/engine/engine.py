@@ -47,9 +47,11 @@ class Engine:
         []
     """
 
-    __slots__ = ("__weakref__", "_memory", "_parts")
+    __slots__ = ("__weakref__", "_memory", "_parts", "policy")
 
     def __init__(self, policy: Policy, *, patience: float = DEFAULT_PATIENCE, report_ends: bool = False) -> None:
+        self.policy = policy
+        """The policy; it has more rules after each `AddRule`."""
         self._memory = Memory(policy, patience, report_ends)
         self._parts: Parts | None = None
 
@@ -68,6 +70,7 @@ class Engine:
         if handler is None:
             raise EngineError(f"{event!r} is not an event: see ravestate.engine.events")
         handler(parts, event)
+        self.policy = parts.state.policy
         if rested and parts.state.at_rest:
             self._rest(parts)  # no rule hears of the event
 
@@ -130,11 +133,6 @@ class Engine:
     def state(self) -> State:
         """The tables of the engine. The engine's parts change them; other code may read them, before the next event."""
         return self.parts.state
-
-    @property
-    def policy(self) -> Policy:
-        """The policy; it has more rules after each `AddRule`."""
-        return self._latest.policy
 
     @property
     def now(self) -> float:

@@ -62,8 +62,8 @@ class Entries:
             del held[spike]
             if not held:
                 del state.halves[half]
-                if half in state.lines:
-                    del state.lines[half]
+                if half in state.rows:
+                    del state.rows[half]
         spike.entries -= 1
         state.busy -= half.busy
         if state.pressed:

@@ -24,13 +24,13 @@ from ravestate.engine.conflict_sets import ConflictSets
 from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.holdings import Holdings
-from ravestate.engine.line import Line
+from ravestate.engine.row import Row
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Half, Need, SignalPlan
 
 MANY: Final = 8
-"""The number of useless spikes that a search may pass before the half gets a `Line`."""
+"""The number of useless spikes that a search may pass before the half gets a `Row`."""
 
 
 class Halves:
@@ -159,9 +159,9 @@ class Halves:
         state, half, found, passed = self.state, need.half, list[Spike](), 0
         assert half is not None
         free = not need.clause.rule.slots
-        line = state.lines.get(half)
-        if line is not None:
-            return line.find(need, state, all_=not free)
+        row = state.rows.get(half)
+        if row is not None:
+            return row.find(need, state, all_=not free)
         for first in waiting:
             if state.keeps(need, first):
                 found.append(first)
@@ -170,9 +170,9 @@ class Halves:
             else:
                 passed += 1
         if passed > MANY:
-            if state.lines is NOTHING:
-                state.lines = {}
-            state.lines[half] = Line(waiting)
+            if state.rows is NOTHING:
+                state.rows = {}
+            state.rows[half] = Row(waiting)
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:

@@ -1,63 +1,48 @@
-"""A line: the spikes that a half holds, so that each of its clauses finds its own without a look at all of them."""
+"""A line: places in order. Most places join in one batch or return to the front, and so need no search."""
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from typing import TYPE_CHECKING
-
-from ravestate.engine.spike import Spike
-from ravestate.policy.model import Need
-
-if TYPE_CHECKING:
-    from ravestate.engine.state import State
-
-SPARE = 32
-"""The number of spikes that a line may keep although the half has given them up."""
+import heapq
+from typing import Any
 
 
 class Line:
-    """The spikes of a half, oldest first.
+    """A queue of places, which are tuples; the least one is the first.
 
-    A half may hold a spike for some of its clauses only. A spike that it holds no longer for a clause does not come back.
-    So the line notes for each clause how many spikes at its beginning are of no use.
+    Attributes:
+        line: The places that joined before all others, the first one last. It is empty only if the queue is.
     """
 
-    __slots__ = ("_held", "_last", "_spikes", "_starts")
+    __slots__ = ("_between", "line")
 
-    def __init__(self, held: OrderedDict[Spike, int]) -> None:
-        self._held = held
-        self._spikes: list[Spike] = []
-        self._last = -1  # the number of the youngest spike in the line
-        self._starts: dict[Need, int] = {}
+    def __init__(self) -> None:
+        self.line: list[Any] = []
+        self._between: list[Any] = []  # a heap of the other places
 
-    def find(self, need: Need, state: State, *, all_: bool) -> list[Spike]:
-        """Return the oldest spike that the half holds for a need, or with `all_` each such spike."""
-        self._catch_up()
-        spikes, found = self._spikes, list[Spike]()
-        place = self._starts.get(need, 0)
-        while place < len(spikes) and not state.keeps(need, spikes[place]):
-            place += 1
-        self._starts[need] = place
-        while place < len(spikes) and (all_ or not found):
-            if state.keeps(need, spikes[place]):
-                found.append(spikes[place])
-            place += 1
-        return found
+    def join(self, places: list[Any]) -> None:
+        """Add places."""
+        if len(places) > 1:
+            places.sort(reverse=True)
+        line = self.line
+        for place in places:
+            if not line or place < line[-1]:
+                line.append(place)
+            else:
+                heapq.heappush(self._between, place)
 
-    def _catch_up(self) -> None:
-        """Add the spikes that have come since, and if too many have gone, leave these out."""
-        held = self._held
-        new: list[Spike] = []
-        for spike in reversed(held):
-            if held[spike] <= self._last:
-                break
-            new.append(spike)
-        if new:
-            self._last = held[new[0]]
-            self._spikes += reversed(new)
-        if len(self._spikes) > 2 * len(held) + SPARE:
-            left = [0]  # for each place: how many spikes before it are left
-            for spike in self._spikes:
-                left.append(left[-1] + (spike in held))
-            self._starts = {need: left[start] for need, start in self._starts.items()}
-            self._spikes = [spike for spike in self._spikes if spike in held]
+    def take(self) -> Any:
+        """Remove the first place, and return it."""
+        line, between = self.line, self._between
+        if between:
+            if between[0] < line[-1]:
+                return heapq.heappop(between)
+            if len(line) == 1:
+                line += sorted(between, reverse=True)
+                between.clear()
+                return line.pop(0)
+        return line.pop()
+
+    def clear(self) -> None:
+        """Remove all places."""
+        self.line.clear()
+        self._between.clear()

@@ -161,7 +161,7 @@ class Matching:
                 self._offer(need, spike)
         if signal.conflict_sets:
             self.sets.offer(signal, spike)
-        if not (spike.is_held or spike.entries):
+        if spike.holder is None and not (spike.is_held or spike.entries):
             self.entries.forget(spike)
 
     def _offer(self, need: Need, spike: Spike) -> None:

@@ -75,6 +75,7 @@ class Parts:
     def effects(self) -> list[Effect]:
         """Return the effects to perform now. Call this again after performing them, until the list is empty."""
         state, agenda = self.state, self.agenda
+        free = state.free
         # Reports (of spikes, ends, failures) do not end the loop: only a run to start or cancel does.
         while not state.acts:
             if state.deadlines.earliest <= state.now:
@@ -86,7 +87,7 @@ class Parts:
                 self.matching.birth(error, failure, (), self.matching.new_group(), None, lineage)
             elif state.busy and not state.values.get(state.activity.index):
                 self.slots.set_flag(state.activity, True)
-            elif state.free:
+            elif free.new or free.line:
                 agenda.start_free()
             elif agenda.has_questions:
                 agenda.consent_round()
@@ -107,15 +108,19 @@ class Parts:
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
         """Handle the event `Write` at the present time."""
-        self.slots.write(self._slot(slot), value, None if run is None else self._run(run))
+        state = self.state
+        writer = None if run is None else state.running.get(run) or self._run(run)
+        self.slots.write(state.slot_of.get(slot) or self._slot(slot), value, writer)
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
         """Handle the event `Emit` at the present time."""
-        self.matching.emit(self._signal(signal), payload, None if run is None else self._run(run))
+        state = self.state
+        emitter = None if run is None else state.running.get(run) or self._run(run)
+        self.matching.emit(state.signal_of.get(signal) or self._signal(signal), payload, emitter)
 
     def done(self, run: int) -> None:
         """Handle the event `Finish` at the present time, for a run that is done."""
-        self.runs.finish(self._run(run), DONE, "", None)
+        self.runs.finish(self.state.running.get(run) or self._run(run), DONE, "", None)
 
     # ------------------------------------------------------------------------------------ events
 

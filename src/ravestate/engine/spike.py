@@ -21,6 +21,8 @@ class Spike:
         rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
         before: The number of the last activation that is older than the spike.
         lineage: In an instant with many runs: the rules that led to the spike (L23).
+        holder: The first activation that has taken the spike, while it holds the spike. Most spikes never have a second one,
+            and need no table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         entries: How many halves hold the spike without an activation (``halves.py``).
         parted: The numbers of the clauses in these halves that do not hold the spike: they gave it up, or have an
@@ -29,13 +31,13 @@ class Spike:
     """
 
     __slots__ = (
-        "_holder",
         "_others",
         "before",
         "born",
         "entries",
         "expiring",
         "group",
+        "holder",
         "id",
         "lineage",
         "parents",
@@ -66,7 +68,7 @@ class Spike:
         self.rule = rule
         self.before = before
         self.lineage: Lineage | None = None
-        self._holder: Activation | None = None  # most spikes never have a second one, and need no table
+        self.holder: Activation | None = None
         self._others: dict[Activation, None] = NOTHING
         self.expiring: tuple[float, ...] = ()
         self.entries = 0
@@ -76,12 +78,12 @@ class Spike:
     @property
     def is_held(self) -> bool:
         """Whether an activation holds the spike."""
-        return self._holder is not None or bool(self._others)
+        return self.holder is not None or bool(self._others)
 
     @property
     def holders(self) -> tuple[Activation, ...]:
         """The activations that hold the spike, in the order in which they took it."""
-        holder = self._holder
+        holder = self.holder
         if self._others:
             return tuple(self._others) if holder is None else (holder, *self._others)
         return () if holder is None else (holder,)
@@ -89,17 +91,17 @@ class Spike:
     def hold(self, holder: Activation) -> None:
         """Note that an activation holds the spike."""
         if self._others:
-            if holder is not self._holder:
+            if holder is not self.holder:
                 self._others[holder] = None
-        elif self._holder is None:
-            self._holder = holder
-        elif holder is not self._holder:
+        elif self.holder is None:
+            self.holder = holder
+        elif holder is not self.holder:
             self._others = {holder: None}
 
     def release(self, holder: Activation) -> None:
         """Note that one of the holders gives the spike up."""
-        if holder is self._holder:
-            self._holder = None
+        if holder is self.holder:
+            self.holder = None
         else:
             del self._others[holder]
 

@@ -8,7 +8,7 @@ The other parts of the engine share one state. Beside `State.adopt`, these files
 - `active`: ``holdings.py``; `lacking`: also ``matching.py`` and ``halves.py``; `gated`: also ``slots.py``
 - `live`: ``matching.py`` and ``entries.py``; `busy`: ``holdings.py`` and ``entries.py``
 - `halves`, `pools`, `seats`, `benches`: ``entries.py`` and ``benches.py``
-- `lines`: ``halves.py`` and ``entries.py``
+- `rows`: ``halves.py`` and ``entries.py``
 - `headless`: ``holdings.py`` and ``benches.py``
 - `pressed`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
 - `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: also ``agenda.py``
@@ -33,9 +33,9 @@ from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.idle import Idle
-from ravestate.engine.line import Line
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.memory import Memory
+from ravestate.engine.row import Row
 from ravestate.engine.spike import Spike
 from ravestate.engine.standing import Standing
 from ravestate.engine.trace import Tracer
@@ -72,7 +72,7 @@ class State(Memory):
         "hope_counts",
         "hoping",
         "lacking",
-        "lines",
+        "rows",
         "live",
         "loops",
         "out",
@@ -113,7 +113,7 @@ class State(Memory):
         self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING
         """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
         before theirs (``halves.py``)."""
-        self.lines: dict[Half, Line] = NOTHING
+        self.rows: dict[Half, Row] = NOTHING
         """Half that holds many spikes for some of its clauses only → these spikes in a line (``line.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
         """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
