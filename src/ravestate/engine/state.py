@@ -72,7 +72,6 @@ class State(Memory):
         "hope_counts",
         "hoping",
         "lacking",
-        "rows",
         "live",
         "loops",
         "out",
@@ -81,6 +80,7 @@ class State(Memory):
         "pressure",
         "refused",
         "reordered",
+        "rows",
         "running",
         "seats",
         "signal_of",
@@ -114,7 +114,7 @@ class State(Memory):
         """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
         before theirs (``halves.py``)."""
         self.rows: dict[Half, Row] = NOTHING
-        """Half that holds many spikes for some of its clauses only → these spikes in a line (``line.py``)."""
+        """Half that holds many spikes for some of its clauses only → these spikes in a row (``row.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
         """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
         self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
