@@ -186,4 +186,4 @@ def test_each_rule_of_a_shared_half_takes_the_spikes_in_order(seed: int) -> None
     assert all(pair == (n, n) for each in found.values() for n, pair in enumerate(each))
     engine.advance(10.0)
     assert not runs(engine, now=10.0)
-    assert not (engine.state.live or engine.state.halves or engine.state.lines)
+    assert not (engine.state.live or engine.state.halves or engine.state.rows)

@@ -263,7 +263,7 @@ def empty(play: Play) -> None:
         "waiting",
         "alternatives",
         "halves",
-        "lines",
+        "rows",
         "seats",
         "pools",
         "benches",
