@@ -2,12 +2,16 @@
 
 Many contexts of one policy run on one loop, in real time. Each has answered inputs, and all spikes have aged. The figure
 is the memory that tracemalloc counts, divided by the number of contexts.
+
+The other figures are the processor time to make and start 10,000 contexts, and that of a full garbage collection with
+100,000 contexts at rest.
 """
 
 from __future__ import annotations
 
 import asyncio
 import gc
+import time
 import tracemalloc
 from collections.abc import Iterable
 
@@ -53,6 +57,38 @@ def held(contexts: int, k: int, unrelated: int) -> float:
     return asyncio.run(measure())
 
 
+async def _start(policy: rs.Policy, count: int) -> list[rs.Context]:
+    contexts = [rs.Context(policy) for _ in range(count)]
+    for context in contexts:
+        await context.start()
+    await asyncio.sleep(0)
+    return contexts
+
+
+def made(contexts: int) -> float:
+    """Return the seconds of processor time that new contexts take until they are at rest."""
+    policy = rs.compile(Agent(1).module)
+    gc.collect()
+    loop = asyncio.new_event_loop()  # never closed: the process ends with its contexts
+    begin = time.process_time()
+    loop.run_until_complete(_start(policy, contexts))
+    return time.process_time() - begin
+
+
+def collected(contexts: int) -> float:
+    """Return the seconds of processor time of a full collection."""
+    policy = rs.compile(Agent(1).module)
+    kept = asyncio.new_event_loop().run_until_complete(_start(policy, contexts))
+    gc.collect()
+    times: list[float] = []
+    for _ in range(3):
+        begin = time.process_time()
+        gc.collect()
+        times.append(time.process_time() - begin)
+    assert len(kept) == contexts
+    return min(times)
+
+
 def ask(bench: Bench) -> Iterable[Figure]:
     """Measure a small agent, and an agent with a thousand rules."""
     contexts = bench.several(100, 30)
@@ -69,7 +105,15 @@ def ask(bench: Bench) -> Iterable[Figure]:
             target="< 5 kB",
             reach=lambda value: value < LIMIT,
         )
+    for call, count, title, target in (
+        ("made", 10_000, "10,000 contexts are made and started in", 0.5),
+        ("collected", 100_000, "a full collection with 100,000 contexts takes", 0.6),
+    ):
+        values = [bench.ours("benchmarks.questions.memory").ask(call, contexts=count) for _ in bench.rounds(3, 1)]
+        yield measured(
+            "memory", title, values, target=f"<= {target:g} s", reach=lambda value, target=target: value <= target
+        )
 
 
 if __name__ == "__main__":
-    serve(held)
+    serve(held, made, collected)

@@ -279,9 +279,10 @@ def empty(play: Play) -> None:
         "watched_by",
         "errors",
         "out",
-        "free",
     ):
         assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
+    assert not engine.state.free.new
+    assert not engine.state.free.line
     assert not engine.parts.agenda.queue.line
     assert not engine.parts.agenda.places
     assert engine.next_deadline() is None
