@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import itertools
 import json
 import logging
@@ -15,6 +16,7 @@ from typing import Any, Literal, Protocol
 
 from ravestate.errors import PlatformError
 
+from .connection import Connection
 from .frames import Frames, Handle, Kind
 from .goals import GoalTopics
 from .naming import resolve
@@ -24,6 +26,8 @@ TOLD = 100
 """The maximum number of different texts that a node logs. Good news or a new link resets the count."""
 WAITING = 1000
 """The maximum number of messages that wait while the bridge starts. Then the oldest is dropped."""
+LEAVING = 2.0
+"""Seconds that the last messages have to leave when a node ends."""
 
 _nodes = itertools.count(1)  # two nodes of one process need two names: ROS 1 ends an older node of the same name
 
@@ -85,7 +89,7 @@ class Channel:
         body = self.node.types.encode(value, self.type)
         if self.binding["latch"]:
             self.last = body
-        self.node.send(Kind.MESSAGE, self.number, 0, body)
+        self.node.publish(self, body)
 
     async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
         """Call a service, or send a goal; return the response or the result.
@@ -149,6 +153,8 @@ class Node:
         self._link: Link | None = None
         self._failed = failed
         self._numbers = itertools.count(1)
+        self._connections: dict[str, dict[int, Connection]] = {}
+        """Topic → the connections with its subscribers, by their numbers."""
         self._calls: dict[int, tuple[asyncio.Future[Any], Channel, Callable[[Any], None] | None]] = {}
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
         self._told: set[str] = set()
@@ -280,6 +286,15 @@ class Node:
         else:
             self._waiting.append((kind, channel, number, body))
 
+    def publish(self, channel: Channel, body: memoryview) -> None:
+        """Send a message by the connections that the bridge has passed on; if there are none, by the bridge."""
+        connections = self._connections.get(channel.name)
+        if not connections:
+            self.send(Kind.MESSAGE, channel.number, 0, body)
+            return
+        for connection in list(connections.values()):
+            connection.send(body)
+
     async def call(self, channel: Channel, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
         """See `Channel.call`."""
         if channel.fault:
@@ -335,8 +350,13 @@ class Node:
         """End all channels and the link, in order."""
         for task in self._tasks:
             task.cancel()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(LEAVING):
+                for connection in self._all_connections():
+                    await connection.flush()
         if self._link is not None:
             await self._link.close()
+        self._disconnect()
         self._fail_calls("the node is closed")
 
     # ------------------------------------------------------------------------------- frames from the link
@@ -359,6 +379,7 @@ class Node:
 
     def _lost(self, why: str) -> None:
         self.ready.clear()
+        self._disconnect()
         self._log.warning("%s", why)
         self._fail_calls(why)
         if self._link is not None and self._link.failed is not None:
@@ -375,6 +396,8 @@ class Node:
         known = self.channels.get(channel)
         if kind is Kind.MESSAGE and known is not None:
             self._message(known, body)
+        elif kind is Kind.CONNECTION:
+            self._connect(number, **json.loads(bytes(body)))
         elif kind is Kind.CALL and known is not None:
             task = asyncio.create_task(self._serve(known, number, body))
             self._tasks.add(task)
@@ -393,6 +416,29 @@ class Node:
         finally:
             if channel.binding["latest"]:
                 self._acknowledge(channel)
+
+    def _connect(self, number: int, topic: str, depth: int) -> None:
+        """Take a connection with a subscriber from the bridge, and send what is latched."""
+        frames = self._frames
+        assert frames is not None  # it is from there
+
+        def lost() -> None:
+            connections.pop(number, None)
+            frames.send(Kind.HANGUP, 0, number)
+
+        connections = self._connections.setdefault(topic, {})
+        connection = connections[number] = Connection(frames.passed(), depth, lost)
+        for channel in self.channels.values():
+            if channel.name == topic and channel.last is not None:
+                connection.send(channel.last)
+
+    def _all_connections(self) -> list[Connection]:
+        return [connection for connections in self._connections.values() for connection in connections.values()]
+
+    def _disconnect(self) -> None:
+        for connection in self._all_connections():
+            connection.close()
+        self._connections.clear()
 
     def _acknowledge(self, channel: Channel) -> None:
         acknowledge = partial(self.send, Kind.ACK, channel.number, 0)

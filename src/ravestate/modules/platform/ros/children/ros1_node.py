@@ -12,8 +12,6 @@ import xmlrpc.client
 from pipe import ANSWER, CALL, FAULT, SEEKING, Pipe, every, reason, serve
 
 PROBE = 1.0  # seconds between two looks at the master
-LEAVING = 2.0  # seconds that the last messages have to leave, in threads of rospy
-SILENCE = 0.05  # seconds without another message, after which none is under way
 
 
 def message_class(type_, md5, text=""):
@@ -85,14 +83,17 @@ class Ros1Node:
         namespace, _, name = config["name"].rpartition("/")
         os.environ["ROS_NAMESPACE"] = namespace or "/"
         import rospy
+        import rospy.topics
 
         self._rospy = rospy
+        rospy.topics.QueuedConnection = self._hand_over  # in the place of its own queue and thread
         self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
         self._bindings = {}
         self._replies = {}
         self._calls = {}
+        self._connections = {}
         self._number = 0
         self._lock = threading.Lock()
         every(PROBE, self._look_at_master)
@@ -157,6 +158,19 @@ class Ros1Node:
             binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 16, tcp_nodelay=True
         )
 
+    def _hand_over(self, connection, depth):
+        """Give the agent a connection with a subscriber, by which it sends messages without a way through this process."""
+        with self._lock:
+            self._number += 1
+            number = self._number
+            self._connections[number] = connection
+        self._pipe.hand_over(connection.socket, number, {"topic": connection.name, "depth": depth})
+        return connection
+
+    def hang_up(self, number):
+        """Forget a connection that the subscriber has closed."""
+        self._connections.pop(number).close()
+
     def _service_class(self, type_, md5):
         class Service:
             _type = type_
@@ -178,8 +192,7 @@ class Ros1Node:
         return service._response_class(bytes(done[1]))
 
     def message(self, channel, body):
-        publisher = self._channels[channel]
-        publisher.publish(publisher.data_class(bytes(body)))
+        """Drop a message: the agent sends it here if its topic has no subscriber."""
 
     def call(self, channel, number, body):
         # A persistent proxy keeps its connection, which `cancel` closes.
@@ -263,20 +276,7 @@ class Ros1Node:
         return {"topics": list(found.values()), "services": listed, "actions": actions}
 
     def close(self):
-        end, before = time.monotonic() + LEAVING, None
-        while (now := self._sent()) != before and time.monotonic() < end:
-            before = now
-            time.sleep(SILENCE)
         self._rospy.signal_shutdown("the agent ends")
-
-    def _sent(self):
-        """Return the number of messages that each connection has sent, and of those that wait in its queue."""
-        publishers = [thing for thing in self._channels.values() if isinstance(thing, self._rospy.Publisher)]
-        return [
-            (connection.stat_num_msg, len(getattr(connection, "_queue", ())))
-            for publisher in publishers
-            for connection in publisher.impl.connections
-        ]
 
 
 def _mismatch(binding, header):
