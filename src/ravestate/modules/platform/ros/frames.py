@@ -50,8 +50,9 @@ class Kind(IntEnum):
     NOTE = 13
     READY = 14
     CLOSE = 15
-    CONNECTION = 16
-    HANGUP = 17
+    SUBSCRIBER = 16
+    PUBLISHER = 17
+    HANGUP = 18
 
 
 KINDS = {int(kind): kind for kind in Kind}

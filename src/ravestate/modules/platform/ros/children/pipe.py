@@ -25,11 +25,11 @@ LARGE = 1 << 16
 SEEKING = 0.7  # the part of a call's time-out in which its server must appear; then the agent still hears of it
 
 OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
-CONNECTION, HANGUP = 16, 17
+SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 """The kinds of frames.
 
 From the agent: OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE, HANGUP. From the bridge: READY, FEEDBACK, TOLD, NOTE,
-CONNECTION. Both: MESSAGE, CALL, ANSWER, FAULT.
+SUBSCRIBER, PUBLISHER. Both: MESSAGE, CALL, ANSWER, FAULT. A socket comes with SUBSCRIBER and PUBLISHER: the connection with another node.
 """
 
 
@@ -58,11 +58,11 @@ class Pipe:
             else:
                 self._sock.sendall(HEAD.pack(kind, 0, channel, number, size) + bytes(body))
 
-    def hand_over(self, sock, number, value):
-        """Send a connected socket to the agent, with a number and a value as JSON."""
+    def hand_over(self, sock, kind, number, value):
+        """Send a connected socket to the agent, in a frame whose body is a value as JSON."""
         body = json.dumps(value).encode()
         with self._sending:
-            self._send_with(sock.fileno(), HEAD.pack(CONNECTION, PASSED, 0, number, len(body)) + body)
+            self._send_with(sock.fileno(), HEAD.pack(kind, PASSED, 0, number, len(body)) + body)
 
     def _send_with(self, fd, data):
         sent = self._sock.sendmsg([data], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", [fd]))])
