@@ -105,12 +105,14 @@ class Ros1Node:
         namespace, _, name = config["name"].rpartition("/")
         os.environ["ROS_NAMESPACE"] = namespace or "/"
         import rospy
+        import rospy.impl.simtime
         import rospy.impl.tcpros_pubsub
         import rospy.topics
 
         self._rospy = rospy
         rospy.topics.QueuedConnection = self._to_subscriber  # in the place of its own queue and thread
         rospy.impl.tcpros_pubsub.TCPROSTransport = transport_class(self)
+        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy takes /clock, which is for the agent
         self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
