@@ -80,8 +80,7 @@ def test_the_clock_of_a_real_simulation_at_ten_times_the_speed_and_halted(either
             await until(lambda: context.read(ros.node))
             made = context.read(ros.node)
             assert made is not None
-            await until(lambda: simulated, lambda: speed.publish(10.0))
-            await until(lambda: context.now > last + 5.0)
+            await until(lambda: simulated and context.now > last + 5.0, lambda: speed.publish(10.0))
             begun, real = context.now, clock()
             context.emit(go)
             await until(lambda: waited)

@@ -56,8 +56,14 @@ class Connections:
                 asyncio.get_running_loop().call_soon(self._offer, channel, publisher.last, True)
 
     def drop(self, channel: Channel) -> None:
-        """Let a channel have no more messages."""
-        self._readers[channel.name].remove(channel)
+        """Let a channel have no more messages. Without a channel, the connections of a topic end."""
+        readers = self._readers[channel.name]
+        readers.remove(channel)
+        if not readers:
+            for number, publisher in list(self._publishers.items()):
+                if publisher.topic == channel.name:
+                    self._all[number].close()
+                    self._lost(number)
 
     def send(self, topic: str, body: memoryview) -> bool:
         """Send a message to the subscribers of a topic; return whether there are any."""
