@@ -71,7 +71,7 @@ class Frames:
 
     def __init__(self, sock: socket.socket, handle: Handle, lost: Callable[[], None]) -> None:
         self._sock = sock
-        self._local = sock.family == socket.AF_UNIX and hasattr(os, "memfd_create")
+        self._local = sock.family == socket.AF_UNIX
         self._loop = asyncio.get_running_loop()
         self._handle = handle
         self._lost = lost
@@ -85,7 +85,7 @@ class Frames:
         """Send a frame, now or as soon as the other end reads."""
         if self._closed:
             return
-        if self._local and len(body) >= LARGE:
+        if len(body) >= LARGE and self._local and hasattr(os, "memfd_create"):
             fd = os.memfd_create("ravestate")
             rest = memoryview(body).cast("B")
             while rest:
