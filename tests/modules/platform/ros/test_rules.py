@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ import ravestate as rs
 from modules.platform.ros.networks import PATIENCE, Network, until
 from ravestate.modules import ros2
 from ravestate.modules.platform.ros import Bus, quality
+from ravestate.modules.platform.ros.rules import follow_clock
 
 ALL = quality(None, depth=10, latch=False)
 
@@ -54,6 +56,38 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
             await world.close()
 
     asyncio.run(main())
+
+
+def test_the_clock_loses_no_time_while_it_changes_hands() -> None:
+    class SlowContext:
+        """A context on a slow machine: time passes with each look at the clock, until it is driven."""
+
+        time, driven = 0.0, False
+
+        @property
+        def now(self) -> float:
+            self.time += 0.0 if self.driven else 1.0
+            return self.time
+
+        def drive_clock(self, time: float) -> None:
+            self.time, self.driven = max(self.now, time), True
+
+    class Simulation:
+        """A node that hears of the simulation's time alone."""
+
+        def subscribe(self, topic: str, type: str, take: Any, **options: Any) -> None:
+            self.take = take
+
+        def at(self, seconds: int) -> None:
+            self.take(SimpleNamespace(clock=SimpleNamespace(sec=seconds, nanosec=0)))
+
+    ctx: Any = SlowContext()
+    simulation: Any = Simulation()
+    follow_clock(ctx, simulation)
+    simulation.at(100)
+    begun = ctx.now
+    simulation.at(129)
+    assert ctx.now == begun + 29
 
 
 def test_the_clock_of_a_real_simulation_at_ten_times_the_speed_and_halted(either: Network) -> None:
