@@ -37,6 +37,9 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if "CI" in o
 TESTS = Path(__file__).parent
 FIRST = ("quality", "properties", "end_to_end", "bridges", "modules", "examples", "cli", "repo", "board", "draw")
 """The folders with the files that take longest."""
+REAL = ("end_to_end", "bridges", "modules/platform")
+"""The folders whose tests need a browser, a server or a robot beside them, in real time. A machine may stall these
+programs for seconds, so continuous integration runs a failing test a second time. The report names such tests."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -47,6 +50,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return FIRST.index(folders[0]) if folders and folders[0] in FIRST else len(FIRST)
 
     items.sort(key=rank)
+    if "CI" in os.environ:
+        for item in items:
+            if any(item.path.is_relative_to(TESTS / folder) for folder in REAL):
+                item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 @pytest.fixture(scope="module", autouse=True)

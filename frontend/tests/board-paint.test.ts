@@ -1,8 +1,9 @@
 import { expect, test } from "vitest";
-import { AXIS, at, type Colours, paint, type Scene } from "../src/board/paint";
+import { AXIS, at, paint, type Scene } from "../src/board/paint";
 import type { TraceRecord } from "../src/board/protocol";
-import { Trace } from "../src/board/trace";
-import { View } from "../src/board/view";
+import { born, scene } from "./records";
+
+const LANES = ["", "m:wait", "m:answer"];
 
 /** A canvas that records its texts and their places. Each character is 6 pixels wide. */
 function canvas() {
@@ -15,65 +16,44 @@ function canvas() {
   return { written, context: context as unknown as CanvasRenderingContext2D };
 }
 
-function scene(records: TraceRecord[], more: Partial<Scene> = {}): Scene {
-  const trace = new Trace();
-  trace.add(records);
-  const view = new View();
-  view.left = 0;
-  view.span = 10;
-  return {
-    trace,
-    view,
-    now: 20,
-    lanes: ["", "m:wait", "m:answer"],
-    scroll: 0,
-    width: 1000,
-    height: 300,
-    colours: {} as Colours,
-    rule: null,
-    kin: new Set(),
-    spike: null,
-    ...more,
-  };
-}
-
-function born(spike: number, time: number, text: string, signal = "m:heard"): TraceRecord {
-  return {
-    kind: "born",
-    time,
-    spike,
-    signal,
-    group: 1,
-    parents: [],
-    source: 0,
-    payload: { text },
-  } as TraceRecord;
-}
-
 function words(records: TraceRecord[], more: Partial<Scene> = {}): string[] {
   const { written, context } = canvas();
-  paint(context, scene(records, more));
+  paint(context, scene(records, LANES, more));
   return written.map(([text]) => text).filter((text) => !/^\d+ s$/.test(text));
 }
 
 test("a text appears beside its dot", () => {
-  expect(words([born(1, 1, '"Who is there?"'), born(2, 5, "null"), born(3, 8, "7")])).toEqual([
-    "“Who is there?”",
-  ]);
+  expect(
+    words([
+      born(1, "m:heard", '"Who is there?"', { spike: 1 }),
+      born(5, "m:heard", "null", { spike: 2 }),
+      born(8, "m:heard", "7", { spike: 3 }),
+    ]),
+  ).toEqual(["“Who is there?”"]);
 });
 
 test("a text is shortened before the next dot, and left out without room", () => {
-  expect(words([born(1, 1, '"Who is there, and why?"'), born(2, 2, "null")])).toEqual(["“Who is the…"]);
-  expect(words([born(1, 1, '"Who is there, and why?"'), born(2, 1.4, "null")])).toEqual([]);
+  expect(
+    words([
+      born(1, "m:heard", '"Who is there, and why?"', { spike: 1 }),
+      born(2, "m:heard", "null", { spike: 2 }),
+    ]),
+  ).toEqual(["“Who is the…"]);
+  expect(
+    words([
+      born(1, "m:heard", '"Who is there, and why?"', { spike: 1 }),
+      born(1.4, "m:heard", "null", { spike: 2 }),
+    ]),
+  ).toEqual([]);
 });
 
 test("the context's own spikes leave room for a text", () => {
-  const own = born(2, 1.1, "true", "core:pressure:changed");
-  expect(words([born(1, 1, '"Who is there?"'), own])).toEqual(["“Who is there?”"]);
+  const own = born(1.1, "core:pressure:changed", "true", { spike: 2 });
+  expect(words([born(1, "m:heard", '"Who is there?"', { spike: 1 }), own])).toEqual(["“Who is there?”"]);
 });
 
 test("a cut text appears as far as it goes", () => {
-  expect(words([born(1, 1, '"Who is th')])).toEqual(["“Who is th…"]);
+  expect(words([born(1, "m:heard", '"Who is th', { spike: 1 })])).toEqual(["“Who is th…"]);
 });
 
 test("a waiting bar names its rivals if it is wide enough", () => {
@@ -95,18 +75,23 @@ test("a waiting bar names its rivals if it is wide enough", () => {
 });
 
 test("the pointer finds input, and the context's own spikes below it", () => {
-  const both = scene([born(1, 1, '"Who is there?"'), born(2, 1.01, "true", "core:activity:true")]);
+  const both = scene(
+    [
+      born(1, "m:heard", '"Who is there?"', { spike: 1 }),
+      born(1.01, "core:activity:true", "true", { spike: 2 }),
+    ],
+    LANES,
+  );
   expect(at(both, 100, AXIS + 13).spike?.id).toBe(1);
   expect(at(both, 100, AXIS + 22).spike?.id).toBe(2);
   expect(at(both, 300, AXIS + 13)).toEqual({});
 });
 
 test("a crowd of spikes has lines for the first, the last and the chosen one", () => {
-  const piece = (spike: number) =>
-    ({ ...born(spike, spike / 10, "null", "m:piece"), parents: [1] }) as TraceRecord;
+  const piece = (spike: number) => born(spike / 10, "m:piece", "null", { spike, parents: [1] });
   const lines = (pieces: number, kin: number[]) => {
     const numbers = Array.from({ length: pieces }, (_, i) => i + 2);
-    const all = scene([born(1, 0, "null"), ...numbers.map(piece)], {
+    const all = scene([born(0, "m:heard", "null", { spike: 1 }), ...numbers.map(piece)], LANES, {
       kin: new Set(kin.length > 0 ? kin : [1, ...numbers]),
     });
     let curves = 0;

@@ -1,17 +1,8 @@
 import { expect, test } from "vitest";
-import { AXIS, at, type Colours, LANE, paint, type Scene } from "../src/board/paint";
+import { AXIS, at, LANE, paint } from "../src/board/paint";
 import type { TraceRecord } from "../src/board/protocol";
 import { AGENT, USER } from "../src/board/sound";
-import { Trace } from "../src/board/trace";
-import { View } from "../src/board/view";
-
-let spikes = 0;
-
-function born(time: number, signal: string, text = "null", parents: number[] = []): TraceRecord {
-  spikes += 1;
-  const payload = { text };
-  return { kind: "born", time, spike: spikes, signal, group: 1, parents, source: 0, payload } as TraceRecord;
-}
+import { born, scene, spikes } from "./records";
 
 function write(time: number, slot: string, value: unknown): TraceRecord {
   return { kind: "set", time, slot, value: { text: JSON.stringify(value) }, run: 0 } as TraceRecord;
@@ -24,7 +15,7 @@ function talk(): TraceRecord[] {
     write(1, "voiceio:user_speaking", true),
     write(2, "voiceio:user_speaking", false),
     turn,
-    born(2.2, "rawio:input:changed", '"how are you"', [spikes]),
+    born(2.2, "rawio:input:changed", '"how are you"', { parents: [spikes()] }),
     write(2.3, "rawio:output", "Well, thank you for asking."),
     write(3, "voiceio:agent_speaking", true),
     write(4, "voiceio:user_speaking", true),
@@ -32,16 +23,6 @@ function talk(): TraceRecord[] {
     born(4.2, "voiceio:barge_in"),
     write(4.2, "rawio:heard", "Well, thank"),
   ];
-}
-
-function scene(records: TraceRecord[], lanes: string[]): Scene {
-  const trace = new Trace();
-  trace.add(records);
-  const view = new View();
-  view.left = 0;
-  view.span = 10;
-  const rest = { scroll: 0, width: 1000, height: 300, rule: null, kin: new Set<number>(), spike: null };
-  return { trace, view, now: 5, lanes, colours: {} as Colours, ...rest };
 }
 
 test("speech makes bands; the end of a turn, an interruption and what was heard make marks", () => {
@@ -95,7 +76,7 @@ test("a written conversation has no voices, and old speech is forgotten", () => 
 });
 
 test("the lanes of the voices show bands and words, and tell what is under the pointer", () => {
-  const drawn = scene(talk(), [USER, AGENT, ""]);
+  const drawn = scene(talk(), [USER, AGENT, ""], { now: 5 });
   const boxes: number[][] = [];
   const texts: [string, number][] = [];
   const kept: Record<string, unknown> = {

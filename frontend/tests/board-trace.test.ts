@@ -2,24 +2,7 @@ import { expect, test } from "vitest";
 import type { TraceRecord } from "../src/board/protocol";
 import { type Bar, from, Trace } from "../src/board/trace";
 import { gaveUp } from "../src/board/words";
-
-let spikes = 0;
-
-function born(time: number, signal: string, more: Partial<TraceRecord> = {}): TraceRecord {
-  spikes += 1;
-  const payload = { text: "null" };
-  return {
-    kind: "born",
-    time,
-    spike: spikes,
-    signal,
-    group: 1,
-    parents: [],
-    source: 0,
-    payload,
-    ...more,
-  } as TraceRecord;
-}
+import { born, restart, spikes } from "./records";
 
 function held(
   time: number,
@@ -75,12 +58,12 @@ test("an activation ends with its last spike, and names the rule that answered",
 });
 
 test("the answering rule is named with the rule that raised its input", () => {
-  spikes = 0;
+  restart();
   const trace = new Trace();
   trace.add([
     born(0, "m:input"),
     { kind: "started", time: 0, run: 5, rule: "m:skill", clause: 0, spikes: [1] },
-    born(1, "m:said", { parents: [1], source: 5 } as Partial<TraceRecord>),
+    born(1, "m:said", "null", { parents: [1], source: 5 }),
     { kind: "started", time: 1, run: 6, rule: "m:verbalise", clause: 0, spikes: [2] },
     held(1, 7, "m:r", 1),
     gaveup(2, 7, 1, "consumed", "m:verbalise", 6),
@@ -92,17 +75,17 @@ test("the answering rule is named with the rule that raised its input", () => {
 });
 
 test("the run that answered is named, without rules of other causes", () => {
-  spikes = 0;
+  restart();
   const trace = new Trace();
   trace.add([
-    born(0, "m:boot", { group: 2 } as Partial<TraceRecord>),
+    born(0, "m:boot", "null", { group: 2 }),
     { kind: "started", time: 0, run: 1, rule: "m:warm_up", clause: 0, spikes: [1] },
-    born(0, "m:ready", { group: 2, parents: [1], source: 1 } as Partial<TraceRecord>),
+    born(0, "m:ready", "null", { group: 2, parents: [1], source: 1 }),
     born(1, "m:input"),
     { kind: "started", time: 1, run: 2, rule: "m:one", clause: 0, spikes: [3] },
-    born(1, "m:first", { parents: [3], source: 2 } as Partial<TraceRecord>),
+    born(1, "m:first", "null", { parents: [3], source: 2 }),
     { kind: "started", time: 1, run: 3, rule: "m:two", clause: 0, spikes: [3] },
-    born(1, "m:second", { parents: [3], source: 3 } as Partial<TraceRecord>),
+    born(1, "m:second", "null", { parents: [3], source: 3 }),
     held(1, 9, "m:r", 3),
     held(1, 4, "m:say", 4),
     held(1, 5, "m:say", 5),
@@ -130,7 +113,7 @@ test("the rule behind an answer is looked up on demand", () => {
         asked += 1;
         return undefined as never;
       };
-  spikes = 0;
+  restart();
   for (let i = 1; i <= 500; i++) {
     trace.add([
       born(1, "m:tick"),
@@ -160,14 +143,14 @@ test("simultaneous activations lie in rows, and rows are reused", () => {
 });
 
 test("a spike knows its rule, ancestors and descendants", () => {
-  spikes = 0;
+  restart();
   const trace = new Trace();
   trace.add([
     born(0, "m:input"),
     { kind: "started", time: 0, run: 5, rule: "m:classify", clause: 0, spikes: [1] },
-    born(1, "m:question", { parents: [1], source: 5 } as Partial<TraceRecord>),
-    born(2, "m:answer", { parents: [2] } as Partial<TraceRecord>),
-    born(3, "m:elsewhere", { group: 2 } as Partial<TraceRecord>),
+    born(1, "m:question", "null", { parents: [1], source: 5 }),
+    born(2, "m:answer", "null", { parents: [2] }),
+    born(3, "m:elsewhere", "null", { group: 2 }),
   ]);
   expect(trace.spike(2)?.rule).toBe("m:classify");
   expect([...trace.kin(2)].sort()).toEqual([1, 2, 3]);
@@ -197,13 +180,13 @@ test("after a gap, dead bars end and new ones appear", () => {
 });
 
 test("the oldest records go with everything that depends on them", () => {
-  spikes = 0;
+  restart();
   const trace = new Trace(1000);
   for (let i = 0; i < 3000; i++) {
     trace.add([
       born(i, "m:tick"),
-      held(i, i, "m:r", spikes),
-      { kind: "started", time: i, run: i, rule: "m:r", clause: 0, spikes: [spikes] },
+      held(i, i, "m:r", spikes()),
+      { kind: "started", time: i, run: i, rule: "m:r", clause: 0, spikes: [spikes()] },
       { kind: "settled", time: i, run: i, rule: "m:r", outcome: "done", reason: "", fired: true },
     ]);
   }
@@ -225,13 +208,13 @@ test("a file with circular merges is readable", () => {
 });
 
 test("groups stay merged when those between them are forgotten", () => {
-  spikes = 0;
+  restart();
   const trace = new Trace(10);
   trace.add([
-    born(1, "m:s", { group: 2 } as Partial<TraceRecord>),
+    born(1, "m:s", "null", { group: 2 }),
     { kind: "merged", time: 2, group: 3, into: 2 },
     { kind: "merged", time: 2, group: 2, into: 1 },
-    ...Array.from({ length: 10 }, () => born(3, "m:s", { group: 3 } as Partial<TraceRecord>)),
+    ...Array.from({ length: 10 }, () => born(3, "m:s", "null", { group: 3 })),
   ]);
   expect(trace.spike(1)).toBeUndefined();
   expect(trace.group(3)).toBe(1);
@@ -239,17 +222,17 @@ test("groups stay merged when those between them are forgotten", () => {
 
 test("100,000 records are folded", () => {
   const trace = new Trace();
-  spikes = 0;
+  restart();
   const records: TraceRecord[] = [];
   for (let i = 0; i < 25_000; i++) {
-    records.push(born(i / 1000, "m:tick"), held(i / 1000, i, `m:r${i % 50}`, spikes));
+    records.push(born(i / 1000, "m:tick"), held(i / 1000, i, `m:r${i % 50}`, spikes()));
     records.push({
       kind: "started",
       time: i / 1000,
       run: i,
       rule: `m:r${i % 50}`,
       clause: 0,
-      spikes: [spikes],
+      spikes: [spikes()],
     });
     records.push({
       kind: "settled",
@@ -272,15 +255,15 @@ test("the first item at or after a time is found", () => {
 
 test("the result of a cause has all activations on its group, in order", () => {
   const trace = new Trace();
-  spikes = 0;
+  restart();
   trace.add([
-    born(1, "m:s", { group: 1 } as Partial<TraceRecord>),
+    born(1, "m:s", "null", { group: 1 }),
     held(1, 1, "m:first", 1),
     held(1, 2, "m:early", 1, ["m:t"]),
-    born(5, "m:t", { group: 2 } as Partial<TraceRecord>),
+    born(5, "m:t", "null", { group: 2 }),
     held(5, 2, "m:early", 2),
     held(5, 3, "m:late", 2),
-    born(6, "m:s", { group: 3 } as Partial<TraceRecord>),
+    born(6, "m:s", "null", { group: 3 }),
     held(6, 4, "m:other", 3),
   ]);
   const of = (id: number) => {

@@ -1,25 +1,9 @@
 import { expect, test } from "vitest";
-import { AXIS, at, type Colours, LANE, paint, type Scene } from "../src/board/paint";
+import { AXIS, at, LANE, paint } from "../src/board/paint";
 import type { TraceRecord } from "../src/board/protocol";
 import { Trace } from "../src/board/trace";
-import { View } from "../src/board/view";
 import { BODY, FACES } from "../src/board/vision";
-
-let spikes = 0;
-
-function born(time: number, signal: string, text: string): TraceRecord {
-  spikes += 1;
-  return {
-    kind: "born",
-    time,
-    spike: spikes,
-    signal,
-    group: 1,
-    parents: [],
-    source: 0,
-    payload: { text },
-  } as TraceRecord;
-}
+import { born, scene } from "./records";
 
 function face(time: number, track: number, person = "None", distance = "None"): TraceRecord {
   const text = `FaceVec(track=${track}, person=${person}, distance=${distance}, box=(1, 2, 3, 4), quality=0.9)`;
@@ -34,16 +18,6 @@ function visitor(time: number, name: string, tracks: string): TraceRecord {
 function activity(time: number, name: string, confidence: number): TraceRecord {
   const text = `Activity(name='${name}', confidence=${confidence}, start=${time - 3}, end=${time}, others={})`;
   return born(time, "activity:recognised", text);
-}
-
-function scene(records: TraceRecord[], lanes: string[]): Scene {
-  const trace = new Trace();
-  trace.add(records);
-  const view = new View();
-  view.left = 0;
-  view.span = 10;
-  const rest = { scroll: 0, width: 1000, height: 300, rule: null, kin: new Set<number>(), spike: null };
-  return { trace, view, now: 9, lanes, colours: {} as Colours, ...rest };
 }
 
 function faces(records: TraceRecord[]): unknown[] {
@@ -116,7 +90,7 @@ test("the lanes show bands and names, and tell what is under the pointer", () =>
     face(2, 2),
     activity(5, "waving", 0.9),
   ];
-  const drawn = scene(records, [FACES, BODY, ""]);
+  const drawn = scene(records, [FACES, BODY, ""], { now: 9 });
   const boxes: number[][] = [];
   const texts: string[] = [];
   const kept: Record<string, unknown> = {

@@ -12,6 +12,7 @@ import os
 import shutil
 import threading
 from collections.abc import AsyncGenerator, Callable, Coroutine, Iterator
+from pathlib import Path
 from typing import Any
 
 from playwright.async_api import Browser, Page, Playwright, async_playwright, expect
@@ -100,6 +101,20 @@ class Stage:
             yield browser
         finally:
             await browser.close()
+
+    def devices(self, *, sound: str = "", film: Path | None = None) -> contextlib.AbstractAsyncContextManager[Browser]:
+        """Start a Chromium that may use a microphone and a camera, which play files.
+
+        Args:
+            sound: The recording that the microphone repeats; with ``%noloop`` at its end it comes once.
+            film: The video that the camera repeats.
+        """
+        flags = ["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"]
+        if sound:
+            flags.append(f"--use-file-for-fake-audio-capture={sound}")
+        if film is not None:
+            flags.append(f"--use-file-for-fake-video-capture={film}")
+        return self.launch(*flags)
 
     def run(self, work: Coroutine[Any, Any, Any]) -> Any:
         """Do something on the loop, and wait for it."""

@@ -1,14 +1,12 @@
 """The camera on the page, in a real browser whose camera is a video of photos, with the real vision worker."""
 
-import contextlib
 import os
 import re
-from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.async_api import Browser, Page, expect
+from playwright.async_api import Page, expect
 
 from end_to_end.stage import PHONE, Host, Stage, on_stage
 from end_to_end.test_access import findings
@@ -40,17 +38,6 @@ def video(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
-@contextlib.asynccontextmanager
-async def filmed(stage: Stage, video: Path) -> AsyncGenerator[Browser]:
-    """A browser whose camera shows a video."""
-    async with stage.launch(
-        "--use-fake-device-for-media-stream",
-        "--use-fake-ui-for-media-stream",
-        f"--use-file-for-fake-video-capture={video}",
-    ) as browser:
-        yield browser
-
-
 def view(page: Page) -> Any:
     return page.get_by_role("region", name="Camera", exact=True)
 
@@ -70,12 +57,12 @@ async def test_a_stranger_tells_their_name_and_sees_it_on_their_face_and_on_the_
         "webio": {"port": 0, "title": "Elske"},
         "ontology": {"path": str(tmp_path / "memory.lbug")},
         "idle": {"bored_after": 1e6},
-        "visionio": {"fps": 5},
+        "visionio": {"fps": 5, "gone_after": 60},  # a busy machine shows no picture for seconds
     }
     agent = RecordedAgent(webio, hibye, persqa, visionio, settings=settings)
     async with (
         Server(agent, routes(agent.recorders), INSIDE) as server,
-        filmed(stage, video) as browser,
+        stage.devices(film=video) as browser,
         stage.open(server.address, browser=browser) as page,
     ):
         host = Host(server)
@@ -113,12 +100,12 @@ async def test_the_pictures_of_the_documentation(stage: Stage, tmp_path: Path) -
         "ontology": {"path": str(tmp_path / "memory.lbug")},
         "idle": {"bored_after": 1e6},
         "emotion": {"emoji": False},
-        "visionio": {"fps": 5},
+        "visionio": {"fps": 5, "gone_after": 60},  # a busy machine shows no picture for seconds
     }
     agent = RecordedAgent(webio, hibye, persqa, charades, visionio, settings=settings)
     async with (
         Server(agent, routes(agent.recorders), INSIDE) as server,
-        filmed(stage, figure) as browser,
+        stage.devices(film=figure) as browser,
         stage.open(
             server.address, browser=browser, viewport={"width": 920, "height": 640}, color_scheme="light"
         ) as page,
@@ -165,7 +152,7 @@ async def test_the_visitor_refuses_the_camera(stage: Stage) -> None:
 @on_stage
 async def test_on_a_phone_everything_is_in_reach_of_a_finger(stage: Stage, video: Path) -> None:
     async with (
-        filmed(stage, video) as browser,
+        stage.devices(film=video) as browser,
         stage.serve(eyes, title="Elske") as served,
         stage.open(served.address, browser=browser, **PHONE) as page,
     ):
@@ -196,7 +183,7 @@ async def fits(page: Page) -> None:
 @on_stage
 async def test_in_the_background_the_camera_is_off(stage: Stage, video: Path) -> None:
     async with (
-        filmed(stage, video) as browser,
+        stage.devices(film=video) as browser,
         stage.serve(eyes, title="Elske") as served,
         stage.open(served.address, browser=browser) as page,
     ):
@@ -233,11 +220,12 @@ async def test_a_round_of_charades_with_a_real_video(stage: Stage, tmp_path: Pat
         "idle": {"bored_after": 1e6},
         "emotion": {"emoji": False},
         "charades": {"count": 0.2, "watch": 1.5},
+        "visionio": {"gone_after": 60},
     }
     agent = RecordedAgent(webio, charades, visionio, settings=settings)
     async with (
         Server(agent, routes(agent.recorders), INSIDE) as server,
-        filmed(stage, walk) as browser,
+        stage.devices(film=walk) as browser,
         stage.open(server.address, browser=browser) as page,
     ):
         await turn_on(page)

@@ -4,6 +4,7 @@ import os
 import re
 import wave
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from playwright.async_api import Page, expect
@@ -40,16 +41,18 @@ def ask_again_and_again(file: Path) -> Path:
 
 
 async def point(board: Page, lane: str, words: str) -> None:
-    """Move the pointer along the lane of a voice until a tip with these words appears."""
-    name = await board.get_by_text(lane, exact=True).bounding_box()
-    canvas = await board.locator("canvas.main").bounding_box()
-    assert name is not None
-    assert canvas is not None
+    """Move the pointer along a lane until a tip with these words appears. The board may still be drawing its lanes."""
     tip = board.locator(".tip")
-    for x in range(2, round(canvas["width"]), 3):
-        await board.mouse.move(canvas["x"] + x, name["y"] + name["height"] / 2)
-        if await tip.count() and words in await tip.inner_text():
-            return
+    ends = monotonic() + PATIENCE / 1000
+    while monotonic() < ends:
+        name = await board.get_by_text(lane, exact=True).bounding_box()
+        canvas = await board.locator("canvas.main").bounding_box()
+        assert name is not None
+        assert canvas is not None
+        for x in range(2, round(canvas["width"]), 3):
+            await board.mouse.move(canvas["x"] + x, name["y"] + name["height"] / 2)
+            if await tip.count() and words in await tip.inner_text():
+                return
     raise AssertionError(f"no tip in the lane {lane!r} says {words!r}")
 
 
@@ -62,11 +65,7 @@ async def test_a_question_by_voice_its_answer_and_an_interruption(stage: Stage, 
     agent = RecordedAgent(voiceio, guide, webio, settings=settings)
     recording = ask_again_and_again(tmp_path / "question.wav")
     async with (
-        stage.launch(
-            "--use-fake-device-for-media-stream",
-            "--use-fake-ui-for-media-stream",
-            f"--use-file-for-fake-audio-capture={recording}",
-        ) as browser,
+        stage.devices(sound=str(recording)) as browser,
         Server(agent, routes(agent.recorders), inside=INSIDE) as server,
         stage.open(server.address, browser=browser) as page,
     ):

@@ -3,7 +3,6 @@
 import contextlib
 import re
 import wave
-from collections.abc import AsyncGenerator
 from pathlib import Path
 from typing import Any
 
@@ -32,15 +31,9 @@ def record(file: Path, *parts: float) -> Path:
     return file
 
 
-@contextlib.asynccontextmanager
-async def calls(stage: Stage, recording: Path) -> AsyncGenerator[Browser]:
-    """A browser whose microphone plays a recording from the moment at which it goes on."""
-    async with stage.launch(
-        "--use-fake-device-for-media-stream",
-        "--use-fake-ui-for-media-stream",
-        f"--use-file-for-fake-audio-capture={recording}%noloop",
-    ) as browser:
-        yield browser
+def calls(stage: Stage, recording: Path) -> contextlib.AbstractAsyncContextManager[Browser]:
+    """A browser whose microphone plays a recording once, from the moment at which it goes on."""
+    return stage.devices(sound=f"{recording}%noloop")
 
 
 def bar(page: Page) -> Any:

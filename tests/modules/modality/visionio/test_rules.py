@@ -233,6 +233,17 @@ def test_a_user_who_tells_their_name_before_the_camera_goes_on_is_the_person_in_
     assert remembered(memory)["Barack"] >= 1
 
 
+def test_a_user_whose_name_the_platform_gives_without_a_node_is_the_person_in_the_picture(memory: Path) -> None:
+    heard: list[Node] = []
+    with agent(memory, visionio_listener(heard)) as sim:
+        sim.put(interloc.users, {"page": "Barack"})
+        stage = Stage()
+        stage.show(sim, "obama")
+        assert [one["name"] for one in heard] == ["Barack"]
+        assert people_of(sim) == ("Barack",)
+        assert dict(sim.read(interloc.users)) == {"page": "Barack"}
+
+
 def test_forget_my_face(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:

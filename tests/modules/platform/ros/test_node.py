@@ -329,6 +329,22 @@ def test_a_killed_master_and_a_killed_peer_come_back(caplog: pytest.LogCaptureFi
         network.stop()
 
 
+def test_a_killed_peer_comes_back(either: Network) -> None:
+    async def main() -> None:
+        async with either.lent() as node:
+            heard: list[str] = []
+            node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
+            chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
+            await until(lambda: heard, lambda: chat.publish("one"))
+            await asyncio.to_thread(either.stop_peer)  # by SIGKILL
+            await asyncio.to_thread(either.start_peer)
+            heard.clear()
+            await until(lambda: heard, lambda: chat.publish("two"))
+            assert heard[0] == "echo two"
+
+    either.run(main)
+
+
 def test_without_ros_the_error_says_what_to_install() -> None:
     async def main(network: type[Ros1] | type[Ros2]) -> None:
         settings = network.module.Settings(python="/nowhere/python")

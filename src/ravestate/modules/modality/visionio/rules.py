@@ -237,9 +237,11 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
         item = users[key]
         name = person.get("name") if person is not None else None
         before = item.node.id if isinstance(item, interloc.Recognised) else None
-        if isinstance(item, interloc.Recognised) and person is None and await _is_new_face(ctx, key, item.node):
-            ctx.emit(named, item.node)
-            return Visitor(key, item.node, known=True, since=now, seen=now, linked=True)
+        if item and person is None:
+            user = item.node if before is not None else ontology.Node("Person", {"name": str(item)})
+            if await _is_new_face(ctx, key, user):
+                ctx.emit(named, user)
+                return Visitor(key, user, known=True, since=now, seen=now, linked=True)
         if before is not None and (person is None or person.id != before):  # another person sits down
             users.remove(key)
             node = person or ontology.Node("Person")
