@@ -191,6 +191,26 @@ def test_a_message_of_an_own_package_is_read_from_its_file(ros1_network: Network
     ros1_network.run(main)
 
 
+def test_messages_pass_while_the_bridge_stands_still(ros1_network: Network) -> None:
+    async def main() -> None:
+        async with ros1_network.lent() as node:
+            heard: list[str] = []
+            node.subscribe(
+                "/back", "std_msgs/String", lambda message: heard.append(message.data), latest=False, qos=ALL
+            )
+            chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
+            await until(lambda: heard, lambda: chat.publish("one"))
+            assert node.pid is not None
+            os.kill(node.pid, signal.SIGSTOP)
+            try:
+                chat.publish("two")
+                await until(lambda: "echo two" in heard)
+            finally:
+                os.kill(node.pid, signal.SIGCONT)
+
+    ros1_network.run(main)
+
+
 def test_a_later_channel_has_what_a_publisher_has_latched(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
