@@ -1,7 +1,7 @@
 """What does an agent add to a message of ROS, and does it keep up?
 
 - Share: a text goes to an echo node and back, and a rule sends the next one. The floor is a bare rospy or rclpy node that does
-  the same. Our share is the difference: two hops to the bridge process, and the agent.
+  the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge process.
 - Stream: numbers come a thousand times a second. One slot takes all of them, another the latest. None may be lost, out of
   order or left waiting, and neither the agent nor its bridge may grow after the first quarter.
 - Images: 640x480 colour images come 30 times a second. The number of copies is that of the bytes which the bridge writes,

@@ -4,6 +4,7 @@ import asyncio
 import logging
 import os
 import signal
+import xmlrpc.client
 from typing import Any
 
 import numpy
@@ -188,6 +189,60 @@ def test_a_message_of_an_own_package_is_read_from_its_file(ros1_network: Network
             assert (got[0].value, got[0].unit) == (7, "warm")
 
     ros1_network.run(main)
+
+
+def test_messages_pass_while_the_bridge_stands_still(ros1_network: Network) -> None:
+    async def main() -> None:
+        async with ros1_network.lent() as node:
+            heard: list[str] = []
+            node.subscribe(
+                "/back", "std_msgs/String", lambda message: heard.append(message.data), latest=False, qos=ALL
+            )
+            chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
+            await until(lambda: heard, lambda: chat.publish("one"))
+            assert node.pid is not None
+            os.kill(node.pid, signal.SIGSTOP)
+            try:
+                chat.publish("two")
+                await until(lambda: "echo two" in heard)
+            finally:
+                os.kill(node.pid, signal.SIGCONT)
+
+    ros1_network.run(main)
+
+
+def test_a_later_channel_has_what_a_publisher_has_latched(ros1_network: Network) -> None:
+    async def main() -> None:
+        async with ros1_network.lent() as node:
+            got: list[Any] = []
+            first = node.subscribe("/own", "robot_msgs/Reading", got.append, qos=ALL)
+            await until(lambda: got)
+            node.subscribe("/own", "robot_msgs/Reading", got.append, qos=ALL)
+            await until(lambda: len(got) == 2)
+            first.close()
+            again = node.subscribe("/own", "robot_msgs/Reading", lambda _: got.append("never"), qos=ALL)
+            again.close()  # before the loop's next turn
+            node.subscribe("/own", "robot_msgs/Reading", got.append, qos=ALL)
+            await until(lambda: len(got) == 3)
+            assert [message.value for message in got] == [7, 7, 7]
+
+    ros1_network.run(main)
+
+
+def test_the_clock_of_a_simulation_arrives_where_rospy_would_follow_it(ros1_network: Network) -> None:
+    async def main() -> None:
+        async with opened(ros1_network.node()) as node:
+            got: list[Any] = []
+            node.subscribe("/clock", "rosgraph_msgs/Clock", got.append, qos=ALL)
+            speed = node.advertise("/speed", "std_msgs/Float32", qos=ALL)
+            await until(lambda: got, lambda: speed.publish(1.0))
+
+    with xmlrpc.client.ServerProxy(ros1_network.environment["ROS_MASTER_URI"]) as master:
+        master.setParam("/test", "/use_sim_time", True)
+        try:
+            ros1_network.run(main)
+        finally:
+            master.deleteParam("/test", "/use_sim_time")
 
 
 def test_two_nodes_without_ros_speak_dds_with_an_own_package(ros2_network: Network) -> None:

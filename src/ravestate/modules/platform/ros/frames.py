@@ -17,9 +17,13 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any
 
+from .outbox import Outbox
+
 HEAD = struct.Struct("<BBxxIII")
 SHARED = 1
 """A flag of a frame: its body is in shared memory."""
+PASSED = 2
+"""A flag of a frame: a socket comes with it; see `Frames.passed`."""
 LARGE = 1 << 16
 """The number of bytes from which on a body travels in shared memory."""
 BLOCK = 1 << 16
@@ -46,6 +50,9 @@ class Kind(IntEnum):
     NOTE = 13
     READY = 14
     CLOSE = 15
+    SUBSCRIBER = 16
+    PUBLISHER = 17
+    HANGUP = 18
 
 
 KINDS = {int(kind): kind for kind in Kind}
@@ -64,33 +71,28 @@ class Frames:
 
     def __init__(self, sock: socket.socket, handle: Handle, lost: Callable[[], None]) -> None:
         self._sock = sock
-        sock.setblocking(False)
-        self._local = sock.family == socket.AF_UNIX and hasattr(os, "memfd_create")
+        self._local = sock.family == socket.AF_UNIX
         self._loop = asyncio.get_running_loop()
         self._handle = handle
         self._lost = lost
         self._rest = bytearray()
         self._fds: deque[int] = deque()
-        self._out: deque[tuple[memoryview, int | None]] = deque()
+        self._out = Outbox(sock, self._end)
         self._closed = False
-        self._flushed = asyncio.Event()
-        self._flushed.set()
         self._loop.add_reader(sock, self._readable)
 
     def send(self, kind: Kind, channel: int = 0, number: int = 0, body: bytes | memoryview = b"") -> None:
         """Send a frame, now or as soon as the other end reads."""
         if self._closed:
             return
-        if self._local and len(body) >= LARGE:
+        if len(body) >= LARGE and self._local and hasattr(os, "memfd_create"):
             fd = os.memfd_create("ravestate")
             rest = memoryview(body).cast("B")
             while rest:
                 rest = rest[os.write(fd, rest) :]
-            self._out.append((memoryview(HEAD.pack(kind, SHARED, channel, number, len(body))), fd))
+            self._out.put(HEAD.pack(kind, SHARED, channel, number, len(body)), fd)
         else:
-            self._out.append((memoryview(HEAD.pack(kind, 0, channel, number, len(body)) + bytes(body)), None))
-        if self._flushed.is_set():
-            self._writable()
+            self._out.put(HEAD.pack(kind, 0, channel, number, len(body)) + bytes(body))
 
     def tell(self, kind: Kind, value: Any, channel: int = 0, number: int = 0) -> None:
         """Send a frame whose body is a value as JSON."""
@@ -98,44 +100,23 @@ class Frames:
 
     async def flush(self) -> None:
         """Wait until all frames have left."""
-        await self._flushed.wait()
+        await self._out.flush()
+
+    def passed(self) -> socket.socket:
+        """Return the socket that has come with the frame which is being handled."""
+        return socket.socket(fileno=self._fds.popleft())
 
     def close(self) -> None:
         """Close the socket."""
         if self._closed:
             return
         self._closed = True
-        self._flushed.set()
         self._loop.remove_reader(self._sock)
-        self._loop.remove_writer(self._sock)
+        self._out.close()
         self._sock.close()
-        for fd in (*self._fds, *(fd for _, fd in self._out if fd is not None)):
+        for fd in self._fds:
             os.close(fd)
         self._fds.clear()
-        self._out.clear()
-
-    def _writable(self) -> None:
-        while self._out:
-            data, fd = self._out[0]
-            try:
-                sent = socket.send_fds(self._sock, [data], [fd]) if fd is not None else self._sock.send(data)
-            except (BlockingIOError, InterruptedError):
-                self._flushed.clear()
-                self._loop.add_writer(self._sock, self._writable)
-                return
-            except OSError:
-                self._out.popleft()
-                self._end()
-                return
-            if fd is not None:
-                os.close(fd)
-            if sent < len(data):
-                self._out[0] = data[sent:], None
-            else:
-                self._out.popleft()
-        if not self._flushed.is_set():
-            self._loop.remove_writer(self._sock)
-            self._flushed.set()
 
     def _readable(self) -> None:
         if self._closed:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import itertools
 import json
 import logging
 import os
 from collections import deque
 from collections.abc import Awaitable, Callable, Mapping
-from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Literal, Protocol
 
 from ravestate.errors import PlatformError
 
+from .channel import Channel
+from .connections import Connections, Publisher
 from .frames import Frames, Handle, Kind
 from .goals import GoalTopics
 from .naming import resolve
@@ -24,6 +26,8 @@ TOLD = 100
 """The maximum number of different texts that a node logs. Good news or a new link resets the count."""
 WAITING = 1000
 """The maximum number of messages that wait while the bridge starts. Then the oldest is dropped."""
+LEAVING = 2.0
+"""Seconds that the last messages have to leave when a node ends."""
 
 _nodes = itertools.count(1)  # two nodes of one process need two names: ROS 1 ends an older node of the same name
 
@@ -45,61 +49,6 @@ class Link(Protocol):
 
 MakeLink = Callable[[Mapping[str, Any], Handle, Callable[[], None], Callable[[str], None]], Link]
 """Makes a link from the node's configuration and the functions `handle`, `ready` and `lost`; see `BridgeProcess`."""
-
-
-@dataclass(eq=False, slots=True)
-class Channel:
-    """One topic, service or action of a node. `close` ends it.
-
-    Attributes:
-        number: The channel's number on the link.
-        binding: The description that the bridge gets.
-        type: The full name of the type.
-        fault: Why the bridge could not make it; empty if it could.
-    """
-
-    node: Node
-    number: int
-    binding: dict[str, Any]
-    type: str
-    take: Callable[[Any], None] | None = None
-    serve: Callable[[Any], Awaitable[Any]] | None = None
-    pause: float = 0.0
-    last: memoryview | None = None
-    fault: str = ""
-    waits: list[asyncio.TimerHandle] = field(default_factory=list[asyncio.TimerHandle])
-
-    @property
-    def name(self) -> str:
-        """The absolute name of the topic, service or action."""
-        return self.binding["name"]
-
-    def publish(self, value: Any) -> None:
-        """Publish a message: a message, a mapping of its fields, or the value of its only field.
-
-        Raises:
-            PlatformError: The value does not fit the type, or the bridge could not make the channel.
-        """
-        if self.fault:
-            raise PlatformError(self.fault)
-        body = self.node.types.encode(value, self.type)
-        if self.binding["latch"]:
-            self.last = body
-        self.node.send(Kind.MESSAGE, self.number, 0, body)
-
-    async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
-        """Call a service, or send a goal; return the response or the result.
-
-        If the caller is cancelled, the goal is cancelled.
-
-        Raises:
-            PlatformError: The value does not fit, nobody answers within the time-out, or the other end refuses.
-        """
-        return await self.node.call(self, value, feedback)
-
-    def close(self) -> None:
-        """End the channel."""
-        self.node.drop(self)
 
 
 class Node:
@@ -149,6 +98,7 @@ class Node:
         self._link: Link | None = None
         self._failed = failed
         self._numbers = itertools.count(1)
+        self._connections = Connections(partial(self._tell, Kind.HANGUP, 0))
         self._calls: dict[int, tuple[asyncio.Future[Any], Channel, Callable[[Any], None] | None]] = {}
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
         self._told: set[str] = set()
@@ -232,6 +182,8 @@ class Node:
         self.start()
         if frames := self._frames:
             frames.tell(Kind.BIND, channel.binding, number)
+        if kind == "subscriber":
+            self._connections.add(channel)
         return channel
 
     def absolute(self, name: str) -> str:
@@ -241,10 +193,9 @@ class Node:
     def drop(self, channel: Channel) -> None:
         """End a channel."""
         if self.channels.pop(channel.number, None) is not None:
-            for timer in channel.waits:
-                timer.cancel()
-            if frames := self._frames:
-                frames.send(Kind.UNBIND, channel.number)
+            if channel.take is not None:
+                self._connections.drop(channel)
+            self._tell(Kind.UNBIND, channel.number)
 
     # ------------------------------------------------------------------------------- acting
 
@@ -279,6 +230,16 @@ class Node:
             frames.send(kind, channel, number, body)
         else:
             self._waiting.append((kind, channel, number, body))
+
+    def publish(self, channel: Channel, body: memoryview) -> None:
+        """Send a message by the connections that the bridge has passed on; if there are none, by the bridge."""
+        if not self._connections.send(channel.name, body):
+            self.send(Kind.MESSAGE, channel.number, 0, body)
+
+    def _tell(self, kind: Kind, channel: int, number: int = 0) -> None:
+        """Send a frame that is of use to the present link alone."""
+        if frames := self._frames:
+            frames.send(kind, channel, number)
 
     async def call(self, channel: Channel, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
         """See `Channel.call`."""
@@ -335,8 +296,12 @@ class Node:
         """End all channels and the link, in order."""
         for task in self._tasks:
             task.cancel()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(LEAVING):
+                await self._connections.flush()
         if self._link is not None:
             await self._link.close()
+        self._connections.close()
         self._fail_calls("the node is closed")
 
     # ------------------------------------------------------------------------------- frames from the link
@@ -359,6 +324,7 @@ class Node:
 
     def _lost(self, why: str) -> None:
         self.ready.clear()
+        self._connections.close()
         self._log.warning("%s", why)
         self._fail_calls(why)
         if self._link is not None and self._link.failed is not None:
@@ -375,6 +341,8 @@ class Node:
         known = self.channels.get(channel)
         if kind is Kind.MESSAGE and known is not None:
             self._message(known, body)
+        elif kind in (Kind.SUBSCRIBER, Kind.PUBLISHER):
+            self._connect(kind, number, json.loads(bytes(body)))
         elif kind is Kind.CALL and known is not None:
             task = asyncio.create_task(self._serve(known, number, body))
             self._tasks.add(task)
@@ -384,12 +352,31 @@ class Node:
         elif number in self._calls:
             self._answer(kind, number, body)
 
-    def _message(self, channel: Channel, body: memoryview) -> None:
-        assert channel.take is not None  # it is a subscriber
+    def _connect(self, kind: Kind, number: int, what: dict[str, Any]) -> None:
+        """Take over a connection that the bridge passes on."""
+        frames = self._frames
+        assert frames is not None  # it is from there
+        sock = frames.passed()
+        if kind is Kind.PUBLISHER:
+            first: str = what.pop("first")
+            self._connections.from_publisher(number, sock, Publisher(**what), first.encode("latin-1"))
+            return
+        connection = self._connections.to_subscriber(number, sock, **what)
+        for channel in self.channels.values():
+            if channel.name == what["topic"] and channel.last is not None:
+                connection.send(channel.last)
+
+    def take(self, channel: Channel, body: memoryview) -> None:
+        """Take a message for a channel that subscribes."""
+        assert channel.take is not None  # it subscribes
         try:
             channel.take(self.types.decode(body, channel.type))
         except PlatformError as error:
             self._warn(f"{channel.name}: {error}")
+
+    def _message(self, channel: Channel, body: memoryview) -> None:
+        try:
+            self.take(channel, body)
         finally:
             if channel.binding["latest"]:
                 self._acknowledge(channel)
@@ -397,7 +384,7 @@ class Node:
     def _acknowledge(self, channel: Channel) -> None:
         acknowledge = partial(self.send, Kind.ACK, channel.number, 0)
         if channel.pause:
-            channel.waits[:] = [asyncio.get_running_loop().call_later(channel.pause, acknowledge)]
+            channel.rest(acknowledge)
         else:
             acknowledge()
 

@@ -133,6 +133,7 @@ def follow_clock(ctx: rs.RuleContext, node: Node) -> None:
         nonlocal offset, last
         time = message.clock.sec + message.clock.nanosec / 1e9
         if offset is None or time < last:  # the first message, or the simulation began anew
+            ctx.drive_clock(ctx.now)  # from here on it stands still
             offset = ctx.now - time
         last = time
         ctx.drive_clock(time + offset)

@@ -20,14 +20,16 @@ import time
 
 HEAD = struct.Struct("<BBxxIII")
 SHARED = 1  # a flag: the body is in shared memory
+PASSED = 2  # a flag: a socket comes with the frame
 LARGE = 1 << 16
 SEEKING = 0.7  # the part of a call's time-out in which its server must appear; then the agent still hears of it
 
 OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
+SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 """The kinds of frames.
 
-From the agent: OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE. From the bridge: READY, FEEDBACK, TOLD, NOTE. Both: MESSAGE,
-CALL, ANSWER, FAULT.
+From the agent: OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE, HANGUP. From the bridge: READY, FEEDBACK, TOLD, NOTE,
+SUBSCRIBER, PUBLISHER. Both: MESSAGE, CALL, ANSWER, FAULT. A socket comes with SUBSCRIBER and PUBLISHER: the connection with another node.
 """
 
 
@@ -50,14 +52,21 @@ class Pipe:
                     rest = memoryview(body)
                     while rest:
                         rest = rest[os.write(fd, rest) :]
-                    rights = [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", [fd]))]
-                    head = HEAD.pack(kind, SHARED, channel, number, size)
-                    sent = self._sock.sendmsg([head], rights)
-                    self._sock.sendall(head[sent:])
+                    self._send_with(fd, HEAD.pack(kind, SHARED, channel, number, size))
                 finally:
                     os.close(fd)
             else:
                 self._sock.sendall(HEAD.pack(kind, 0, channel, number, size) + bytes(body))
+
+    def hand_over(self, sock, kind, number, value):
+        """Send a connected socket to the agent, in a frame whose body is a value as JSON."""
+        body = json.dumps(value).encode()
+        with self._sending:
+            self._send_with(sock.fileno(), HEAD.pack(kind, PASSED, 0, number, len(body)) + body)
+
+    def _send_with(self, fd, data):
+        sent = self._sock.sendmsg([data], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", [fd]))])
+        self._sock.sendall(data[sent:])
 
     def tell(self, kind, value, channel=0, number=0):
         """Send a frame whose body is a value as JSON."""
@@ -182,6 +191,8 @@ def _obey(pipe, node):
             elif kind == UNBIND:
                 outlets.pop(channel, None)
                 node.unbind(channel)
+            elif kind == HANGUP:
+                node.hang_up(number)
             elif kind == ASK:
                 pipe.tell(TOLD, node.ask(), 0, number)
             elif kind == CLOSE:

@@ -9,11 +9,9 @@ import threading
 import time
 import xmlrpc.client
 
-from pipe import ANSWER, CALL, FAULT, SEEKING, Pipe, every, reason, serve
+from pipe import ANSWER, CALL, FAULT, LARGE, PUBLISHER, SEEKING, SUBSCRIBER, Pipe, every, reason, serve
 
 PROBE = 1.0  # seconds between two looks at the master
-LEAVING = 2.0  # seconds that the last messages have to leave, in threads of rospy
-SILENCE = 0.05  # seconds without another message, after which none is under way
 
 
 def message_class(type_, md5, text=""):
@@ -66,6 +64,28 @@ def call_class():
     return Call
 
 
+def transport_class(node):
+    """Return the class of a connection with a publisher, whose messages the agent reads itself unless they are large."""
+    from rospy.exceptions import TransportTerminated
+    from rospy.impl.tcpros_base import TCPROSTransport, recv_buff
+
+    class Transport(TCPROSTransport):
+        def receive_loop(self, msgs_callback):
+            node.check(self.name, self.header)
+            try:
+                while self.read_buff.tell() < 4:  # the length of the first message
+                    recv_buff(self.socket, self.read_buff, self.protocol.buff_size)
+                first = self.read_buff.getvalue()[: self.read_buff.tell()]
+            except (TransportTerminated, AttributeError):
+                first = b""  # it is closed, which rospy finds out
+            if first and int.from_bytes(first[:4], "little") < LARGE:
+                node.from_publisher(self, first)
+            else:
+                super().receive_loop(msgs_callback)
+
+    return Transport
+
+
 class Ros1Node:
     """A rospy node that does what the agent says; see `pipe.serve`."""
 
@@ -85,14 +105,21 @@ class Ros1Node:
         namespace, _, name = config["name"].rpartition("/")
         os.environ["ROS_NAMESPACE"] = namespace or "/"
         import rospy
+        import rospy.impl.simtime
+        import rospy.impl.tcpros_pubsub
+        import rospy.topics
 
         self._rospy = rospy
+        rospy.topics.QueuedConnection = self._to_subscriber  # in the place of its own queue and thread
+        rospy.impl.tcpros_pubsub.TCPROSTransport = transport_class(self)
+        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy takes /clock, which is for the agent
         self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
         self._bindings = {}
         self._replies = {}
         self._calls = {}
+        self._connections = {}
         self._number = 0
         self._lock = threading.Lock()
         every(PROBE, self._look_at_master)
@@ -139,23 +166,49 @@ class Ros1Node:
 
     def _subscribe(self, channel, binding, outlet):
         rospy = self._rospy
-        warned = set()
 
         def take(message):
-            header = message._connection_header
-            if header.get("type") != binding["type"] or header.get("md5sum", "*") not in (binding["md5"], "*"):
-                other = header.get("callerid"), header.get("type")
-                if other not in warned:
-                    warned.add(other)
-                    self._pipe.note(channel, _mismatch(binding, header))
-                return
-            outlet.put(message._buff)
+            if _suits(binding, message._connection_header):
+                outlet.put(message._buff)
 
         # Subscribers of one topic share rospy's queue. It has no limit; the outlet skips messages.
         # rospy allocates the buffer anew for each read. A large buffer costs more than to read an image in parts.
-        return rospy.Subscriber(
+        subscriber = rospy.Subscriber(
             binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 16, tcp_nodelay=True
         )
+        for connection in subscriber.impl.connections:
+            self.check(binding["name"], connection.header)
+        return subscriber
+
+    def check(self, topic, header):
+        """Tell the agent about each subscription to a topic that cannot read what a publisher publishes."""
+        for channel, binding in list(self._bindings.items()):
+            if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
+                self._pipe.note(channel, _mismatch(binding, header))
+
+    def _to_subscriber(self, connection, depth):
+        self._hand_over(SUBSCRIBER, connection, {"topic": connection.name, "depth": depth})
+        return connection
+
+    def from_publisher(self, connection, first):
+        """Give the agent a connection with a publisher, and the bytes that have been read already."""
+        header = connection.header
+        what = {
+            "topic": connection.name, "type": header["type"], "md5": header["md5sum"],
+            "latching": connection.is_latched, "first": first.decode("latin-1"),
+        }  # fmt: skip
+        self._hand_over(PUBLISHER, connection, what)
+
+    def _hand_over(self, kind, connection, what):
+        with self._lock:
+            self._number += 1
+            number = self._number
+            self._connections[number] = connection
+        self._pipe.hand_over(connection.socket, kind, number, what)
+
+    def hang_up(self, number):
+        """Forget a connection that the other node has closed."""
+        self._connections.pop(number).close()
 
     def _service_class(self, type_, md5):
         class Service:
@@ -178,22 +231,21 @@ class Ros1Node:
         return service._response_class(bytes(done[1]))
 
     def message(self, channel, body):
-        publisher = self._channels[channel]
-        publisher.publish(publisher.data_class(bytes(body)))
+        """Drop a message: the agent sends it here if its topic has no subscriber."""
 
     def call(self, channel, number, body):
         # A persistent proxy keeps its connection, which `cancel` closes.
-        call = self._call_class(self._bindings[channel]["name"], self._channels[channel], persistent=True)
-        self._calls[channel, number] = call
-        threading.Thread(target=self._call, args=(channel, number, bytes(body), call), daemon=True).start()
+        binding, service = self._bindings[channel], self._channels[channel]
+        call = self._calls[channel, number] = self._call_class(binding["name"], service, persistent=True)
+        arguments = channel, number, bytes(body), call, binding, service
+        threading.Thread(target=self._call, args=arguments, daemon=True).start()
 
-    def _call(self, channel, number, body, call):
-        name, service = self._bindings[channel]["name"], self._channels[channel]
+    def _call(self, channel, number, body, call, binding, service):
+        name = binding["name"]
         try:
-            self._wait_for(name, SEEKING * self._bindings[channel]["timeout"])
-            wanted = self._bindings[channel]["md5"]
+            self._wait_for(name, SEEKING * binding["timeout"])
             found = service_header(self._rospy.resolve_name(name), self._uri)
-            if found.get("md5sum") not in (None, wanted):
+            if found.get("md5sum") not in (None, binding["md5"]):
                 raise TypeError(
                     "the service {} has the type {}, not {}: write type={!r}".format(
                         name, found.get("type"), service._type, found.get("type")
@@ -227,6 +279,7 @@ class Ros1Node:
             call.end()
 
     def unbind(self, channel):
+        self._bindings.pop(channel, None)
         thing = self._channels.pop(channel, None)
         if hasattr(thing, "unregister"):
             thing.unregister()
@@ -263,20 +316,11 @@ class Ros1Node:
         return {"topics": list(found.values()), "services": listed, "actions": actions}
 
     def close(self):
-        end, before = time.monotonic() + LEAVING, None
-        while (now := self._sent()) != before and time.monotonic() < end:
-            before = now
-            time.sleep(SILENCE)
         self._rospy.signal_shutdown("the agent ends")
 
-    def _sent(self):
-        """Return the number of messages that each connection has sent, and of those that wait in its queue."""
-        publishers = [thing for thing in self._channels.values() if isinstance(thing, self._rospy.Publisher)]
-        return [
-            (connection.stat_num_msg, len(getattr(connection, "_queue", ())))
-            for publisher in publishers
-            for connection in publisher.impl.connections
-        ]
+
+def _suits(binding, header):
+    return header.get("type") == binding["type"] and header.get("md5sum", "*") in (binding["md5"], "*")
 
 
 def _mismatch(binding, header):

@@ -22,6 +22,10 @@ class Ros2Node:
 
     def __init__(self, pipe: Pipe, config):
         os.environ.update({key: value for key, value in config["environment"].items() if value})
+        if not os.path.exists("DEFAULT_FASTDDS_PROFILES.xml"):  # the user's own
+            os.environ.setdefault(
+                "FASTDDS_DEFAULT_PROFILES_FILE", os.path.join(os.path.dirname(__file__), "fastdds.xml")
+            )
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
 

@@ -1,0 +1,98 @@
+"""One topic, service or action of a node."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ravestate.errors import PlatformError
+
+if TYPE_CHECKING:
+    from .node import Node
+
+
+@dataclass(eq=False, slots=True)
+class Channel:
+    """One topic, service or action of a node. `close` ends it.
+
+    Attributes:
+        number: The channel's number on the link.
+        binding: The description that the bridge gets.
+        type: The full name of the type.
+        fault: Why the bridge could not make it; empty if it could.
+    """
+
+    node: Node
+    number: int
+    binding: dict[str, Any]
+    type: str
+    take: Callable[[Any], None] | None = None
+    serve: Callable[[Any], Awaitable[Any]] | None = None
+    pause: float = 0.0
+    last: memoryview | None = None
+    fault: str = ""
+    pending: memoryview | None = None
+    timer: asyncio.TimerHandle | None = None
+
+    @property
+    def name(self) -> str:
+        """The absolute name of the topic, service or action."""
+        return self.binding["name"]
+
+    def publish(self, value: Any) -> None:
+        """Publish a message: a message, a mapping of its fields, or the value of its only field.
+
+        Raises:
+            PlatformError: The value does not fit the type, or the bridge could not make the channel.
+        """
+        if self.fault:
+            raise PlatformError(self.fault)
+        body = self.node.types.encode(value, self.type)
+        if self.binding["latch"]:
+            self.last = body
+        self.node.publish(self, body)
+
+    async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
+        """Call a service, or send a goal; return the response or the result.
+
+        If the caller is cancelled, the goal is cancelled.
+
+        Raises:
+            PlatformError: The value does not fit, nobody answers within the time-out, or the other end refuses.
+        """
+        return await self.node.call(self, value, feedback)
+
+    def close(self) -> None:
+        """End the channel."""
+        self.stop()
+        self.node.drop(self)
+
+    def offer(self, body: memoryview, *, newest: bool) -> None:
+        """Take a message of a publisher's connection, unless a newer one replaces it."""
+        if not self.binding["latest"]:
+            self.node.take(self, body)
+        elif self.timer is not None:
+            self.pending = body
+        elif newest:
+            self.node.take(self, body)
+            if self.pause:
+                self.rest(lambda: None)
+
+    def rest(self, then: Callable[[], None]) -> None:
+        """Take no message for the time of the pause; then call a function, and take the message that waits."""
+        self.timer = asyncio.get_running_loop().call_later(self.pause, self._rested, then)
+
+    def stop(self) -> None:
+        """Forget a message that waits for the end of the pause."""
+        self.pending = None
+        if self.timer is not None:
+            self.timer.cancel()
+            self.timer = None
+
+    def _rested(self, then: Callable[[], None]) -> None:
+        body, self.pending, self.timer = self.pending, None, None
+        then()
+        if body is not None:
+            self.offer(body, newest=True)

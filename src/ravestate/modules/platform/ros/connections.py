@@ -1,0 +1,118 @@
+"""The connections of a node of ROS 1 with the publishers and subscribers of its topics."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from .channel import Channel
+from .connection import Connection
+
+
+@dataclass(eq=False, slots=True)
+class Publisher:
+    """A publisher of another node, and its last message if it latches."""
+
+    topic: str
+    type: str
+    md5: str
+    latching: bool
+    last: memoryview | None = None
+
+    def suits(self, channel: Channel) -> bool:
+        """Return whether the publisher has the type that a channel reads. The bridge tells the designer if it has not."""
+        binding = channel.binding
+        return binding["type"] == self.type and self.md5 in (binding["md5"], "*")
+
+
+def _ignore(body: memoryview, newest: bool) -> None:
+    """Ignore what a subscriber sends: there is nothing for it to send."""
+
+
+class Connections:
+    """The connections that the bridge has made, and has passed to the agent.
+
+    Args:
+        hang_up: Tells the bridge that the connection with a number has ended.
+    """
+
+    def __init__(self, hang_up: Callable[[int], None]) -> None:
+        self._hang_up = hang_up
+        self._all: dict[int, Connection] = {}
+        self._publishers: dict[int, Publisher] = {}
+        self._subscribers: dict[str, dict[int, Connection]] = {}
+        """Topic → the connections with its subscribers."""
+        self._readers: dict[str, list[Channel]] = {}
+        """Topic → the channels that subscribe to it."""
+
+    def add(self, channel: Channel) -> None:
+        """Let a channel have the messages of its topic, and first what publishers have latched."""
+        self._readers.setdefault(channel.name, []).append(channel)
+        for publisher in self._publishers.values():
+            if publisher.last is not None and publisher.topic == channel.name and publisher.suits(channel):
+                asyncio.get_running_loop().call_soon(self._offer, channel, publisher.last, True)
+
+    def drop(self, channel: Channel) -> None:
+        """Let a channel have no more messages. Without a channel, the connections of a topic end."""
+        readers = self._readers[channel.name]
+        readers.remove(channel)
+        if not readers:
+            for number, publisher in list(self._publishers.items()):
+                if publisher.topic == channel.name:
+                    self._all[number].close()
+                    self._lost(number)
+
+    def send(self, topic: str, body: memoryview) -> bool:
+        """Send a message to the subscribers of a topic; return whether there are any."""
+        connections = self._subscribers.get(topic)
+        if not connections:
+            return False
+        for connection in list(connections.values()):
+            connection.send(body)
+        return True
+
+    def to_subscriber(self, number: int, sock: socket.socket, topic: str, depth: int) -> Connection:
+        """Take over a connection with a subscriber; at most `depth` messages wait for it."""
+        connection = Connection(sock, _ignore, partial(self._lost, number), depth)
+        self._all[number] = self._subscribers.setdefault(topic, {})[number] = connection
+        return connection
+
+    def from_publisher(self, number: int, sock: socket.socket, publisher: Publisher, first: bytes) -> None:
+        """Take over a connection with a publisher, of which some bytes have been read already."""
+        self._publishers[number] = publisher
+        connection = self._all[number] = Connection(sock, partial(self._take, publisher), partial(self._lost, number))
+        connection.receive(first)
+
+    async def flush(self) -> None:
+        """Wait until all messages have left."""
+        for connection in list(self._all.values()):
+            await connection.flush()
+
+    def close(self) -> None:
+        """Close all connections."""
+        for connection in self._all.values():
+            connection.close()
+        self._all.clear()
+        self._publishers.clear()
+        self._subscribers.clear()
+
+    def _take(self, publisher: Publisher, body: memoryview, newest: bool) -> None:  # a callback
+        if publisher.latching:
+            publisher.last = body
+        for channel in list(self._readers.get(publisher.topic, ())):
+            if publisher.suits(channel):
+                self._offer(channel, body, newest)
+
+    def _offer(self, channel: Channel, body: memoryview, newest: bool) -> None:  # a callback
+        if channel in self._readers[channel.name]:  # nobody has closed it meanwhile
+            channel.offer(body, newest=newest)
+
+    def _lost(self, number: int) -> None:
+        del self._all[number]
+        self._publishers.pop(number, None)
+        for connections in self._subscribers.values():
+            connections.pop(number, None)
+        self._hang_up(number)
