@@ -261,5 +261,5 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
 def _returned(text: str) -> str:
     """Return the user's words as the agent says them: *your* for *my*."""
     text = re.sub(r"\b(i|we) was\b", r"\1 were", text, flags=re.IGNORECASE)
-    text = re.sub(r"^(?:An?|The|This|That|It|There|[SH]?he|They)\b", lambda found: found[0].lower(), text)
+    text = re.sub(r"^(?:An?|The|This|That|It|There|He|She|They)\b", lambda found: found[0].lower(), text)
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())

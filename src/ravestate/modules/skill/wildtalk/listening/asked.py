@@ -14,9 +14,10 @@ from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.moves import LISTENING
 from ravestate.modules.meta.nlp.analysis import Analysis
-from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS
+from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
+from .echo import question_of, words_of
 from .material import Material
 from .moment import Line, Moment
 from .roles import turned
@@ -72,7 +73,7 @@ class Asked:
     """Its class in asks.yaml."""
     area: Moment | None
     values: Mapping[str, str]
-    """The values of the roles: ``first`` and ``second``, ``about``, ``wh``, ``word``, ``short``, ``picked``."""
+    """The values of the roles: ``first`` and ``second``, ``about``, ``question``, ``word``, ``short``, ``picked``."""
     groups: tuple[str, ...]
     """The groups of asked.yaml to try, the most specific first."""
 
@@ -105,7 +106,7 @@ def asked_in(
         moves: The agent's likely next moves.
         request: Whether the utterance is an order.
     """
-    words = _words_of(seen.tree, asking)
+    words = words_of(seen.tree, asking)
     options = _options(seen.tree, words)
     least = SURE if asking else ORDERED if request else UNASKED
     found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
@@ -113,7 +114,8 @@ def asked_in(
     kind = "" if best is None else best.name
     if options and (not kind or kind in OPEN):
         kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
-    if asking and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
+    plainly = asking.endswith("?") or (words and words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
+    if plainly and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
         kind = "fact"
     area = area_of(phrases, seen.tree, words, state.before, kind)
     if kind in ("another", "meant") and state.asked:
@@ -128,7 +130,7 @@ def asked_in(
         "first": options[0] if options else "",
         "second": options[1] if options else "",
         "about": about(phrases, seen.tree, words),
-        "wh": _wh(seen.tree, words),
+        "question": question_of(seen.tree, asking) if asking else "",
         "word": _word(seen),
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
@@ -139,7 +141,7 @@ def asked_in(
     able = any(word.low in ("can", "could") for word in words[:1])
     groups = (["act"] if verbal else ["two"]) if options else []
     groups += ["picked"] * (kind in ("pick", "recommend") and "picked" in values)
-    groups += ["can"] * able + ["wh", "about", "last", "short", "word"]
+    groups += ["can"] * able + ["polar"] * (seen.question is QuestionWord.YES_NO) + ["question", "about", "last", "short", "word"]
     return Asked(kind, area, values, tuple(groups))
 
 
@@ -191,15 +193,6 @@ def _left(tree: Tree, part: Word, noun: Word) -> bool:
     return part.index < noun.index and part.dep in _PART and noun.index in (part.head, tree.head(part).head)
 
 
-def _words_of(tree: Tree, sentence: str) -> list[Word]:
-    """Return the words of a sentence of the text; all words if it is not found."""
-    start = tree.text.lower().find(sentence.lower()) if sentence else 0
-    if start < 0:
-        return list(tree.words)
-    end = start + len(sentence) if sentence else len(tree.text)
-    return [word for word in tree.words if start <= word.start < end]
-
-
 def _options(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
     """Return the options of *soup or salad* and *text her or wait*, and whether they are acts."""
     at = next((place for place, word in enumerate(words) if word.low == "or"), 0)
@@ -229,23 +222,6 @@ def _cuts(word: Word) -> bool:
 def _until(words: Sequence[Word], ends: Sequence[str]) -> list[Word]:
     place = next((place for place, word in enumerate(words) if word.pos in ends), len(words))
     return list(words[:place])
-
-
-def _wh(tree: Tree, words: Sequence[Word]) -> str:
-    """Return the words that ask, with their noun: *which boots*, *how often*, *when*."""
-    place = next((place for place, word in enumerate(words) if word.low in QUESTION_WORDS), None)
-    if place is None or words[place].low == "why":
-        return ""
-    found = [words[place]]
-    for word in words[place + 1 : place + 5]:
-        subject = word.dep in SUBJECTS and found[-1].pos not in ("ADJ", "DET")
-        if word.pos not in ("ADJ", "ADV", "NOUN", "DET") or word.low in AUXILIARIES or subject:
-            break
-        found.append(word)
-    alone = len(found) == 1
-    if (alone and found[0].low not in ("who", "when", "where")) or (found[0].low == "how" and found[-1].low == "come"):
-        return ""
-    return turned(tree, found).lower()
 
 
 def _word(seen: Analysis) -> str:

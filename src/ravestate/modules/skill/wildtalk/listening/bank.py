@@ -21,10 +21,10 @@ from .suitability import Evidence
 
 LEAST = 0.74
 """The least similarity at which an entry is looked at more closely."""
-CLOSE, DOUBTFUL, PROBABLE = 0.9, 0.15, 0.45
+CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.3, 0.62
 """An entry with the similarity `CLOSE` and the probability `DOUBTFUL`, or more, gets at least the probability `PROBABLE`:
 more than half of such entries suit. Their other sentences may be far from the utterance, which lowers the estimate."""
-ANSWER = -10.6
+ANSWER = -10.3
 """The least score (logit) of an answer. An answer to another question from the same area of life scores about -11."""
 TONES = ("sad", "angry", "glad", "tired")
 DARK = ("sad", "angry", "tired")

@@ -13,12 +13,13 @@ from dataclasses import dataclass, field, replace
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match, bundled_matcher
-from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
 from .asked import Asked, asked_in
 from .bank import DARK, Found
+from .echo import Told, told_in
 from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
@@ -49,11 +50,8 @@ SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-ALIKE, SIMILAR = 0.55, 0.4
-"""The least probability that an entry of the bank suits: of one that decides the answer, and of one that is better than a
-stock answer."""
-ASKING = 0.05
-"""The probability that an entry needs less for a question: its answers suit more often than replies to statements."""
+ALIKE = 0.62
+"""The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 CROSSED = 0.5
@@ -109,6 +107,8 @@ class Hearing:
     asking: str = ""
     """The sentence that asks something."""
     asked: Asked | None = None
+    told: Told | None = None
+    """The statement that the agent can take up."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
 
@@ -132,6 +132,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
+    found.told = None if asking or request else told_in(seen, phrases.living)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
@@ -142,13 +143,15 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         feeling = None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
     last = state.said[-1] if state.said else ""
-    roles = roles.having(user=heard.user, last="" if last.endswith("?") else last)
+    advised = state.moment in ADVICE or state.moment.startswith("advice.")
+    roles = roles.having(
+        user=heard.user, last="" if last.endswith("?") else last, ground=state.ground if advised else ""
+    )
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
     found.near = near_in(phrases, seen, asking, state, feeling)
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
-    easier = ASKING if asking else 0.0
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
     low = {word.low for word in seen.tree.words}
@@ -169,9 +172,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
         "sure": score >= SURE,
-        "alike": nearest.fit >= ALIKE - easier
+        "alike": nearest.fit >= ALIKE
         and (nearest.score >= EXACT or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))),
-        "similar": nearest.fit >= SIMILAR - easier,
         "others": others,
         "asserting": verb and others,
         "called": called != "",
@@ -184,6 +186,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "wording": found.asked is not None and found.asked.kind in ("repeat", "shorter", "say_word"),
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
         found.asked.kind if found.asked else "": True,
+        "echoed": found.told is not None,
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
@@ -198,7 +201,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         } & {statement.object.head, statement.subject.head}
         found.topic = next((one for one in phrases.topics.values() if heads & one.words), None)
     found.tags |= {tag for tag, holds in tags.items() if holds}
-    found.roles = roles.having(called=called, **(found.asked.values if found.asked else {}))
+    found.roles = roles.having(called=called, told=found.told.echo if found.told else "", **(found.asked.values if found.asked else {}))
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
@@ -222,9 +225,10 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         "question": True,
         "offer": _OFFER.match(asking) is not None,
         "are_you": polar and not modal and subject == "you" and asked is not None and asked.verb == "be",
-        "told": (not polar and (mine or subject == "I") and subject != "you" and not modal)
+        "told": found.moves == ("recall",)
+        and ((not polar and (mine or subject == "I") and subject != "you" and not modal)
         or bool({"remember", "recall"} & low and "you" in low)
-        or ("know" in low and subject == "you" and "my" in low),
+        or ("know" in low and subject == "you" and "my" in low)),
         "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
@@ -293,7 +297,11 @@ def asking_sentence(seen: Analysis) -> str:
         opened = [sentence for sentence in opened if len(sentence.split()) > FEW_WORDS - 1]
         if not marked and not opened:
             return ""
-    return [*seen.sentences, *opened, *marked][-1]
+    last = [*seen.sentences, *opened, *marked][-1]
+    place = seen.sentences.index(last)
+    if place and len(last.split()) <= SHORT + 1 and kind_of(last) == "you_think":
+        return seen.sentences[place - 1]  # "I don't know whether I should go. What do you think?"
+    return last
 
 
 def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:

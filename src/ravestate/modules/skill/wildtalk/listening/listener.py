@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .games import GUESSER, HOLDER, Played, Turn, named
-from .hearing import ALIKE, ASKED, ASKING, SIMILAR, Heard, Hearing, feeling_of, hear, is_living, near_in
+from .hearing import ALIKE, ASKED, Heard, Hearing, feeling_of, hear, is_living, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
@@ -110,7 +110,8 @@ class Listener:
             after = after.toned("").having_said(text, text)
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
         said = self._say(hearing, replace(state, game=None), chance)
-        return replace(said, state=replace(said.state, before=heard.text))
+        ground = state.ground if hearing.told is None else hearing.told.echo
+        return replace(said, state=replace(said.state, before=heard.text, ground=ground))
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
@@ -219,9 +220,8 @@ class Listener:
 
     def _bank(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the entries of the bank that suit the utterance, the most suitable first."""
-        least = (ALIKE if "alike" in hearing.tags else SIMILAR) - (ASKING if hearing.asking else 0.0)
         for one in hearing.near:
-            if one.fit >= least:
+            if one.fit >= ALIKE:
                 yield _Source(one.moment.lines("say"), one.moment)
 
     def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -230,6 +230,22 @@ class Listener:
         if asked is not None:
             about = asked.kind, "" if asked.area is None else asked.area.name
             yield _Source(asked.lines(self._phrases, state.tone, hearing.asking), asked=about)
+
+    def _echo(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the user's statement from the agent's view, with a question of its kind, or with a sign of interest."""
+        told, kinds = hearing.told, self._phrases.told
+        if told is None:
+            return
+        mood = "sad" if state.tone == "sad" else "glad" if hearing.moves == ("rejoice",) else ""
+        names = (f"{told.subject} {told.tense}", told.subject)
+        named = (one for verb in told.verbs for one in kinds.values() if verb in one.words and one.lines(*names))
+        kind = next((one for one in named if not mood or one.tone == mood), None)
+        found = [*(kind.lines(*names) if kind else []), *kinds["any"].lines(*([mood] if mood else names))]
+        found += kinds["notes"].lines(mood, "say")
+        frames = kinds["frames"].lines(mood, "piece" if told.subject == "piece" else "say")[0]
+        fresh = [one.text for one in frames if not any(text.startswith(one.text) for text in state.recent[-3:])]
+        frame = chance.choice(fresh)
+        yield _Source([[_framed(frame, line) for line in lines if not _ended(line, state)] for lines in found])
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
@@ -262,6 +278,15 @@ class Listener:
             if "living" in hearing.tags:
                 lines = [[line for line in group if line.roles & {"who", "they", "them"}] for group in lines]
             yield _Source(lines, hearing.topic)
+
+
+def _framed(frame: str, line: Line) -> Line:
+    return replace(line, text=f"{frame} {line.text}", roles=line.roles | {"told"})
+
+
+def _ended(line: Line, state: State) -> bool:
+    """Return whether a recent answer ended with a phrase, whatever it echoed."""
+    return any(text.endswith(line.text) for text in state.recent)
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:

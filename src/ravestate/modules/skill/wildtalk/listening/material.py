@@ -60,6 +60,8 @@ class Material:
         self.area_by_word = {word: one.name for one in reversed(self.areas.values()) for word in one.words}
         self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = {**_moments("plain"), **self.replies}
+        self.told = _moments("told")
+        """Kinds of statements, with questions that take them up."""
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
         self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}
@@ -69,6 +71,7 @@ class Material:
             for gender, nouns in genders.items()
             for noun in nouns
         }
+        self.living = frozenset(self.beings)
 
 
 @cache
