@@ -17,13 +17,14 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
+from .bank import ANSWER, EXACTLY
 from .echo import question_of, words_of
 from .material import Material
 from .moment import Line, Moment
 from .roles import turned
 from .state import State
 
-SURE, ORDERED, UNASKED = 0.4, 0.6, 0.7
+SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
 """The least confidence in a kind, for a question, for an order, and for any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
@@ -35,6 +36,8 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
 OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
 """Kinds that are a choice if options are named."""
+EXACT = word_set("fact why choose measure would_you")
+"""Kinds whose answers suit few other questions of the same area."""
 OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
 _POINTING = word_set("it its that this he him his she her they them there")
@@ -89,7 +92,8 @@ class Asked:
         general = phrases.asked[self.kind]
         named = [self.area.name] if self.area else []
         first = general.lines("picked") if "picked" in self.groups else []
-        own = [[line] for lines in self.own for line in phrases.bank.answering(question, lines)]
+        least = EXACTLY if self.kind in EXACT else ANSWER
+        own = [[line] for lines in self.own for line in phrases.bank.answering(question, lines, least)]
         return [*first, *own, *general.lines(*named, tone, *self.groups, "say")]
 
 
@@ -141,7 +145,11 @@ def asked_in(
     able = any(word.low in ("can", "could") for word in words[:1])
     groups = (["act"] if verbal else ["two"]) if options else []
     groups += ["picked"] * (kind in ("pick", "recommend") and "picked" in values)
-    groups += ["can"] * able + ["polar"] * (seen.question is QuestionWord.YES_NO) + ["question", "about", "last", "short", "word"]
+    groups += (
+        ["can"] * able
+        + ["polar"] * (seen.question is QuestionWord.YES_NO)
+        + ["question", "about", "last", "short", "word"]
+    )
     return Asked(kind, area, values, tuple(groups))
 
 
@@ -203,6 +211,9 @@ def _options(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
     if verbal:
         subject = next((place for place, word in enumerate(words[:at]) if word.dep in SUBJECTS), -1)
         start = next((place for place in range(subject + 1, at) if words[place].pos == "VERB"), at)
+        second = _until(after, ("PUNCT",))
+    elif after[0].pos == "ADP":  # "in the morning or in the evening"
+        start = next((place for place in range(at - 1, -1, -1) if words[place].pos == "ADP"), at)
         second = _until(after, ("PUNCT",))
     else:
         start = at

@@ -31,13 +31,17 @@ _YOU = word_set("you u ya")
 _ADDRESSING = _YOU | word_set("your yours yourself")
 _BE = {"i": {"am": "are", "'m": "'re", "was": "were"}, "you": {"are": "am", "'re": "'m", "were": "was"}}
 """Subject → its form of *be* → the form after the subject is turned."""
-_LEADING = word_set("and but so or well ok okay anyway also then now yes no yeah nope oh ah um uh hm please because actually honestly")
+_LEADING = word_set(
+    "and but so or well ok okay anyway also then now yes no yeah nope oh ah um uh hm please because actually honestly"
+)
 """Words at the beginning that join a sentence to the talk, and say nothing themselves."""
 _TRAILING = word_set("please sorry haha lol look btw too though then honestly")
-_ASIDE = ("intj", "parataxis", "cc", "preconj")
+_ASIDE = ("intj", "parataxis", "preconj")
 _ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
 _OPINING = word_set("think guess suppose believe hope")
 """Verbs that only wrap a statement of the user's own: *I think I will try*."""
+_HELPING = word_set("have need get start begin stop keep let help seem")
+"""Verbs that say less than the verb that they govern."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
 """Verbs that only wrap a question: *how old do you think he is*."""
 
@@ -51,7 +55,7 @@ class Told:
     verbs: tuple[str, ...] = ()
     """The lemmas of its verbs and of an adjective, the most telling first; none for a statement without a verb."""
     subject: str = "thing"
-    """``mine``, ``theirs`` (somebody else) or ``thing``."""
+    """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
     """``past``, ``now``, ``plan``, or ``once`` for *used to*."""
 
@@ -64,7 +68,6 @@ def told_in(seen: Analysis, living: frozenset[str]) -> Told | None:
         living: The lemmas of nouns for living beings.
     """
     told = [words_of(seen.tree, one) for one in reversed(seen.sentences) if not one.rstrip().endswith("?")]
-    told = [words for words in told if not any(map(_addresses, words, [None, *words]))]
     clauses = (_clause(seen.tree, words, living) for words in told)
     fragments = (_fragment(seen.tree, words) for words in told)
     return next(filter(None, clauses), None) or next(filter(None, fragments), None)
@@ -73,7 +76,9 @@ def told_in(seen: Analysis, living: frozenset[str]) -> Told | None:
 def question_of(tree: Tree, sentence: str) -> str:
     """Return a question from the agent's view: *Why do hamsters bite?*; empty if it is too long."""
     words = _trimmed(words_of(tree, sentence))
-    doubt = next((at for at, word in enumerate(words) if at and word.low in ("whether", "if") and word.dep == "mark"), 0)
+    doubt = next(
+        (at for at, word in enumerate(words) if at and word.low in ("whether", "if") and word.dep == "mark"), 0
+    )
     if doubt and sentence.rstrip()[-1:] != "?":  # "I don't know whether I should go"
         words = words[doubt:]
     place = next((at for at in range(len(words) - 3) if _wraps(words[at : at + 4])), None)
@@ -126,7 +131,7 @@ def _turned(tree: Tree, word: Word) -> str:
         return word.text
     if low in _YOU:
         return "I" if word.dep in SUBJECTS else "me"
-    if low in _TURNED:
+    if low in _TURNED and word.pos != "NOUN":
         return _TURNED[low]
     if word.pos in ("AUX", "VERB"):
         verb = word if tree.children(word, *SUBJECTS) else tree.head(word)
@@ -143,14 +148,16 @@ def _trimmed(words: Sequence[Word]) -> list[Word]:
         found.pop(0)
     if len(found) > 2 and found[0].low in _YOU and found[1].text == ",":  # "and you, what do you like?"
         found = found[2:]
-    while found and (found[-1].text in _ENDS or found[-1].low in _TRAILING or found[-1].dep == "intj"):
+    while found and (found[-1].text in _ENDS or found[-1].low in _TRAILING or found[-1].dep in ("intj", "cc")):
         found.pop()
     return found
 
 
 def _clause(tree: Tree, words: Sequence[Word], living: frozenset[str]) -> Told | None:
     found = [one for verb in words if (one := _told(tree, verb, living, {word.index for word in words})) is not None]
-    return max(found, key=lambda one: (one.subject != "thing", len(one.echo)), default=None)
+    return max(
+        found, key=lambda one: (" " in one.echo.partition(" ")[2], one.subject != "thing", len(one.echo)), default=None
+    )
 
 
 def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> Told | None:
@@ -171,6 +178,8 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     if words[0].low in QUESTION_WORDS or words[0].tag in ("MD", "VB"):
         return None
     subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
+    if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):
+        return None
     chain = list(_chain(tree, verb))
     plan = verb.lemma == "go" and verb.tag == "VBG" and len(chain) > 1
     helpers = {word.low for word in tree.children(verb, "aux", "auxpass")}
@@ -185,7 +194,8 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     )
     states = [word.lemma.lower() for word in tree.children(verb, "acomp")]
     states += ["name"] * bool(tree.children(verb, "oprd"))
-    verbs = [word.lemma.lower() for word in (chain[1:] if plan or tense == "once" else chain)]
+    chain = chain[1:] if plan or tense == "once" else chain[::-1] if verb.lemma in _HELPING else chain
+    verbs = [word.lemma.lower() for word in chain]
     return Told(echo(tree, words), tuple(states + verbs), _person(tree, subject, living), tense)
 
 
@@ -210,8 +220,8 @@ def _chain(tree: Tree, verb: Word) -> Iterator[Word]:
 
 
 def _person(tree: Tree, subject: Word, living: frozenset[str]) -> str:
-    if subject.low in ("i", "we"):
-        return "mine"
+    if subject.low in ("i", "we", *_YOU):
+        return "yours" if subject.low in _YOU else "mine"
     alive = subject.low in ("he", "she", "they", "who", "somebody", "someone", "everybody", "everyone", "nobody")
     named = subject.pos == "PROPN" and not tree.children(subject, "det")
     return "theirs" if alive or named or subject.lemma.lower() in living else "thing"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
@@ -32,8 +33,8 @@ EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
 FINER = 0.1
 """The bonus of a moment over feelings and acts, because a moment is more specific."""
-FELT, GLAD, AMAZED = 0.65, 0.8, 0.9
-"""The least confidence that a sad feeling, any other feeling, and astonishment need to decide the answer."""
+FELT, GLAD, AMAZED, NEVER = 0.65, 0.8, 0.9, 2.0
+"""The least confidence that a sad feeling, any other feeling, and astonishment need to decide the answer, and one that none has."""
 TURNED = 0.95
 """The least confidence at which a glad feeling or a moment that is not sad ends a sad tone."""
 CLOUDED = 0.85
@@ -42,20 +43,18 @@ ASKED = 0.8
 """The least confidence at which the agent does what the user requests."""
 FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
 """Short sentences resemble many others. The maximum number of words in one, and the confidences that it needs."""
-PLAINLY = 12
-"""The maximum number of words in a statement about one thing."""
 BRIEFLY = 5
 """The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-ALIKE = 0.62
+ALIKE = 0.57
 """The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 CROSSED = 0.5
-"""The share of its probability that an entry loses if its mood does not suit the talk."""
+"""The share of its probability that an entry loses if its mood does not suit the talk, or if it asks another kind of question."""
 BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 _ASKING = word_set(
@@ -101,7 +100,6 @@ class Hearing:
     """The name of the moment that the utterance resembles most, even if only a little."""
     moves: tuple[str, ...] = ()
     """The agent's next moves, the likeliest first: one, or two if both are likely; none if no move is known."""
-    topic: Moment | None = None
     thing: str = ""
     """The thing about which the user asks the agent's opinion."""
     asking: str = ""
@@ -177,8 +175,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "others": others,
         "asserting": verb and others,
         "called": called != "",
-        "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
-        and not statement.conditional and "thing" in roles.values,
         "request": request and len(seen.sentences) == 1,
         "asked": found.asked is not None,
         "advised": seen.advised,
@@ -187,6 +183,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
         found.asked.kind if found.asked else "": True,
         "echoed": found.told is not None,
+        "addressed": found.told is not None and found.told.subject == "yours",
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
@@ -194,14 +191,10 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _question_tags(found, phrases, seen, asking, low)
     elif statement is not None:
         tags |= _statement_tags(phrases, seen, statement, roles)
-        heads = {
-            word.lemma.lower()
-            for word in seen.tree.words
-            if word.dep in ("nsubj", "nsubjpass", "dobj", "attr") and seen.tree.head(word).dep == "ROOT"
-        } & {statement.object.head, statement.subject.head}
-        found.topic = next((one for one in phrases.topics.values() if heads & one.words), None)
     found.tags |= {tag for tag, holds in tags.items() if holds}
-    found.roles = roles.having(called=called, told=found.told.echo if found.told else "", **(found.asked.values if found.asked else {}))
+    found.roles = roles.having(
+        called=called, told=found.told.echo if found.told else "", **(found.asked.values if found.asked else {})
+    )
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
@@ -226,19 +219,19 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         "offer": _OFFER.match(asking) is not None,
         "are_you": polar and not modal and subject == "you" and asked is not None and asked.verb == "be",
         "told": found.moves == ("recall",)
-        and ((not polar and (mine or subject == "I") and subject != "you" and not modal)
-        or bool({"remember", "recall"} & low and "you" in low)
-        or ("know" in low and subject == "you" and "my" in low)),
+        and (
+            (not polar and (mine or subject == "I") and subject != "you" and not modal)
+            or bool({"remember", "recall"} & low and "you" in low)
+            or ("know" in low and subject == "you" and "my" in low)
+        ),
         "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
 
 def _statement_tags(phrases: Material, seen: Analysis, statement: Statement, roles: Roles) -> dict[str, bool]:
     return {
-        "mine": statement.subject_person == "I" and statement.object.person != "you",
         "living": is_living(phrases, statement) and "they" in roles.values,
         "past": is_past(statement.verb, seen),
-        "negated": statement.negated,
     }
 
 
@@ -338,14 +331,17 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
     if len(seen.tree.words) <= WHOLE:
         texts.append(seen.text)
     mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
+    kind = kind_of(asking) if asking else ""
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text):
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
+        crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, one.moment.examples))
         ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
     return sorted(ranked, key=lambda one: -one.fit)
 
 
+@lru_cache(256)
 def kind_of(sentence: str) -> str:
     """Return the kind of a question or request; empty for a statement."""
     match = bundled_matcher("asks").match(sentence)
@@ -372,16 +368,11 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
 
 def _least(match: Match, tone: str) -> float:
     """Return the least confidence that a feeling needs to decide the answer."""
-    least = (
-        FELT
-        if match.name in _SAD
-        else TURNED
-        if tone in ("sad", "angry")
-        else AMAZED
-        if match.name == "astonishing"
-        else GLAD
-    )
-    return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
+    few = len(match.text.split()) <= FEW_WORDS
+    if match.name == "astonishing":
+        return AMAZED if few else NEVER  # a longer utterance says what is astonishing
+    least = FELT if match.name in _SAD else TURNED if tone in ("sad", "angry") else GLAD
+    return max(least, FEW) if few else least
 
 
 def _is_broken(seen: Analysis, size: int) -> bool:

@@ -19,6 +19,7 @@ from .material import Material, material
 from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
+from .taking_up import replies
 
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
@@ -237,29 +238,20 @@ class Listener:
         if told is None:
             return
         mood = "sad" if state.tone == "sad" else "glad" if hearing.moves == ("rejoice",) else ""
-        names = (f"{told.subject} {told.tense}", told.subject)
-        named = (one for verb in told.verbs for one in kinds.values() if verb in one.words and one.lines(*names))
-        kind = next((one for one in named if not mood or one.tone == mood), None)
-        found = [*(kind.lines(*names) if kind else []), *kinds["any"].lines(*([mood] if mood else names))]
-        found += kinds["notes"].lines(mood, "say")
-        frames = kinds["frames"].lines(mood, "piece" if told.subject == "piece" else "say")[0]
-        fresh = [one.text for one in frames if not any(text.startswith(one.text) for text in state.recent[-3:])]
-        frame = chance.choice(fresh)
-        yield _Source([[_framed(frame, line) for line in lines if not _ended(line, state)] for lines in found])
+        for groups, moment in replies(told, kinds, mood, state, chance):
+            yield _Source(groups, moment)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
-        tags, replies = hearing.tags, self._phrases.replies
+        tags, moves = hearing.tags, self._phrases.replies
         sure, unsure = len(hearing.moves) == 1, "ask" if "question" in tags else "tell"
         groups = ["asked"] if {"question", "request"} & tags else []
-        if "plainly" in tags and not tags & {"negated", "tone", "felt"}:
-            groups += ["plain"] if "mine" in tags else ["thing"]
         if hearing.roles.being is not None and "question" not in tags:
             groups.append(hearing.roles.being.kind)
         groups += [state.tone, "say"]
         if sure:
-            yield _Source(replies[hearing.moves[0]].lines(*groups), replies[hearing.moves[0]])
-        yield _Source(replies[unsure].lines(*groups))
+            yield _Source(moves[hearing.moves[0]].lines(*groups), moves[hearing.moves[0]])
+        yield _Source(moves[unsure].lines(*groups))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion, which is chosen only once per talk. The agent has no opinions about people."""
@@ -270,23 +262,6 @@ class Listener:
             yield _Source([[stances.groups["as_before"][STANCES.index(before)]]])
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
-
-    def _topic(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the questions about a topic. If the utterance is about others, yield only questions about others."""
-        if hearing.topic is not None:
-            lines: Groups = hearing.topic.lines("say")
-            if "living" in hearing.tags:
-                lines = [[line for line in group if line.roles & {"who", "they", "them"}] for group in lines]
-            yield _Source(lines, hearing.topic)
-
-
-def _framed(frame: str, line: Line) -> Line:
-    return replace(line, text=f"{frame} {line.text}", roles=line.roles | {"told"})
-
-
-def _ended(line: Line, state: State) -> bool:
-    """Return whether a recent answer ended with a phrase, whatever it echoed."""
-    return any(text.endswith(line.text) for text in state.recent)
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:

@@ -43,7 +43,6 @@ class Material:
         files = {file: _moments(file) for file in MOMENTS}
         self.none = files["moments"].pop("none").examples
         """Sentences that belong to no moment."""
-        self.topics = {**_moments("subjects"), **_moments("topics")}
         self.moments = {name: one for file in MOMENTS for name, one in files[file].items()}
         none = (*self.none, *bundled("none").none)
         self.matchers = [
