@@ -40,6 +40,7 @@ _ASIDE = ("intj", "parataxis", "preconj")
 _ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
 _OPINING = word_set("think guess suppose believe hope")
 """Verbs that only wrap a statement of the user's own: *I think I will try*."""
+_DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
 _HELPING = word_set("have need get start begin stop keep let help seem")
 """Verbs that say less than the verb that they govern."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
@@ -57,7 +58,7 @@ class Told:
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
-    """``past``, ``now``, ``plan``, or ``once`` for *used to*."""
+    """``past``, ``now``, ``plan``, ``once`` for *used to*, or ``not`` for a denied statement."""
 
 
 def told_in(seen: Analysis, living: frozenset[str]) -> Told | None:
@@ -81,6 +82,8 @@ def question_of(tree: Tree, sentence: str) -> str:
     )
     if doubt and sentence.rstrip()[-1:] != "?":  # "I don't know whether I should go"
         words = words[doubt:]
+    if len(words) > 2 and words[0].low in _YOU and words[1].low == "know":  # "you know how to bake bread?"
+        words = words[2:]
     place = next((at for at in range(len(words) - 3) if _wraps(words[at : at + 4])), None)
     whether = ""
     if place is not None:
@@ -183,8 +186,11 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     chain = list(_chain(tree, verb))
     plan = verb.lemma == "go" and verb.tag == "VBG" and len(chain) > 1
     helpers = {word.low for word in tree.children(verb, "aux", "auxpass")}
+    denied = any(word.low in _DENYING for word in (*tree.children(verb), *subjects))
     tense = (
-        "once"
+        "not"
+        if denied
+        else "once"
         if verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB"
         else "plan"
         if plan or helpers & {"will", "'ll", "shall"}
@@ -203,7 +209,8 @@ def _within(tree: Tree, verb: Word, dropped: Sequence[str]) -> list[Word]:
     """Return the words of a clause without asides, without further clauses, and without some kinds of phrases."""
     found = [verb]
     for child in tree.children(verb):
-        other = child.dep == "conj" and bool(tree.children(child, *SUBJECTS))
+        beside = child.dep == "conj" or (child.dep == "ccomp" and child.index < verb.index)
+        other = beside and bool(tree.children(child, *SUBJECTS))
         if not other and child.dep not in (*_ASIDE, *dropped):
             found += tree.subtree(child)
     kept = {word.index for word in found}

@@ -14,6 +14,8 @@ from functools import lru_cache
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match, bundled_matcher
+from ravestate.language.normal import plain
+from ravestate.language.shape import shape
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
@@ -54,7 +56,8 @@ ALIKE = 0.57
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 CROSSED = 0.5
-"""The share of its probability that an entry loses if its mood does not suit the talk, or if it asks another kind of question."""
+"""The share of its probability that an entry loses if its mood does not suit the talk, if it asks
+another kind of question, or if it is about the user where the utterance is about others."""
 BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 _ASKING = word_set(
@@ -224,7 +227,9 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
             or bool({"remember", "recall"} & low and "you" in low)
             or ("know" in low and subject == "you" and "my" in low)
         ),
-        "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
+        "taste": found.thing != ""
+        and not found.thing.startswith("your ")
+        and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
 
@@ -331,14 +336,21 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
     if len(seen.tree.words) <= WHOLE:
         texts.append(seen.text)
     mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
-    kind = kind_of(asking) if asking else ""
+    kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text):
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
-        crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, one.moment.examples))
+        examples = one.moment.examples
+        crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
+        crossed = crossed or (persons == (False, True) and all(persons_in(text) == (True, False) for text in examples))
         ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
     return sorted(ranked, key=lambda one: -one.fit)
+
+
+def persons_in(text: str) -> tuple[bool, bool]:
+    """Return whether a text mentions the user, and whether it mentions others."""
+    return shape(plain(text))[1:3]
 
 
 @lru_cache(256)

@@ -41,7 +41,7 @@ def replies(
 
 def _kind(told: Told, kinds: Mapping[str, Moment], mood: str, names: Sequence[str]) -> Moment | None:
     """Return the first kind with a verb or an adjective of a statement, and with questions about its subject."""
-    if told.tense == "once":
+    if told.tense in ("once", "not"):
         return None
     found = (one for verb in told.verbs for one in kinds.values() if verb in one.words and one.lines(*names))
     return next((one for one in found if not mood or (one.tone == "glad") == (mood == "glad")), None)
