@@ -42,6 +42,8 @@ OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
 _POINTING = word_set("it its that this he him his she her they them there")
 _YOU = word_set("you your yours yourself u ur")
+BY_MOVE = {"advice": "how_to", "opinion": "you_think", "self": "about_you"}
+"""Move → the kind of a question whose own kind is unknown."""
 BRIEF = 4
 """The maximum number of words of a choice without a verb: *tea or coffee*."""
 CALM = ("fact", "why", "about_you")
@@ -50,6 +52,8 @@ MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
 _SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
 _CUT = ("VERB", "AUX", "ADP", "SCONJ", "PRON", "PUNCT", "INTJ")
+_LIKED = word_set("better nicer worse more rather prettier")
+"""Comparatives of opinions."""
 _BARE = word_set("not what something anything so else whatever")
 """Words after *or* that are no option."""
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
@@ -118,7 +122,12 @@ def asked_in(
     kind = "" if best is None else best.name
     if options and (not kind or kind in OPEN):
         kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
-    plainly = asking.endswith("?") or (words and words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
+    compared = any(word.tag in ("JJR", "RBR") and word.low not in _LIKED for word in words)
+    if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
+        kind = "fact"  # "which is heavier, gold or lead?"
+    plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
+    if plainly and not kind:
+        kind = BY_MOVE.get(moves[0] if moves else "", "")
     if plainly and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
         kind = "fact"
     area = area_of(phrases, seen.tree, words, state.before, kind)

@@ -174,11 +174,11 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         return None
     for dropped in ((), ("advcl",), ("advcl", "npadvmod", "advmod", "prep")):
         words = _trimmed([word for word in _within(tree, verb, dropped) if word.index in inside])
-        if SHORTEST <= len(words) <= LONGEST:
+        if SHORTEST <= len(words) <= LONGEST and words[0].low not in QUESTION_WORDS:
             break
     else:
         return None
-    if words[0].low in QUESTION_WORDS or words[0].tag in ("MD", "VB"):
+    if words[0].tag in ("MD", "VB"):
         return None
     subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
     if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):

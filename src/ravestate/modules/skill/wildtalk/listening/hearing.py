@@ -187,6 +187,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         found.asked.kind if found.asked else "": True,
         "echoed": found.told is not None,
         "addressed": found.told is not None and found.told.subject == "yours",
+        "settled": len(found.moves) == 1,
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
