@@ -101,7 +101,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             subject = said.subject.name  # "a sister called Eva who lives in Ghent"
         text = _retold(reader, said)
         if he and last:
-            text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)
+            text = re.sub(r"^(?:s?he|they)\b", _returned(last), text, flags=re.IGNORECASE)
         thing = said.object.text  # "a parrot called Coco"
         if said.object.head and said.object.names and not reader.noun(said.object):
             thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)

@@ -200,7 +200,8 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     )
     states = [word.lemma.lower() for word in tree.children(verb, "acomp")]
     states += ["name"] * bool(tree.children(verb, "oprd"))
-    chain = chain[1:] if plan or tense == "once" else chain[::-1] if verb.lemma in _HELPING else chain
+    if plan or tense == "once" or verb.lemma in _HELPING:
+        chain = chain[1:] or chain
     verbs = [word.lemma.lower() for word in chain]
     return Told(echo(tree, words), tuple(states + verbs), _person(tree, subject, living), tense)
 

@@ -56,8 +56,7 @@ ALIKE = 0.57
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 CROSSED = 0.5
-"""The share of its probability that an entry loses if its mood does not suit the talk, if it asks
-another kind of question, or if it is about the user where the utterance is about others."""
+"""The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
 BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 _ASKING = word_set(
