@@ -40,9 +40,8 @@ EXACT = word_set("fact why choose measure would_you")
 """Kinds whose answers suit few other questions of the same area."""
 OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
-_POINTING = word_set("it its that this he him his she her they them there")
 _YOU = word_set("you your yours yourself u ur")
-BY_MOVE = {"advice": "how_to", "opinion": "you_think", "self": "about_you"}
+BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
 """Move → the kind of a question whose own kind is unknown."""
 BRIEF = 4
 """The maximum number of words of a choice without a verb: *tea or coffee*."""
@@ -126,11 +125,14 @@ def asked_in(
     if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
         kind = "fact"  # "which is heavier, gold or lead?"
     plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
+    question = question_of(seen.tree, asking) if asking else ""
+    if plainly and kind in ("", "about_you") and question.startswith("Whether "):
+        kind = "predict"  # "do you think that they are angry?"
     if plainly and not kind:
         kind = BY_MOVE.get(moves[0] if moves else "", "")
     if plainly and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
         kind = "fact"
-    area = area_of(phrases, seen.tree, words, state.before, kind)
+    area = area_of(phrases, seen.tree, words, kind)
     if kind in ("another", "meant") and state.asked:
         last = phrases.areas.get(state.asked[1])
         area = last or area if kind == "another" else area or last
@@ -143,7 +145,7 @@ def asked_in(
         "first": options[0] if options else "",
         "second": options[1] if options else "",
         "about": about(phrases, seen.tree, words),
-        "question": question_of(seen.tree, asking) if asking else "",
+        "question": question,
         "word": _word(seen),
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
@@ -162,14 +164,13 @@ def asked_in(
     return Asked(kind, area, values, tuple(groups))
 
 
-def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, kind: str) -> Moment | None:
+def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> Moment | None:
     """Return the area of life of a question: that of its main verb and nouns, else of the words around it.
 
     Args:
         phrases: The areas.
         tree: The parse of the utterance.
         words: The words of the question.
-        before: The previous utterance of the user.
         kind: The kind of the question. A poem *about rain* has the area of the rain.
     """
     weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
@@ -181,13 +182,6 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, k
             near = 1.0 if word.index in inside else 0.45
             near *= weights.get(word.dep, 1.0)
             scores[area] = max(scores.get(area, 0.0), near - 0.001 * word.index)
-    if not scores and not _POINTING.isdisjoint(word.low for word in words):
-        for text in re.findall(r"[a-z]+", before.lower()):
-            area = next(
-                filter(None, (phrases.area_by_word.get(text.removesuffix(end)) for end in ("", "s", "ing", "ed"))), ""
-            )
-            if area:
-                scores.setdefault(area, 0.1)
     ranked = [phrases.areas[name] for name in sorted(scores, key=lambda name: -scores[name])]
     return next((one for one in ranked if one.groups.keys() & ALIKE.get(kind, {kind})), next(iter(ranked), None))
 

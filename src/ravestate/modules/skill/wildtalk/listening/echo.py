@@ -125,6 +125,8 @@ def _wraps(words: Sequence[Word]) -> bool:
     """Return whether the first three words only wrap a question: *do you think he*, *can you tell me*."""
     first, second, third, after = words
     wraps = first.tag in ("MD", "VBP", "VBD") and second.low in _YOU and third.lemma.lower() in _POLITE
+    if third.lemma.lower() in ("say", "tell"):
+        return wraps and after.low in ("me", "us")  # "would you tell him?" is no wrapping
     return wraps and after.low not in ("about", "of") and after.pos != "PROPN"
 
 
@@ -172,8 +174,12 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         verb, subjects = inner[0], tree.children(inner[0], *SUBJECTS)
     if not main or verb.pos not in ("VERB", "AUX") or not subjects or subjects[0].low in QUESTION_WORDS:
         return None
-    for dropped in ((), ("advcl",), ("advcl", "npadvmod", "advmod", "prep")):
+    for dropped in ((), (",",), ("advcl",), ("advcl", "npadvmod", "advmod", "prep")):
         words = _trimmed([word for word in _within(tree, verb, dropped) if word.index in inside])
+        comma = next(
+            (at for at, word in enumerate(words) if word.text in dropped and word.index > verb.index), len(words)
+        )
+        words = words[:comma]
         if SHORTEST <= len(words) <= LONGEST and words[0].low not in QUESTION_WORDS:
             break
     else:

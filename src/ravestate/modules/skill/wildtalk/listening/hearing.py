@@ -20,9 +20,9 @@ from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
-from .asked import Asked, asked_in
-from .bank import DARK, Found
-from .echo import Told, told_in
+from .asked import Asked, about, asked_in
+from .bank import CLOSE, DARK, Found
+from .echo import Told, told_in, words_of
 from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
@@ -211,9 +211,9 @@ def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
 def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: str, low: set[str]) -> dict[str, bool]:
     asked = next((one for one in seen.statements if one.question), None)
     subject = "" if asked is None else asked.subject_person
-    about = _about_in(seen)
-    about = about if about.split()[-1:] and about.split()[-1].lower() in asking.lower() else ""
-    found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
+    judged = _about_in(seen)
+    judged = judged if judged.split()[-1:] and judged.split()[-1].lower() in asking.lower() else ""
+    found.thing = judged or roles_of(seen, "", None, phrases).values.get("thing", "")
     polar, modal = seen.question is QuestionWord.YES_NO, any(word.tag == "MD" for word in seen.tree.words)
     mine = asked is not None and (asked.subject.of("I") or asked.object.of("I"))
     opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
@@ -229,7 +229,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         ),
         "taste": found.thing != ""
         and not found.thing.startswith("your ")
-        and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
+        and (opining or (judged != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
 
@@ -336,6 +336,7 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
     if len(seen.tree.words) <= WHOLE:
         texts.append(seen.text)
     mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
+    bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text):
@@ -343,6 +344,7 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
         examples = one.moment.examples
         crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
+        crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)
         crossed = crossed or (persons == (False, True) and all(persons_in(text) == (True, False) for text in examples))
         ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
     return sorted(ranked, key=lambda one: -one.fit)
