@@ -11,6 +11,7 @@ from ravestate.errors import PlatformError
 from ravestate.language.encoder import Encoder
 from ravestate.language.normal import plain
 from ravestate.modules import nlp
+from ravestate.modules.meta.nlp.tree import SUBJECTS
 
 from .answers import spelled_out
 from .kinds import likeness
@@ -121,6 +122,8 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
             return [one for one in told if _covers(one, re.findall(r"\w+", about.text), known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
     mine = bool(reader.words & _MINE)
+    if asked is not None and _is_general(reader, asked.subject.text) and not mine:
+        return []
     if _ADVICE.search(reader.tree.text) and "remember" not in reader.words:
         return []
     if asked is None or kind is None or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
@@ -256,6 +259,12 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     ):
         text = f"{said.subject.text} {text}"
     return _returned(text)
+
+
+def _is_general(reader: Reader, subject: str) -> bool:
+    """Return whether a subject stands for a whole kind: *why do babies cry*."""
+    low = [word.low for word in reader.tree.words if word.tag == "NNS" and word.dep in SUBJECTS]
+    return subject.lower() in low
 
 
 def _returned(text: str) -> str:

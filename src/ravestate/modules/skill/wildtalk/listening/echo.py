@@ -14,7 +14,7 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QUESTION_WORDS
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
-LONGEST, SHORTEST = 13, 2
+LONGEST, SHORTEST = 15, 2
 """The maximum and the minimum number of words of an echo."""
 
 _TURNED = {
@@ -41,7 +41,7 @@ _ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
 _OPINING = word_set("think guess suppose believe hope")
 """Verbs that only wrap a statement of the user's own: *I think I will try*."""
 _DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
-_HELPING = word_set("have need get start begin stop keep let help seem")
+_HELPING = word_set("have need get start begin stop keep let help seem forget")
 """Verbs that say less than the verb that they govern."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
 """Verbs that only wrap a question: *how old do you think he is*."""

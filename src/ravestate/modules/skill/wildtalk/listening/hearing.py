@@ -64,7 +64,7 @@ _ASKING = word_set(
 )
 """Closed-class words that begin a question."""
 _LEAVING = re.compile(
-    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
+    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
 )
 """A farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
@@ -171,6 +171,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
+        "sorry": not _SAD.isdisjoint(seen.feelings),
         "sure": score >= SURE,
         "alike": nearest.fit >= ALIKE
         and (nearest.score >= EXACT or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))),

@@ -244,7 +244,9 @@ class Listener:
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
         tags, moves = hearing.tags, self._phrases.replies
-        sure, unsure = len(hearing.moves) == 1, "ask" if "question" in tags else "tell"
+        unsure = "ask" if "question" in tags else "tell"
+        doubted = hearing.moves[:1] in (("console",), ("mourn",)) and not tags & {"tone", "sorry"}
+        sure = len(hearing.moves) == 1 and not doubted  # nobody is consoled without a sign of sorrow
         groups = ["asked"] if {"question", "request"} & tags else []
         if hearing.roles.being is not None and "question" not in tags:
             groups.append(hearing.roles.being.kind)
