@@ -47,6 +47,12 @@ def test_what_tells_nothing_or_addresses_the_agent_is_not_taken(text: str) -> No
     assert told(text) is None
 
 
+def test_a_wish_is_no_liking() -> None:
+    found = told("I'd like to sail to Malta")
+    assert found is not None
+    assert found.verbs[0] == "wish"
+
+
 def test_a_long_statement_is_not_taken() -> None:
     assert told(f"I have {' and '.join(f'box {word}' for word in 'abcdefghijkl')} at home") is None
 

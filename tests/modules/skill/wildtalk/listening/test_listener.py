@@ -14,6 +14,7 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.wildtalk.listening import Heard, State
 from ravestate.modules.skill.wildtalk.listening.hearing import SURE, Hearing, asking_sentence, hear, likely, moment_of
 from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
+from ravestate.modules.skill.wildtalk.listening.moment import roles_in
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
 from ravestate.modules.skill.wildtalk.listening.state import Pending
 
@@ -334,6 +335,12 @@ def test_the_material_is_large_and_each_role_is_known() -> None:
     roles = {"thing", "who", "they", "them", "their", "are", "were", "have", "do", "last"}
     roles |= {"first", "second", "called", "user", "told", "ground"}
     assert {role for line in lines for role in line.roles} <= roles
+
+
+def test_a_phrase_needs_the_roles_of_its_reactions() -> None:
+    lines = [line for line in all_lines() if line.then]
+    assert len(lines) >= 50
+    assert all(roles_in(text) <= line.roles for line in lines for texts in line.then.values() for text in texts)
 
 
 def test_no_phrase_claims_what_a_machine_cannot_do() -> None:

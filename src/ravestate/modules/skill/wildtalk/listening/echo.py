@@ -208,7 +208,8 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     states += ["name"] * bool(tree.children(verb, "oprd"))
     if plan or tense == "once" or verb.lemma in _HELPING:
         chain = chain[1:] or chain
-    verbs = [word.lemma.lower() for word in chain]
+    verbs = ["wish"] * (verb.lemma == "like" and not helpers.isdisjoint(("would", "'d")))
+    verbs += [word.lemma.lower() for word in chain]
     return Told(echo(tree, words), tuple(states + verbs), _person(tree, subject, living), tense)
 
 

@@ -114,7 +114,8 @@ def _lines(listed: Any, key: str) -> tuple[Line, ...]:
             raise DeclarationError(f"listening: a phrase of {key!r} lacks its text: {value!r}")
         text = str(value["say"])
         then = {name: tuple(value[name]) for name in ("yes", "no", "unsure", "any") if name in value}
-        found.append(Line(text, roles_in(text), then, value.get("start", "")))
+        roles = roles_in(" ".join((text, *(one for texts in then.values() for one in texts))))
+        found.append(Line(text, roles, then, value.get("start", "")))
     return tuple(found)
 
 
