@@ -1,5 +1,7 @@
 """Laws for any utterance. The set ``persqa_facts`` measures how well utterances are understood."""
 
+from dataclasses import replace
+
 import pytest
 
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
@@ -70,6 +72,22 @@ def test_a_question_never_swallows_an_unrelated_sentence(topic: str, text: str) 
 )
 def test_only_what_is_so_now_is_a_fact(text: str) -> None:
     assert understand(seen(text), Talk(), {}, 1.0, 90.0).kind in ("nothing", "asked")
+
+
+@pytest.mark.parametrize("text", ["we've been married for nine years", "I have to be at work at six"])
+def test_a_duration_is_no_age_and_a_time_is_no_employer(text: str) -> None:
+    assert not understand(seen(text), Talk(), {}, 1.0, 90.0).facts
+
+
+def test_an_offer_asks_for_no_fact() -> None:
+    assert understand(seen("do you want to be my friend"), Talk(), {}, 1.0, 90.0).kind == "nothing"
+
+
+def test_a_question_about_a_whole_kind_asks_for_no_memory() -> None:
+    told = understand(seen("our baby has been crying for three hours"), Talk(), {}, 1.0, 90.0).said
+    talk = replace(Talk(), said=told)
+    assert told
+    assert understand(seen("why do babies cry so much?"), talk, {}, 1.0, 90.0).kind == "nothing"
 
 
 def test_only_a_fresh_yes_forgets_the_user() -> None:

@@ -27,6 +27,7 @@ _ANY = word_set("any ever anyone anybody anything")
 """Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
 _BEFORE_TAG = word_set("here there me you him her them us")
 """Words after which a *right* without a comma is a question tag, as it is after nouns and adjectives."""
+_SUBJECTS = word_set("i he she we they it")
 _TAGS = word_set("right correct huh eh yes no ok okay")
 
 
@@ -115,6 +116,8 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
+    if first.low == "when" and second in _SUBJECTS and not asked:
+        return False  # as in "when I was small I had a kite"
     low = [word.low for word in part]
     addressed = second == "you" or (
         kind_at(part, 0) is QuestionWord.AMOUNT and low[2:3] == ["you"] and "are" not in low

@@ -88,7 +88,8 @@ def _pairs(fact: Fact) -> list[tuple[str, str]]:
 
 
 def _names(question: str, it: str) -> bool:
-    return re.search(rf"\b{re.escape(it.lower())}\b", question) is not None
+    """Return whether a question names a thing; *can you sing* names *singing*."""
+    return re.search(rf"\b{re.escape(it.lower().removesuffix('ing'))}(?:ing)?\b", question) is not None
 
 
 def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:

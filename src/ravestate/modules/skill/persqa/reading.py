@@ -295,7 +295,7 @@ class Reader:
         """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
         years = re.fullmatch(r"([\w -]+?)(?: years?(?: old)?| old)?", text.lower())
-        if years and (number := number_in(years[1])):
+        if years and not object.preposition and (number := number_in(years[1])):  # not *for six years*
             yield Link("age", object, value=number)
         elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
             yield Link(found[0], object.owner)

@@ -15,6 +15,8 @@ CLEARLY = 2.0
 """The least lead of the best sentence over the second best, in logits. The scores themselves differ by question."""
 LEAST = -7.0
 """The least score of an answer, in logits. A wrong memory is worse than none."""
+LIKELY = 0.4
+"""The least confidence that the user wants to be reminded, for a question without a verb of memory."""
 LONGEST = 160
 """The maximum length of a sentence to quote, in characters."""
 SHORTEST = 3
@@ -24,7 +26,7 @@ _MINE = word_set("i my me mine we our us")
 _REMINDING = word_set("remember recall told said tell say mention mentioned")
 _ADVICE = re.compile(
     r"\bhow (?:do|can|could|would|might) (?:i|we)\b|\b(?:should|shall|ought|may|might|can|could|do|would) (?:i|we)\b(?! not)"
-    r"|\b(?:i|we) (?:should|ought|could)\b|\b(?:do|would|are|can|could|will) you\b(?! (?:still )?(?:remember|recall|know))",
+    r"|\b(?:i|we) (?:should|ought|could)\b|\b(?:do|would|are|can|could|will) you\b(?! (?:still )?(?:remember|recall|know|tell))",
     re.IGNORECASE,
 )
 """Questions for advice, a favour or an opinion, not for memories."""
@@ -45,7 +47,10 @@ def asks_for_words(seen: nlp.Analysis) -> bool:
     words = set(re.findall(r"[a-z]+", question.lower()))
     if seen.question is None or (seen.question == nlp.QuestionWord.YES_NO and not words & _REMINDING):
         return False
-    reminding = words & _REMINDING and words & {"i", "you"}
+    told = _REMINDING if "did" in words else _REMINDING - {"tell", "say", "mention"}
+    reminding = words & told and words & {"i", "you"}
+    if not reminding and seen.move is not None and (seen.move.name != "recall" or seen.move.score < LIKELY):
+        return False
     return bool(reminding or words & _MINE) and (bool(words & {"remember", "recall"}) or not _ADVICE.search(question))
 
 

@@ -11,6 +11,7 @@ from ravestate.errors import PlatformError
 from ravestate.language.encoder import Encoder
 from ravestate.language.normal import plain
 from ravestate.modules import nlp
+from ravestate.modules.meta.nlp.tree import SUBJECTS
 
 from .answers import spelled_out
 from .kinds import likeness
@@ -101,7 +102,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             subject = said.subject.name  # "a sister called Eva who lives in Ghent"
         text = _retold(reader, said)
         if he and last:
-            text = re.sub(r"^(?:s?he|they)\b", last, text, flags=re.IGNORECASE)
+            text = re.sub(r"^(?:s?he|they)\b", _returned(last), text, flags=re.IGNORECASE)
         thing = said.object.text  # "a parrot called Coco"
         if said.object.head and said.object.names and not reader.noun(said.object):
             thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)
@@ -121,6 +122,8 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
             return [one for one in told if _covers(one, re.findall(r"\w+", about.text), known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
     mine = bool(reader.words & _MINE)
+    if asked is not None and _is_general(reader, asked.subject.text) and not mine:
+        return []
     if _ADVICE.search(reader.tree.text) and "remember" not in reader.words:
         return []
     if asked is None or kind is None or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
@@ -258,8 +261,14 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     return _returned(text)
 
 
+def _is_general(reader: Reader, subject: str) -> bool:
+    """Return whether a subject stands for a whole kind: *why do babies cry*."""
+    low = [word.low for word in reader.tree.words if word.tag == "NNS" and word.dep in SUBJECTS]
+    return subject.lower() in low
+
+
 def _returned(text: str) -> str:
     """Return the user's words as the agent says them: *your* for *my*."""
     text = re.sub(r"\b(i|we) was\b", r"\1 were", text, flags=re.IGNORECASE)
-    text = re.sub(r"^(?:An?|The|This|That|It|There|[SH]?he|They)\b", lambda found: found[0].lower(), text)
+    text = re.sub(r"^(?:An?|The|This|That|It|There|He|She|They)\b", lambda found: found[0].lower(), text)
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())

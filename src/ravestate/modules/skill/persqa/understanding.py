@@ -259,11 +259,12 @@ class _Hearing:
     def inquiry(self) -> Meaning | None:
         """Return the meaning of a question about the user, or about something that they told."""
         named = any(phrase.names for said in self.seen.statements for phrase in (said.object, *said.phrases))
-        if "ask_everything" in self.acts and not named:
+        if "ask_everything" in self.acts and not named and self.of_speakers():
             return Meaning("asked", (Fact(EVERYTHING),))
-        if asked := self.reader.asks():
-            return Meaning("asked", (asked,))
         wished = any(said.plan for said in self.seen.statements)  # "do you want to know my name"
+        offered = wished and self.seen.question == nlp.QuestionWord.YES_NO  # "do you want to be my friend"
+        if not offered and (asked := self.reader.asks()):
+            return Meaning("asked", (asked,))
         for said in () if wished else self.seen.statements:
             if said.question and said.verb in ("be", *WORDS["knowing"]):
                 named = [phrase.text for phrase in (said.subject, said.object, *said.phrases) if phrase.text]

@@ -116,6 +116,8 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
             least = -0.6
         case "place" if determined:
             least = 0.0
+        case "organisation" if number_in(text):
+            return False  # "at work at six"
         case "organisation" if "ORG" in labels:
             return True
         case "organisation" if _is_proper(text, seen) and "PERSON" not in labels:

@@ -14,15 +14,17 @@ from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.moves import LISTENING
 from ravestate.modules.meta.nlp.analysis import Analysis
-from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS
+from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
+from .bank import ANSWER, EXACTLY
+from .echo import question_of, words_of
 from .material import Material
 from .moment import Line, Moment
 from .roles import turned
 from .state import State
 
-SURE, ORDERED, UNASKED = 0.4, 0.6, 0.7
+SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
 """The least confidence in a kind, for a question, for an order, and for any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
@@ -34,10 +36,13 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
 OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
 """Kinds that are a choice if options are named."""
+EXACT = word_set("fact why choose measure would_you")
+"""Kinds whose answers suit few other questions of the same area."""
 OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
-_POINTING = word_set("it its that this he him his she her they them there")
 _YOU = word_set("you your yours yourself u ur")
+BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
+"""Move → the kind of a question whose own kind is unknown."""
 BRIEF = 4
 """The maximum number of words of a choice without a verb: *tea or coffee*."""
 CALM = ("fact", "why", "about_you")
@@ -46,6 +51,8 @@ MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
 _SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
 _CUT = ("VERB", "AUX", "ADP", "SCONJ", "PRON", "PUNCT", "INTJ")
+_LIKED = word_set("better nicer worse more rather prettier")
+"""Comparatives of opinions."""
 _BARE = word_set("not what something anything so else whatever")
 """Words after *or* that are no option."""
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
@@ -72,7 +79,7 @@ class Asked:
     """Its class in asks.yaml."""
     area: Moment | None
     values: Mapping[str, str]
-    """The values of the roles: ``first`` and ``second``, ``about``, ``wh``, ``word``, ``short``, ``picked``."""
+    """The values of the roles: ``first`` and ``second``, ``about``, ``question``, ``word``, ``short``, ``picked``."""
     groups: tuple[str, ...]
     """The groups of asked.yaml to try, the most specific first."""
 
@@ -88,7 +95,8 @@ class Asked:
         general = phrases.asked[self.kind]
         named = [self.area.name] if self.area else []
         first = general.lines("picked") if "picked" in self.groups else []
-        own = [[line] for lines in self.own for line in phrases.bank.answering(question, lines)]
+        least = EXACTLY if self.kind in EXACT else ANSWER
+        own = [[line] for lines in self.own for line in phrases.bank.answering(question, lines, least)]
         return [*first, *own, *general.lines(*named, tone, *self.groups, "say")]
 
 
@@ -105,7 +113,7 @@ def asked_in(
         moves: The agent's likely next moves.
         request: Whether the utterance is an order.
     """
-    words = _words_of(seen.tree, asking)
+    words = words_of(seen.tree, asking)
     options = _options(seen.tree, words)
     least = SURE if asking else ORDERED if request else UNASKED
     found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
@@ -113,9 +121,18 @@ def asked_in(
     kind = "" if best is None else best.name
     if options and (not kind or kind in OPEN):
         kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
-    if asking and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
+    compared = any(word.tag in ("JJR", "RBR") and word.low not in _LIKED for word in words)
+    if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
+        kind = "fact"  # "which is heavier, gold or lead?"
+    plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
+    question = question_of(seen.tree, asking) if asking else ""
+    if plainly and kind in ("", "about_you") and question.startswith("Whether "):
+        kind = "predict"  # "do you think that they are angry?"
+    if plainly and not kind:
+        kind = BY_MOVE.get(moves[0] if moves else "", "")
+    if plainly and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
         kind = "fact"
-    area = area_of(phrases, seen.tree, words, state.before, kind)
+    area = area_of(phrases, seen.tree, words, kind)
     if kind in ("another", "meant") and state.asked:
         last = phrases.areas.get(state.asked[1])
         area = last or area if kind == "another" else area or last
@@ -128,7 +145,7 @@ def asked_in(
         "first": options[0] if options else "",
         "second": options[1] if options else "",
         "about": about(phrases, seen.tree, words),
-        "wh": _wh(seen.tree, words),
+        "question": question,
         "word": _word(seen),
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
@@ -139,18 +156,21 @@ def asked_in(
     able = any(word.low in ("can", "could") for word in words[:1])
     groups = (["act"] if verbal else ["two"]) if options else []
     groups += ["picked"] * (kind in ("pick", "recommend") and "picked" in values)
-    groups += ["can"] * able + ["wh", "about", "last", "short", "word"]
+    groups += (
+        ["can"] * able
+        + ["polar"] * (seen.question is QuestionWord.YES_NO)
+        + ["question", "about", "last", "short", "word"]
+    )
     return Asked(kind, area, values, tuple(groups))
 
 
-def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, kind: str) -> Moment | None:
+def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> Moment | None:
     """Return the area of life of a question: that of its main verb and nouns, else of the words around it.
 
     Args:
         phrases: The areas.
         tree: The parse of the utterance.
         words: The words of the question.
-        before: The previous utterance of the user.
         kind: The kind of the question. A poem *about rain* has the area of the rain.
     """
     weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
@@ -162,13 +182,6 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], before: str, k
             near = 1.0 if word.index in inside else 0.45
             near *= weights.get(word.dep, 1.0)
             scores[area] = max(scores.get(area, 0.0), near - 0.001 * word.index)
-    if not scores and not _POINTING.isdisjoint(word.low for word in words):
-        for text in re.findall(r"[a-z]+", before.lower()):
-            area = next(
-                filter(None, (phrases.area_by_word.get(text.removesuffix(end)) for end in ("", "s", "ing", "ed"))), ""
-            )
-            if area:
-                scores.setdefault(area, 0.1)
     ranked = [phrases.areas[name] for name in sorted(scores, key=lambda name: -scores[name])]
     return next((one for one in ranked if one.groups.keys() & ALIKE.get(kind, {kind})), next(iter(ranked), None))
 
@@ -191,15 +204,6 @@ def _left(tree: Tree, part: Word, noun: Word) -> bool:
     return part.index < noun.index and part.dep in _PART and noun.index in (part.head, tree.head(part).head)
 
 
-def _words_of(tree: Tree, sentence: str) -> list[Word]:
-    """Return the words of a sentence of the text; all words if it is not found."""
-    start = tree.text.lower().find(sentence.lower()) if sentence else 0
-    if start < 0:
-        return list(tree.words)
-    end = start + len(sentence) if sentence else len(tree.text)
-    return [word for word in tree.words if start <= word.start < end]
-
-
 def _options(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
     """Return the options of *soup or salad* and *text her or wait*, and whether they are acts."""
     at = next((place for place, word in enumerate(words) if word.low == "or"), 0)
@@ -210,6 +214,9 @@ def _options(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
     if verbal:
         subject = next((place for place, word in enumerate(words[:at]) if word.dep in SUBJECTS), -1)
         start = next((place for place in range(subject + 1, at) if words[place].pos == "VERB"), at)
+        second = _until(after, ("PUNCT",))
+    elif after[0].pos == "ADP":  # "in the morning or in the evening"
+        start = next((place for place in range(at - 1, -1, -1) if words[place].pos == "ADP"), at)
         second = _until(after, ("PUNCT",))
     else:
         start = at
@@ -229,23 +236,6 @@ def _cuts(word: Word) -> bool:
 def _until(words: Sequence[Word], ends: Sequence[str]) -> list[Word]:
     place = next((place for place, word in enumerate(words) if word.pos in ends), len(words))
     return list(words[:place])
-
-
-def _wh(tree: Tree, words: Sequence[Word]) -> str:
-    """Return the words that ask, with their noun: *which boots*, *how often*, *when*."""
-    place = next((place for place, word in enumerate(words) if word.low in QUESTION_WORDS), None)
-    if place is None or words[place].low == "why":
-        return ""
-    found = [words[place]]
-    for word in words[place + 1 : place + 5]:
-        subject = word.dep in SUBJECTS and found[-1].pos not in ("ADJ", "DET")
-        if word.pos not in ("ADJ", "ADV", "NOUN", "DET") or word.low in AUXILIARIES or subject:
-            break
-        found.append(word)
-    alone = len(found) == 1
-    if (alone and found[0].low not in ("who", "when", "where")) or (found[0].low == "how" and found[-1].low == "come"):
-        return ""
-    return turned(tree, found).lower()
 
 
 def _word(seen: Analysis) -> str:

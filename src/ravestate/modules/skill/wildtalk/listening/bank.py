@@ -21,11 +21,12 @@ from .suitability import Evidence
 
 LEAST = 0.74
 """The least similarity at which an entry is looked at more closely."""
-CLOSE, DOUBTFUL, PROBABLE = 0.9, 0.15, 0.45
+CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.3, 0.57
 """An entry with the similarity `CLOSE` and the probability `DOUBTFUL`, or more, gets at least the probability `PROBABLE`:
 more than half of such entries suit. Their other sentences may be far from the utterance, which lowers the estimate."""
-ANSWER = -10.6
-"""The least score (logit) of an answer. An answer to another question from the same area of life scores about -11."""
+ANSWER, EXACTLY = -10.6, -9.5
+"""The least scores (logits) of an answer: of advice, which is right for many questions, and of what must be exact. An answer to
+another question from the same area of life scores about -11."""
 TONES = ("sad", "angry", "glad", "tired")
 DARK = ("sad", "angry", "tired")
 
@@ -72,13 +73,13 @@ class Bank:
         self._judge.load()
         self.index.load()
 
-    def answering(self, question: str, lines: Sequence[Line]) -> list[Line]:
+    def answering(self, question: str, lines: Sequence[Line], least: float = ANSWER) -> list[Line]:
         """Return the lines that may answer a question, the likeliest first. Before `load`, return all, in their order."""
         if not self.index.loaded or not lines:
             return list(lines)
         scores = self._judge.score_pairs([(question, line.text) for line in lines]).tolist()
         ranked = sorted(zip(scores, lines, strict=True), key=lambda one: -one[0])
-        return [line for score, line in ranked if score >= ANSWER]
+        return [line for score, line in ranked if score >= least]
 
     def similar(self, sentences: Sequence[str], utterance: str, most: int = 5) -> list[Found]:
         """Return the entries that resemble a sentence of an utterance, the most suitable first. No entry comes twice."""

@@ -9,16 +9,20 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match, bundled_matcher
-from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.language.normal import plain
+from ravestate.language.shape import shape
+from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
-from .asked import Asked, asked_in
-from .bank import DARK, Found
+from .asked import Asked, about, asked_in
+from .bank import CLOSE, DARK, Found
+from .echo import Told, told_in, words_of
 from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
@@ -31,8 +35,8 @@ EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
 FINER = 0.1
 """The bonus of a moment over feelings and acts, because a moment is more specific."""
-FELT, GLAD, AMAZED = 0.65, 0.8, 0.9
-"""The least confidence that a sad feeling, any other feeling, and astonishment need to decide the answer."""
+FELT, GLAD, AMAZED, NEVER = 0.65, 0.8, 0.9, 2.0
+"""The least confidence that a sad feeling, any other feeling, and astonishment need to decide the answer, and one that none has."""
 TURNED = 0.95
 """The least confidence at which a glad feeling or a moment that is not sad ends a sad tone."""
 CLOUDED = 0.85
@@ -41,23 +45,18 @@ ASKED = 0.8
 """The least confidence at which the agent does what the user requests."""
 FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
 """Short sentences resemble many others. The maximum number of words in one, and the confidences that it needs."""
-PLAINLY = 12
-"""The maximum number of words in a statement about one thing."""
 BRIEFLY = 5
 """The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 SHORT = 4
 """The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-ALIKE, SIMILAR = 0.55, 0.4
-"""The least probability that an entry of the bank suits: of one that decides the answer, and of one that is better than a
-stock answer."""
-ASKING = 0.05
-"""The probability that an entry needs less for a question: its answers suit more often than replies to statements."""
+ALIKE = 0.57
+"""The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 CROSSED = 0.5
-"""The share of its probability that an entry loses if its mood does not suit the talk."""
+"""The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
 BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 _ASKING = word_set(
@@ -65,7 +64,7 @@ _ASKING = word_set(
 )
 """Closed-class words that begin a question."""
 _LEAVING = re.compile(
-    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
+    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
 )
 """A farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
@@ -103,12 +102,13 @@ class Hearing:
     """The name of the moment that the utterance resembles most, even if only a little."""
     moves: tuple[str, ...] = ()
     """The agent's next moves, the likeliest first: one, or two if both are likely; none if no move is known."""
-    topic: Moment | None = None
     thing: str = ""
     """The thing about which the user asks the agent's opinion."""
     asking: str = ""
     """The sentence that asks something."""
     asked: Asked | None = None
+    told: Told | None = None
+    """The statement that the agent can take up."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
 
@@ -132,6 +132,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
+    found.told = None if asking or request else told_in(seen, phrases.living)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
@@ -142,13 +143,15 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         feeling = None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
     last = state.said[-1] if state.said else ""
-    roles = roles.having(user=heard.user, last="" if last.endswith("?") else last)
+    advised = state.moment in ADVICE or state.moment.startswith("advice.")
+    roles = roles.having(
+        user=heard.user, last="" if last.endswith("?") else last, ground=state.ground if advised else ""
+    )
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
     found.near = near_in(phrases, seen, asking, state, feeling)
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
-    easier = ASKING if asking else 0.0
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
     low = {word.low for word in seen.tree.words}
@@ -168,15 +171,13 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
+        "sorry": not _SAD.isdisjoint(seen.feelings),
         "sure": score >= SURE,
-        "alike": nearest.fit >= ALIKE - easier
+        "alike": nearest.fit >= ALIKE
         and (nearest.score >= EXACT or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))),
-        "similar": nearest.fit >= SIMILAR - easier,
         "others": others,
         "asserting": verb and others,
         "called": called != "",
-        "plainly": statement is not None and size <= PLAINLY and len(seen.sentences) == 1 and not statement.hearsay
-        and not statement.conditional and "thing" in roles.values,
         "request": request and len(seen.sentences) == 1,
         "asked": found.asked is not None,
         "advised": seen.advised,
@@ -184,6 +185,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "wording": found.asked is not None and found.asked.kind in ("repeat", "shorter", "say_word"),
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
         found.asked.kind if found.asked else "": True,
+        "echoed": found.told is not None,
+        "addressed": found.told is not None and found.told.subject == "yours",
+        "settled": len(found.moves) == 1,
         "broken": _is_broken(seen, size),
         **dict.fromkeys(found.moves, True),
     }  # fmt: skip
@@ -191,14 +195,10 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _question_tags(found, phrases, seen, asking, low)
     elif statement is not None:
         tags |= _statement_tags(phrases, seen, statement, roles)
-        heads = {
-            word.lemma.lower()
-            for word in seen.tree.words
-            if word.dep in ("nsubj", "nsubjpass", "dobj", "attr") and seen.tree.head(word).dep == "ROOT"
-        } & {statement.object.head, statement.subject.head}
-        found.topic = next((one for one in phrases.topics.values() if heads & one.words), None)
     found.tags |= {tag for tag, holds in tags.items() if holds}
-    found.roles = roles.having(called=called, **(found.asked.values if found.asked else {}))
+    found.roles = roles.having(
+        called=called, told=found.told.echo if found.told else "", **(found.asked.values if found.asked else {})
+    )
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
@@ -212,9 +212,9 @@ def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
 def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: str, low: set[str]) -> dict[str, bool]:
     asked = next((one for one in seen.statements if one.question), None)
     subject = "" if asked is None else asked.subject_person
-    about = _about_in(seen)
-    about = about if about.split()[-1:] and about.split()[-1].lower() in asking.lower() else ""
-    found.thing = about or roles_of(seen, "", None, phrases).values.get("thing", "")
+    judged = _about_in(seen)
+    judged = judged if judged.split()[-1:] and judged.split()[-1].lower() in asking.lower() else ""
+    found.thing = judged or roles_of(seen, "", None, phrases).values.get("thing", "")
     polar, modal = seen.question is QuestionWord.YES_NO, any(word.tag == "MD" for word in seen.tree.words)
     mine = asked is not None and (asked.subject.of("I") or asked.object.of("I"))
     opining = asked is not None and subject == "you" and asked.verb in phrases.plain["opining"].words
@@ -222,19 +222,22 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
         "question": True,
         "offer": _OFFER.match(asking) is not None,
         "are_you": polar and not modal and subject == "you" and asked is not None and asked.verb == "be",
-        "told": (not polar and (mine or subject == "I") and subject != "you" and not modal)
-        or bool({"remember", "recall"} & low and "you" in low)
-        or ("know" in low and subject == "you" and "my" in low),
-        "taste": found.thing != "" and (opining or (about != "" and asked is not None and asked.verb in _JUDGING)),
+        "told": found.moves == ("recall",)
+        and (
+            (not polar and (mine or subject == "I") and subject != "you" and not modal)
+            or bool({"remember", "recall"} & low and "you" in low)
+            or ("know" in low and subject == "you" and "my" in low)
+        ),
+        "taste": found.thing != ""
+        and not found.thing.startswith("your ")
+        and (opining or (judged != "" and asked is not None and asked.verb in _JUDGING)),
     }
 
 
 def _statement_tags(phrases: Material, seen: Analysis, statement: Statement, roles: Roles) -> dict[str, bool]:
     return {
-        "mine": statement.subject_person == "I" and statement.object.person != "you",
         "living": is_living(phrases, statement) and "they" in roles.values,
         "past": is_past(statement.verb, seen),
-        "negated": statement.negated,
     }
 
 
@@ -293,7 +296,11 @@ def asking_sentence(seen: Analysis) -> str:
         opened = [sentence for sentence in opened if len(sentence.split()) > FEW_WORDS - 1]
         if not marked and not opened:
             return ""
-    return [*seen.sentences, *opened, *marked][-1]
+    last = [*seen.sentences, *opened, *marked][-1]
+    place = seen.sentences.index(last)
+    if place and len(last.split()) <= SHORT + 1 and kind_of(last) == "you_think":
+        return seen.sentences[place - 1]  # "I don't know whether I should go. What do you think?"
+    return last
 
 
 def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
@@ -330,14 +337,26 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
     if len(seen.tree.words) <= WHOLE:
         texts.append(seen.text)
     mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
+    bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
+    kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text):
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
+        examples = one.moment.examples
+        crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
+        crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)
+        crossed = crossed or (persons == (False, True) and all(persons_in(text) == (True, False) for text in examples))
         ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
     return sorted(ranked, key=lambda one: -one.fit)
 
 
+def persons_in(text: str) -> tuple[bool, bool]:
+    """Return whether a text mentions the user, and whether it mentions others."""
+    return shape(plain(text))[1:3]
+
+
+@lru_cache(256)
 def kind_of(sentence: str) -> str:
     """Return the kind of a question or request; empty for a statement."""
     match = bundled_matcher("asks").match(sentence)
@@ -364,16 +383,11 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
 
 def _least(match: Match, tone: str) -> float:
     """Return the least confidence that a feeling needs to decide the answer."""
-    least = (
-        FELT
-        if match.name in _SAD
-        else TURNED
-        if tone in ("sad", "angry")
-        else AMAZED
-        if match.name == "astonishing"
-        else GLAD
-    )
-    return max(least, FEW) if len(match.text.split()) <= FEW_WORDS else least
+    few = len(match.text.split()) <= FEW_WORDS
+    if match.name == "astonishing":
+        return AMAZED if few else NEVER  # a longer utterance says what is astonishing
+    least = FELT if match.name in _SAD else TURNED if tone in ("sad", "angry") else GLAD
+    return max(least, FEW) if few else least
 
 
 def _is_broken(seen: Analysis, size: int) -> bool:

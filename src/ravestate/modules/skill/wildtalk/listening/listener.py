@@ -14,11 +14,12 @@ from dataclasses import dataclass, replace
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .games import GUESSER, HOLDER, Played, Turn, named
-from .hearing import ALIKE, ASKED, ASKING, SIMILAR, Heard, Hearing, feeling_of, hear, is_living, near_in
+from .hearing import ALIKE, ASKED, Heard, Hearing, feeling_of, hear, is_living, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
+from .taking_up import replies
 
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
@@ -110,7 +111,8 @@ class Listener:
             after = after.toned("").having_said(text, text)
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
         said = self._say(hearing, replace(state, game=None), chance)
-        return replace(said, state=replace(said.state, before=heard.text))
+        ground = state.ground if hearing.told is None else hearing.told.echo
+        return replace(said, state=replace(said.state, before=heard.text, ground=ground))
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
@@ -219,9 +221,8 @@ class Listener:
 
     def _bank(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the entries of the bank that suit the utterance, the most suitable first."""
-        least = (ALIKE if "alike" in hearing.tags else SIMILAR) - (ASKING if hearing.asking else 0.0)
         for one in hearing.near:
-            if one.fit >= least:
+            if one.fit >= ALIKE:
                 yield _Source(one.moment.lines("say"), one.moment)
 
     def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -231,19 +232,28 @@ class Listener:
             about = asked.kind, "" if asked.area is None else asked.area.name
             yield _Source(asked.lines(self._phrases, state.tone, hearing.asking), asked=about)
 
+    def _echo(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the user's statement from the agent's view, with a question of its kind, or with a sign of interest."""
+        told, kinds = hearing.told, self._phrases.told
+        if told is None:
+            return
+        mood = "sad" if state.tone == "sad" else "glad" if hearing.moves == ("rejoice",) else ""
+        for groups, moment in replies(told, kinds, mood, state, chance):
+            yield _Source(groups, moment)
+
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
-        tags, replies = hearing.tags, self._phrases.replies
-        sure, unsure = len(hearing.moves) == 1, "ask" if "question" in tags else "tell"
+        tags, moves = hearing.tags, self._phrases.replies
+        unsure = "ask" if "question" in tags else "tell"
+        doubted = hearing.moves[:1] in (("console",), ("mourn",)) and not tags & {"tone", "sorry"}
+        sure = len(hearing.moves) == 1 and not doubted  # nobody is consoled without a sign of sorrow
         groups = ["asked"] if {"question", "request"} & tags else []
-        if "plainly" in tags and not tags & {"negated", "tone", "felt"}:
-            groups += ["plain"] if "mine" in tags else ["thing"]
         if hearing.roles.being is not None and "question" not in tags:
             groups.append(hearing.roles.being.kind)
         groups += [state.tone, "say"]
         if sure:
-            yield _Source(replies[hearing.moves[0]].lines(*groups), replies[hearing.moves[0]])
-        yield _Source(replies[unsure].lines(*groups))
+            yield _Source(moves[hearing.moves[0]].lines(*groups), moves[hearing.moves[0]])
+        yield _Source(moves[unsure].lines(*groups))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion, which is chosen only once per talk. The agent has no opinions about people."""
@@ -254,14 +264,6 @@ class Listener:
             yield _Source([[stances.groups["as_before"][STANCES.index(before)]]])
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
-
-    def _topic(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the questions about a topic. If the utterance is about others, yield only questions about others."""
-        if hearing.topic is not None:
-            lines: Groups = hearing.topic.lines("say")
-            if "living" in hearing.tags:
-                lines = [[line for line in group if line.roles & {"who", "they", "them"}] for group in lines]
-            yield _Source(lines, hearing.topic)
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:

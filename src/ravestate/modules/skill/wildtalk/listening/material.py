@@ -43,7 +43,6 @@ class Material:
         files = {file: _moments(file) for file in MOMENTS}
         self.none = files["moments"].pop("none").examples
         """Sentences that belong to no moment."""
-        self.topics = {**_moments("subjects"), **_moments("topics")}
         self.moments = {name: one for file in MOMENTS for name, one in files[file].items()}
         none = (*self.none, *bundled("none").none)
         self.matchers = [
@@ -60,6 +59,8 @@ class Material:
         self.area_by_word = {word: one.name for one in reversed(self.areas.values()) for word in one.words}
         self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = {**_moments("plain"), **self.replies}
+        self.told = _moments("told")
+        """Kinds of statements, with questions that take them up."""
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
         self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}
@@ -69,6 +70,7 @@ class Material:
             for gender, nouns in genders.items()
             for noun in nouns
         }
+        self.living = frozenset(self.beings)
 
 
 @cache
@@ -112,7 +114,8 @@ def _lines(listed: Any, key: str) -> tuple[Line, ...]:
             raise DeclarationError(f"listening: a phrase of {key!r} lacks its text: {value!r}")
         text = str(value["say"])
         then = {name: tuple(value[name]) for name in ("yes", "no", "unsure", "any") if name in value}
-        found.append(Line(text, roles_in(text), then, value.get("start", "")))
+        roles = roles_in(" ".join((text, *(one for texts in then.values() for one in texts))))
+        found.append(Line(text, roles, then, value.get("start", "")))
     return tuple(found)
 
 

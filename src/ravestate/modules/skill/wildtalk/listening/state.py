@@ -75,6 +75,8 @@ class State:
     """The last answers, oldest first."""
     before: str = ""
     """The user's previous utterance."""
+    ground: str = ""
+    """The last thing that the user told, from the agent's view: the reason for the agent's advice."""
     moment: str = ""
     """The name of the feeling, or of the *moment* (a situation in a talk), that the last answer was for."""
     pending: Pending | None = None

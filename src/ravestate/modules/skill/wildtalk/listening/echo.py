@@ -1,0 +1,253 @@
+"""The user's own words from the agent's view: *my dog bit me* becomes *your dog bit you*.
+
+A reply that takes up what was said fits nearly always. So the listener echoes a statement before it asks back, and a
+question before it admits that it does not know the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ravestate.language.contractions import word_set
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.question_word import QUESTION_WORDS
+from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
+
+LONGEST, SHORTEST = 15, 2
+"""The maximum and the minimum number of words of an echo."""
+
+_TURNED = {
+    **dict.fromkeys(("i", "we", "me", "us"), "you"),
+    **dict.fromkeys(("my", "our"), "your"),
+    **dict.fromkeys(("mine", "ours"), "yours"),
+    "myself": "yourself",
+    "ourselves": "yourselves",
+    "your": "my",
+    "yours": "mine",
+    "yourself": "myself",
+}
+_YOU = word_set("you u ya")
+_ADDRESSING = _YOU | word_set("your yours yourself")
+_BE = {"i": {"am": "are", "'m": "'re", "was": "were"}, "you": {"are": "am", "'re": "'m", "were": "was"}}
+"""Subject → its form of *be* → the form after the subject is turned."""
+_LEADING = word_set(
+    "and but so or well ok okay anyway also then now yes no yeah nope oh ah um uh hm please because actually honestly"
+)
+"""Words at the beginning that join a sentence to the talk, and say nothing themselves."""
+_TRAILING = word_set("please sorry haha lol look btw too though then honestly")
+_ASIDE = ("intj", "parataxis", "preconj")
+_ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
+_OPINING = word_set("think guess suppose believe hope")
+"""Verbs that only wrap a statement of the user's own: *I think I will try*."""
+_DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
+_HELPING = word_set("have need get start begin stop keep let help seem forget")
+"""Verbs that say less than the verb that they govern."""
+_POLITE = word_set("think know believe say tell guess suppose reckon")
+"""Verbs that only wrap a question: *how old do you think he is*."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A statement of the user."""
+
+    echo: str
+    """The statement from the agent's view, without a capital and a full stop: *your dog bit you*."""
+    verbs: tuple[str, ...] = ()
+    """The lemmas of its verbs and of an adjective, the most telling first; none for a statement without a verb."""
+    subject: str = "thing"
+    """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
+    tense: str = "now"
+    """``past``, ``now``, ``plan``, ``once`` for *used to*, or ``not`` for a denied statement."""
+
+
+def told_in(seen: Analysis, living: frozenset[str]) -> Told | None:
+    """Return the last statement of an utterance that can be echoed; None if there is none.
+
+    Args:
+        seen: The analysis of the utterance.
+        living: The lemmas of nouns for living beings.
+    """
+    told = [words_of(seen.tree, one) for one in reversed(seen.sentences) if not one.rstrip().endswith("?")]
+    clauses = (_clause(seen.tree, words, living) for words in told)
+    fragments = (_fragment(seen.tree, words) for words in told)
+    return next(filter(None, clauses), None) or next(filter(None, fragments), None)
+
+
+def question_of(tree: Tree, sentence: str) -> str:
+    """Return a question from the agent's view: *Why do hamsters bite?*; empty if it is too long."""
+    words = _trimmed(words_of(tree, sentence))
+    doubt = next(
+        (at for at, word in enumerate(words) if at and word.low in ("whether", "if") and word.dep == "mark"), 0
+    )
+    if doubt and sentence.rstrip()[-1:] != "?":  # "I don't know whether I should go"
+        words = words[doubt:]
+    if len(words) > 2 and words[0].low in _YOU and words[1].low == "know":  # "you know how to bake bread?"
+        words = words[2:]
+    place = next((at for at in range(len(words) - 3) if _wraps(words[at : at + 4])), None)
+    whether = ""
+    if place is not None:
+        rest = words[place + 3 :]
+        rest = rest[1:] if rest[:1] and rest[0].low in ("me", "that", "if") else rest
+        whether = "whether " if place == 0 and rest[:1] and rest[0].low not in QUESTION_WORDS else ""
+        words = words[:place] + rest
+    text = whether + echo(tree, words)
+    return f"{text[:1].upper()}{text[1:]}?" if SHORTEST <= len(words) <= LONGEST else ""
+
+
+def words_of(tree: Tree, sentence: str) -> list[Word]:
+    """Return the words of a sentence of the text; all words if it is not found."""
+    start = tree.text.lower().find(sentence.lower().rstrip(".!?")) if sentence else 0
+    end = start + len(sentence) if sentence and start >= 0 else len(tree.text)
+    return [word for word in tree.words if max(start, 0) <= word.start < end]
+
+
+def echo(tree: Tree, words: Sequence[Word]) -> str:
+    """Return words from the agent's view. They begin without a capital, unless the first one is a name."""
+    text = ""
+    for place, word in enumerate(words):
+        last = words[place - 1] if place else None
+        gap = last is not None and (word.start > last.end or word.index != last.index + 1)
+        part = _turned(tree, word)
+        if last is None and word.pos != "PROPN" and part != "I":
+            part = part[:1].lower() + part[1:]
+        beside = last is not None and word.index == last.index + 1
+        text += " " * (gap and (beside or word.pos != "PUNCT")) + part
+    return text
+
+
+def _addresses(word: Word, before: Word | None) -> bool:
+    """Return whether a word addresses the agent; in *thank you*, it does not."""
+    return word.low in _ADDRESSING and (before is None or before.low != "thank")
+
+
+def _wraps(words: Sequence[Word]) -> bool:
+    """Return whether the first three words only wrap a question: *do you think he*, *can you tell me*."""
+    first, second, third, after = words
+    wraps = first.tag in ("MD", "VBP", "VBD") and second.low in _YOU and third.lemma.lower() in _POLITE
+    if third.lemma.lower() in ("say", "tell"):
+        return wraps and after.low in ("me", "us")  # "would you tell him?" is no wrapping
+    return wraps and after.low not in ("about", "of") and after.pos != "PROPN"
+
+
+def _turned(tree: Tree, word: Word) -> str:
+    low = word.low
+    if low in _YOU and not _addresses(word, tree.before(word)):
+        return word.text
+    if low in _YOU:
+        return "I" if word.dep in SUBJECTS else "me"
+    if low in _TURNED and word.pos != "NOUN":
+        return _TURNED[low]
+    if word.pos in ("AUX", "VERB"):
+        verb = word if tree.children(word, *SUBJECTS) else tree.head(word)
+        for subject in tree.children(verb, *SUBJECTS):
+            person = "you" if subject.low in _YOU else subject.low
+            return _BE.get(person, {}).get(low, word.text)
+    return word.text
+
+
+def _trimmed(words: Sequence[Word]) -> list[Word]:
+    """Return words without marks at either end, and without words that only join them to the talk."""
+    found = list(words)
+    while found and (found[0].pos == "PUNCT" or found[0].dep == "intj" or found[0].low in _LEADING):
+        found.pop(0)
+    if len(found) > 2 and found[0].low in _YOU and found[1].text == ",":  # "and you, what do you like?"
+        found = found[2:]
+    while found and (found[-1].text in _ENDS or found[-1].low in _TRAILING or found[-1].dep in ("intj", "cc")):
+        found.pop()
+    return found
+
+
+def _clause(tree: Tree, words: Sequence[Word], living: frozenset[str]) -> Told | None:
+    found = [one for verb in words if (one := _told(tree, verb, living, {word.index for word in words})) is not None]
+    return max(
+        found, key=lambda one: (" " in one.echo.partition(" ")[2], one.subject != "thing", len(one.echo)), default=None
+    )
+
+
+def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> Told | None:
+    """Return the clause of a verb; None if it is no main clause, or too long."""
+    subjects = [word for word in tree.children(verb, *SUBJECTS, "expl") if word.index < verb.index]
+    main = verb.dep == "ROOT" or (verb.dep == "conj" and tree.head(verb).dep == "ROOT")
+    inner = [word for word in tree.children(verb, "ccomp") if tree.children(word, *SUBJECTS)]
+    if main and subjects and subjects[0].low == "i" and verb.lemma in _OPINING and inner and verb.low in _OPINING:
+        verb, subjects = inner[0], tree.children(inner[0], *SUBJECTS)
+    if not main or verb.pos not in ("VERB", "AUX") or not subjects or subjects[0].low in QUESTION_WORDS:
+        return None
+    for dropped in ((), (",",), ("advcl",), ("advcl", "npadvmod", "advmod", "prep")):
+        words = _trimmed([word for word in _within(tree, verb, dropped) if word.index in inside])
+        comma = next(
+            (at for at, word in enumerate(words) if word.text in dropped and word.index > verb.index), len(words)
+        )
+        words = words[:comma]
+        if SHORTEST <= len(words) <= LONGEST and words[0].low not in QUESTION_WORDS:
+            break
+    else:
+        return None
+    if words[0].tag in ("MD", "VB"):
+        return None
+    subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
+    if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):
+        return None
+    chain = list(_chain(tree, verb))
+    plan = verb.lemma == "go" and verb.tag == "VBG" and len(chain) > 1
+    helpers = {word.low for word in tree.children(verb, "aux", "auxpass")}
+    denied = any(word.low in _DENYING for word in (*tree.children(verb), *subjects))
+    tense = (
+        "not"
+        if denied
+        else "once"
+        if verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB"
+        else "plan"
+        if plan or helpers & {"will", "'ll", "shall"}
+        else "past"
+        if verb.tag in ("VBD", "VBN") or helpers & {"did", "had", "was", "were"}
+        else "now"
+    )
+    states = [word.lemma.lower() for word in tree.children(verb, "acomp")]
+    states += ["name"] * bool(tree.children(verb, "oprd"))
+    if plan or tense == "once" or verb.lemma in _HELPING:
+        chain = chain[1:] or chain
+    verbs = ["wish"] * (verb.lemma == "like" and not helpers.isdisjoint(("would", "'d")))
+    verbs += [word.lemma.lower() for word in chain]
+    return Told(echo(tree, words), tuple(states + verbs), _person(tree, subject, living), tense)
+
+
+def _within(tree: Tree, verb: Word, dropped: Sequence[str]) -> list[Word]:
+    """Return the words of a clause without asides, without further clauses, and without some kinds of phrases."""
+    found = [verb]
+    for child in tree.children(verb):
+        beside = child.dep == "conj" or (child.dep == "ccomp" and child.index < verb.index)
+        other = beside and bool(tree.children(child, *SUBJECTS))
+        if not other and child.dep not in (*_ASIDE, *dropped):
+            found += tree.subtree(child)
+    kept = {word.index for word in found}
+    inside = [word for word in found if word.pos != "PUNCT" or kept >= {word.index - 1, word.index + 1}]
+    return sorted(inside, key=lambda word: word.index)
+
+
+def _chain(tree: Tree, verb: Word) -> Iterator[Word]:
+    """Yield a verb and the verbs that it governs: *want to bake*."""
+    yield verb
+    for child in tree.children(verb, "xcomp"):
+        if child.pos == "VERB":
+            yield from _chain(tree, child)
+
+
+def _person(tree: Tree, subject: Word, living: frozenset[str]) -> str:
+    if subject.low in ("i", "we", *_YOU):
+        return "yours" if subject.low in _YOU else "mine"
+    alive = subject.low in ("he", "she", "they", "who", "somebody", "someone", "everybody", "everyone", "nobody")
+    named = subject.pos == "PROPN" and not tree.children(subject, "det")
+    return "theirs" if alive or named or subject.lemma.lower() in living else "thing"
+
+
+def _fragment(tree: Tree, words: Sequence[Word]) -> Told | None:
+    """Return a noun phrase that stands for a sentence: *forty wooden puppets*."""
+    kept = _trimmed(words)
+    nominal = any(word.dep == "ROOT" and word.pos in ("NOUN", "PROPN") for word in kept)
+    if any(word.low in ("i", "he", "she", "we", "they") for word in kept):
+        return None
+    if not nominal or not SHORTEST <= len(kept) <= LONGEST or any(word.pos in ("VERB", "AUX") for word in kept):
+        return None
+    return Told(echo(tree, kept), subject="piece")

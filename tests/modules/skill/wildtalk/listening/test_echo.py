@@ -1,0 +1,75 @@
+"""Statements and questions from the agent's view."""
+
+import pytest
+
+from ravestate.modules.skill.wildtalk.listening.echo import Told, question_of, told_in
+from ravestate.modules.skill.wildtalk.listening.material import material
+
+from .conftest import seen
+
+
+def told(text: str) -> Told | None:
+    return told_in(seen(text), material().living)
+
+
+@pytest.mark.parametrize(
+    ("text", "echo", "subject", "tense"),
+    [
+        ("my ferret bit me", "your ferret bit you", "theirs", "past"),
+        ("I was at the fair with our aunt", "you were at the fair with your aunt", "mine", "past"),
+        ("so i'm a locksmith now", "you're a locksmith now", "mine", "now"),
+        ("well the roof is leaking again", "the roof is leaking again", "thing", "now"),
+        ("I am going to visit him on Monday", "you are going to visit him on Monday", "mine", "plan"),
+        ("She used to whistle in the kitchen", "she used to whistle in the kitchen", "theirs", "once"),
+        ("I think I'll ask her", "you'll ask her", "mine", "plan"),
+        ("He was hurt in a mine.", "he was hurt in a mine", "theirs", "past"),
+        ("they took my kite and hid it", "they took your kite and hid it", "theirs", "past"),
+        ("you sound like my uncle", "I sound like your uncle", "yours", "now"),
+        ("She gave us a jar as a thank you", "she gave you a jar as a thank you", "theirs", "past"),
+        ("forty tin soldiers in a box", "forty tin soldiers in a box", "piece", "now"),
+    ],
+)
+def test_a_statement_is_turned(text: str, echo: str, subject: str, tense: str) -> None:
+    found = told(text)
+    assert found is not None
+    assert (found.echo, found.subject, found.tense) == (echo, subject, tense)
+
+
+def test_of_several_clauses_the_one_that_says_most_is_taken() -> None:
+    found = told("It rained, and my brother lost his new umbrella on the bridge.")
+    assert found is not None
+    assert found.echo == "your brother lost his new umbrella on the bridge"
+    assert found.verbs == ("lose",)
+
+
+@pytest.mark.parametrize("text", ["hello", "yes", "Go away!", "what is this?", "I told you so", "hm"])
+def test_what_tells_nothing_or_addresses_the_agent_is_not_taken(text: str) -> None:
+    assert told(text) is None
+
+
+def test_a_wish_is_no_liking() -> None:
+    found = told("I'd like to sail to Malta")
+    assert found is not None
+    assert found.verbs[0] == "wish"
+
+
+def test_a_long_statement_is_not_taken() -> None:
+    assert told(f"I have {' and '.join(f'box {word}' for word in 'abcdefghijkl')} at home") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "question"),
+    [
+        ("why do ferrets bite", "Why do ferrets bite?"),
+        ("Am I too loud?", "Are you too loud?"),
+        ("and how often should i water my fern", "How often should you water your fern?"),
+        ("What would you do in my place?", "What would I do in your place?"),
+        ("do you think i should ring her", "Whether you should ring her?"),
+        ("How old do you think the wall is?", "How old the wall is?"),
+        ("And you, have you ever seen snow?", "Have I ever seen snow?"),
+        ("Why?", ""),
+    ],
+)
+def test_a_question_is_turned(text: str, question: str) -> None:
+    analysis = seen(text)
+    assert question_of(analysis.tree, analysis.sentences[-1]) == question
