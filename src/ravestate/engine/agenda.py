@@ -108,7 +108,8 @@ class Agenda:
             elif self._ask(activation):
                 self.runs.start(activation)
                 written.update(rule.slots)
-        self.consent.leaders.clear()
+        if self.consent.leaders.found:
+            self.consent.leaders.found.clear()
         for turn in later:
             heapq.heappush(queue, turn)
             places[turn[4]] = turn
