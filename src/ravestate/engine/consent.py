@@ -286,6 +286,10 @@ class Consent:
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""
         for spike in rival.firm_spikes():
+            for other in list(spike.holders) if self.state.alternatives else ():
+                queue = self.state.alternatives.get(other)
+                if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
+                    self.halves.sets.unfold(other)  # another clause of the rule keeps the spike that it holds
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 
