@@ -93,3 +93,21 @@ def test_a_rule_that_resigns_leaves_the_spike_to_the_rules_behind_its_other_clau
         sim.emit(b)
         sim.emit(a)
         assert sim.read(out) == "fallback"
+
+
+def test_a_clause_whose_patience_is_over_leaves_the_spike_to_another_clause_of_its_rule(trace: bool) -> None:
+    m = rs.Module("m")
+    a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
+
+    @m.rule(when=a, writes=out)
+    async def fails(ctx: Any) -> None:
+        raise ValueError
+
+    @m.rule(when=(a & b) | a, writes=out)
+    async def patient(ctx: Any) -> None:
+        ctx[out] = "patient"
+
+    with simulate(m, trace=trace) as sim:
+        sim.emit(a)
+        sim.advance(1.0)
+        assert sim.read(out) == "patient"

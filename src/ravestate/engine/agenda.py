@@ -116,7 +116,8 @@ class Agenda:
             elif self._ask(activation):
                 self.runs.start(activation)
                 written.update(rule.slots)
-        self.consent.leaders.clear()
+        if self.consent.leaders.found:
+            self.consent.leaders.found.clear()
         for turn in later:
             places[turn[4]] = turn
         if later:

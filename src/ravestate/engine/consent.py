@@ -50,9 +50,10 @@ class Consent:
             commit: Whether rivals come under pressure, and give up when their patience is over.
         """
         asks = commit and not idle
-        following = self.leaders.refuse(activation) if asks else None
-        if following is not None:
-            return following
+        if asks and self.leaders.found:
+            following = self.leaders.refuse(activation)
+            if following is not None:
+                return following
         refusal = Refusal()
         clause = activation.clause
         standing = self.state.standing
@@ -285,6 +286,10 @@ class Consent:
     def eliminate(self, rival: Activation) -> None:
         """Make a rival whose patience is over give its spikes up for good (L16)."""
         for spike in rival.firm_spikes():
+            for other in list(spike.holders) if self.state.alternatives else ():
+                queue = self.state.alternatives.get(other)
+                if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
+                    self.halves.sets.unfold(other)  # another clause of the rule keeps the spike that it holds
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 
@@ -324,11 +329,12 @@ class Consent:
         worth = self.state.standing.effective(clause)
         found: dict[Clause, list[Activation]] = {}
         causes = self.state.causes
-        for member in writers(group, clause.rule.slots, causes):
+        alone = len(group.members) == 1  # the activation itself
+        for member in () if alone else writers(group, clause.rule.slots, causes):
             theirs = member.clause
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                 found.setdefault(theirs, []).append(member)
-        for rule in causers(group, clause.rule.slots, causes):
+        for rule in (clause.rule,) if alone else causers(group, clause.rule.slots, causes):
             for theirs in causes.downstream(rule):
                 if theirs.base < worth:
                     break  # the best clauses come first, and a cooldown only lowers a utility

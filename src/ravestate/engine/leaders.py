@@ -38,31 +38,25 @@ class Leader:
 
 
 class Leaders:
-    """The leaders of one round of questions."""
+    """The leaders of one round of questions; `found` is a causal group and the slots that are asked for → its leader."""
 
-    __slots__ = ("_found", "state")
+    __slots__ = ("found", "state")
 
     def __init__(self, state: State) -> None:
         self.state = state
-        self._found: dict[tuple[Group, frozenset[int]], Leader] = {}
-
-    def clear(self) -> None:
-        """Forget the leaders, because the round has ended."""
-        self._found.clear()
+        self.found: dict[tuple[Group, frozenset[int]], Leader] = {}
 
     def add(self, activation: Activation) -> None:
         """Make a refused activation a leader, if it can be one."""
         groups, rule = activation.firm_groups(), activation.clause.rule
         if len(groups) == 1 and self.state.tracer is None and self.state.causes.helpful.isdisjoint(rule.raises):
-            self._found[groups[0], rule.slotset] = Leader(activation)
+            self.found[groups[0], rule.slotset] = Leader(activation)
 
     def refuse(self, activation: Activation) -> Refusal | None:
         """Return the refusal of an activation that follows a leader, or None if there is no such leader."""
-        if not self._found:
-            return None
         groups, clause, standing = activation.firm_groups(), activation.clause, self.state.standing
         slots = clause.rule.slotset
-        leader = self._found.get((groups[0], slots)) if len(groups) == 1 else None
+        leader = self.found.get((groups[0], slots)) if len(groups) == 1 else None
         if leader is None or leader.activation.state != WAITING or not groups[0].taken.keys().isdisjoint(slots):
             return None
         first = leader.activation.clause

@@ -198,7 +198,7 @@ class Runs:
         for group in groups:
             for spike in list(group.entries) if state.benches else ():
                 self.holdings.benches.rise(spike)
-            for other in list(writers(group, rule.slots, state.causes)):
+            for other in list(writers(group, rule.slots, state.causes)) if len(group.members) > 1 else ():
                 if (
                     other is not run
                     and other.state < RUNNING
