@@ -253,7 +253,8 @@ class Model:
         began = max(self.ran[c.rule.index] for c, speed in ((mine, fast), (theirs, their_fast)) if speed)
         far = (began - self.ran[mine.rule.index]) * fast if fast else far
         their_far = (began - self.ran[theirs.rule.index]) * their_fast if their_fast else their_far
-        return began + (theirs.base * their_far - mine.base * far) / closing
+        turn = began + (theirs.base * their_far - mine.base * far) / closing
+        return round(turn, 9) if round(turn, 9) > self.now else turn  # it meets other events of the same moment
 
     # ------------------------------------------------------------------------------- consent
 

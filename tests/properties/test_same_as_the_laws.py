@@ -38,6 +38,10 @@ def test_the_engine_keeps_to_the_laws_in_a_crowd(part: int) -> None:
         check(crowd_world_of(seed), seed)
 
 
+def test_a_rule_that_recovers_in_the_moment_of_another_event_meets_it() -> None:
+    check(crowd_world_of(901_469), 901_469)
+
+
 def check(world: World, seed: int) -> None:
     """Fail with the smallest world in which the engine departs from the laws."""
     if difference(world):

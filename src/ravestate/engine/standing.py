@@ -14,6 +14,9 @@ from ravestate.policy.model import Clause
 SAME = 1e-9
 """Worths whose relative difference is at most this count as equal: two lines that cross do so at a rounded time."""
 
+DIGITS = 9
+"""Digits of a second to which the time of a crossing is rounded, so that it meets other events of the same moment."""
+
 
 class Standing:
     """The worth of clauses at the present moment of an engine; `ran` is a rule's number → the time of its last run."""
@@ -84,7 +87,8 @@ class Standing:
             ran = self.ran.get(clause.rule.index)
             if ran is not None and self.now < ran + clause.rule.cooldown < turn:
                 turn = ran + clause.rule.cooldown
-        return turn if turn > self.now else inf
+        rounded = round(turn, DIGITS)
+        return rounded if rounded > self.now else turn if turn > self.now else inf
 
 
 def _lead(pair: tuple[float, float]) -> int:
