@@ -42,7 +42,7 @@ REAL = ("end_to_end", "bridges", "modules/platform")
 programs for seconds, so continuous integration runs a failing test a second time. The report names such tests."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Run files that take long first, so that the processes of `make test` end at about the same time."""
 
     def rank(item: pytest.Item) -> int:
@@ -50,7 +50,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return FIRST.index(folders[0]) if folders and folders[0] in FIRST else len(FIRST)
 
     items.sort(key=rank)
-    if "CI" in os.environ:
+    if "CI" in os.environ and config.pluginmanager.hasplugin("rerunfailures"):
         for item in items:
             if any(item.path.is_relative_to(TESTS / folder) for folder in REAL):
                 item.add_marker(pytest.mark.flaky(reruns=1))
