@@ -11,6 +11,7 @@ import ravestate as rs
 from ravestate.engine.effects import Run
 from ravestate.engine.engine import SPARE, Engine
 from ravestate.engine.events import AddRule, Emit, Finish, Start, Write
+from ravestate.engine.explain import explain
 from ravestate.engine.snapshot import snapshot
 
 m = rs.Module("m")
@@ -150,3 +151,20 @@ def test_a_rule_that_was_added_stays_after_a_rest() -> None:
     (effect,) = engine.effects()
     assert isinstance(effect, Run)
     assert effect.rule.name == "late:late"
+
+
+def test_a_look_at_an_engine_at_rest_keeps_no_parts() -> None:
+    policy = rs.compile(m)
+    engine = Engine(policy)
+    explain(engine, policy.plan_of["m:note"])
+    snapshot(engine)
+    assert len(policy.spare) == 1
+    assert engine.next_deadline() is None
+
+
+def test_a_flag_of_the_engine_that_is_written_at_rest_is_put_right() -> None:
+    policy = rs.compile(m)
+    engine = Engine(policy)
+    engine.receive(Write("core:activity", True), 0.0)
+    finish(engine, 0.0)
+    assert engine.read(policy.slot_of["core:activity"].index) is False

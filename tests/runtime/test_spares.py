@@ -68,22 +68,43 @@ async def test_a_spare_task_that_is_in_use_is_not_lent_twice() -> None:
     assert one.task.done()
 
 
+class Vector:
+    """A value whose comparison fails, as that of an array does."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        raise ValueError("the truth value of an array is ambiguous")
+
+
 @on_loop
 async def test_context_variables_need_not_be_comparable() -> None:
-    class Vector:
-        """A value whose comparison fails, as that of an array does."""
-
-        __hash__ = None  # type: ignore[assignment]
-
-        def __eq__(self, other: object) -> bool:
-            raise ValueError("the truth value of an array is ambiguous")
-
     held: contextvars.ContextVar[Vector] = contextvars.ContextVar("held")
     held.set(Vector())
     async with rs.Context(m) as one:
         held.set(Vector())
         async with rs.Context(m) as other:
             assert [(await ask(context))[1] for context in (one, other)] == ["none", "none"]
+
+
+@on_loop
+async def test_a_rule_may_set_a_context_variable_that_is_not_comparable() -> None:
+    held: contextvars.ContextVar[Vector] = contextvars.ContextVar("held")
+    held.set(Vector())
+    setter = rs.Module("setter")
+    go, done = setter.signal("go"), setter.slot("done", 0)
+
+    @setter.rule(when=go, writes=done)
+    async def replace(ctx: rs.RuleContext) -> None:
+        """Leave a value in the spare task."""
+        held.set(Vector())
+        ctx[done] += 1
+
+    async with rs.Context(setter) as context:
+        for number in range(3):
+            context.emit(go)
+            assert await context.next(done.changed, timeout=5) == number + 1
+        assert context.read(done) == 3
 
 
 @on_loop

@@ -91,8 +91,8 @@ class Engine:
         if parts is None:
             return []
         effects = parts.effects()
-        if not effects and parts.state.at_rest:
-            self._rest(parts)
+        if not effects:
+            self.rest()
         return effects
 
     # ------------------------------------------------------------------------------------ work and rest
@@ -118,8 +118,13 @@ class Engine:
             parts.pass_time(now)
         return parts
 
+    def rest(self) -> None:
+        """Return the parts if nothing is live, and nothing is left to do. Call this after a look at the state."""
+        parts = self._parts
+        if parts is not None and parts.state.at_rest:
+            self._rest(parts)
+
     def _rest(self, parts: Parts) -> None:
-        """Return the parts: nothing is live, and nothing is left to do."""
         self._parts = None
         parts.agenda.breakers.clear()
         parts.state.end(self._memory)

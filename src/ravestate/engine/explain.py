@@ -109,7 +109,7 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
     """Return the state of a rule, with at most `limit` lines of its history from `records`, the trace."""
     state = engine.state
     records = [*records]
-    return Explanation(
+    explanation = Explanation(
         rule.name,
         state.now,
         rule.index in state.retired,
@@ -122,6 +122,8 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
             if getattr(record, "rule", None) == rule.name and (words := words_of(record))
         )[-limit:],
     )
+    engine.rest()
+    return explanation
 
 
 def _clause(state: State, clause: Clause) -> ClauseState:

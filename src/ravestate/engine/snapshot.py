@@ -30,7 +30,7 @@ def snapshot(engine: Engine) -> dict[str, Any]:
                 if spike is not None:
                     holders.setdefault(spike.id, []).append(other.id)
     groups = {spike.group.root() for spikes in state.live.values() for spike in spikes}
-    return {
+    found: dict[str, Any] = {
         "now": state.now,
         "slots": {plan.name: plain(state.read(plan.index)) for plan in state.policy.slot_plans},
         "spikes": [
@@ -76,6 +76,8 @@ def snapshot(engine: Engine) -> dict[str, Any]:
         "retired": [rule.name for rule in state.policy.rule_plans if rule.index in state.retired],
         "next_deadline": engine.next_deadline(),
     }
+    engine.rest()
+    return found
 
 
 def plain(value: Any) -> Any:

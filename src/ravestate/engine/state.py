@@ -182,6 +182,8 @@ class State(Memory):
         """Whether nothing is live, no effect is to be taken, and nobody traces what happens."""
         if self.live or self.active or self.out or self.errors or self.tracer is not None:
             return False
+        if self.values.get(self.activity.index) or self.values.get(self.pressure.index):
+            return False  # a write from outside: the flags are still to be settled
         return self.deadlines.next() is None
 
     def adopt(self, policy: Policy) -> None:

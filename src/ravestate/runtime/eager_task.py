@@ -105,7 +105,7 @@ class EagerTask:
     @property
     def spoilt(self) -> bool:
         """Whether the last function has cancelled its task, or has set a context variable."""
-        return self.task.cancelling() > 0 or self._context != self._clean
+        return self.task.cancelling() > 0 or not are_equal(self._context, self._clean)
 
     def suits(self, variables: contextvars.Context) -> bool:
         """Return whether the task has these context variables."""
