@@ -22,7 +22,7 @@ HOSTILE = {
     "aliases": (LAUGHS, "file.yaml:5: more than 100,000 values once the aliases are followed"),
     "lists": ("[" * 5_000, "file.yaml:1: nested more than 50 levels deep"),
     "mappings": ("{a: " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
-    "rows": ("- " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
+    "lines": ("- " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
     "a circle": ("a: 1\nb: &b [*b]", "file.yaml:2: alias *b refers to itself"),
 }
 

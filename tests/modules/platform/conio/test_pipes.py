@@ -50,7 +50,7 @@ def read(file: TextIO | None, **options: int) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("content", "rows"),
+    ("content", "lines"),
     [
         (b"", []),
         (b"hello\n", ["hello"]),
@@ -68,7 +68,7 @@ def test_a_file_is_read_line_by_line(tmp_path: Path, content: bytes, lines: list
 
 
 @pytest.mark.parametrize(
-    ("content", "rows"),
+    ("content", "lines"),
     [
         (b"x" * 200_000 + b"\ny\n", ["x" * 10, "y"]),
         (b"12345678901\n\n1234567890\n12345678901", ["1234567890", "", "1234567890", "1234567890"]),
