@@ -98,7 +98,7 @@ class Node:
         self._link: Link | None = None
         self._failed = failed
         self._numbers = itertools.count(1)
-        self._connections = Connections(partial(self._tell, Kind.HANGUP, 0))
+        self._connections = Connections(partial(self._tell, Kind.HANGUP, 0), self._warn)
         self._calls: dict[int, tuple[asyncio.Future[Any], Channel, Callable[[Any], None] | None]] = {}
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
         self._told: set[str] = set()
