@@ -1,14 +1,21 @@
 """The channels of topics of ROS 1 whose publishers the agent reads itself."""
 
 import asyncio
+import json
 import socket
 import struct
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from modules.platform.ros.networks import PATIENCE, until
+from ravestate.errors import PlatformError
 from ravestate.modules.platform.ros.channel import Channel
 from ravestate.modules.platform.ros.connections import Connections, Publisher
+from ravestate.modules.platform.ros.definitions import Definitions
+from ravestate.modules.platform.ros.frames import Handle, Kind
+from ravestate.modules.platform.ros.naming import quality
+from ravestate.modules.platform.ros.node import Node
+from ravestate.modules.platform.ros.types import Types
 
 
 def wire(*bodies: bytes) -> bytes:
@@ -66,3 +73,92 @@ def test_the_fault_of_one_channel_loses_no_message_of_another() -> None:
         assert complaints == ["a rule's fault"] * 2
 
     run(main)
+
+
+def test_a_new_channel_has_the_latched_message_that_overtakes_it_and_no_older_one() -> None:
+    async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
+        connections.add(reader.channel(1))
+        theirs.send(wire(b"old"))
+        await until(lambda: reader.taken[1])
+        ours, signal = socket.socketpair()
+        loop = asyncio.get_running_loop()
+
+        def add() -> None:
+            loop.remove_reader(ours)
+            connections.add(reader.channel(2))
+
+        loop.add_reader(ours, add)  # it runs in the turn in which the newer message is read
+        signal.send(b"now")
+        theirs.send(wire(b"new"))
+        await until(lambda: reader.taken.get(2))
+        connections.add(reader.channel(3))
+        await until(lambda: reader.taken[3])
+        assert reader.taken == {1: [b"old", b"new"], 2: [b"new"], 3: [b"new"]}
+        ours.close()
+        signal.close()
+
+    run(main)
+
+
+class Link:
+    """In the place of a bridge: it hands over sockets, and keeps the frames of the node."""
+
+    def __init__(self, handle: Handle, ready: Callable[[], None]) -> None:
+        self.failed: PlatformError | None = None
+        self.restarts = 0
+        self.pid: int | None = None
+        self.handle, self.ready = handle, ready
+        self.sent: list[tuple[Any, ...]] = []
+        self.sockets: list[socket.socket] = []
+
+    @property
+    def frames(self) -> Any:
+        return self
+
+    def start(self) -> None: ...
+    def kill(self) -> None: ...
+    def tell(self, kind: Kind, value: Any, channel: int = 0) -> None: ...
+
+    async def close(self) -> None: ...
+
+    def send(self, kind: Kind, channel: int, number: int, body: bytes | memoryview = b"") -> None:
+        self.sent.append((kind, channel, bytes(body)))
+
+    def passed(self) -> socket.socket:
+        return self.sockets.pop()
+
+    def subscriber(self, number: int) -> bytes:
+        """Hand over a connection with a new subscriber; return what it gets at once."""
+        ours, theirs = socket.socketpair()
+        self.sockets.append(ours)
+        what = {"topic": "/topic", "depth": 5}
+        self.handle(Kind.SUBSCRIBER, 0, number, memoryview(json.dumps(what).encode()))
+        with theirs:
+            theirs.setblocking(False)
+            try:
+                return theirs.recv(100)
+            except BlockingIOError:
+                return b""
+
+
+def test_a_late_subscriber_has_the_last_of_what_two_channels_latch() -> None:
+    async def main() -> None:
+        node = Node("ros1", Types(1, Definitions([])), lambda _, handle, ready, __: Link(handle, ready))
+        qos = quality(None, depth=5, latch=True)
+        one, two = (node.advertise("/topic", "std_msgs/Int8", latch=True, qos=qos) for _ in range(2))
+        link: Any = node._link  # pyright: ignore[reportPrivateUsage]  # the bridge's end
+        two.publish(1)
+        one.publish(2)
+        last = wire(b"\2")
+        assert [link.subscriber(1), link.subscriber(2)] == [last, last]
+        one.close()  # the topic is still there
+        assert link.subscriber(3) == last
+        link.sent.clear()
+        link.ready()
+        assert link.sent == [(Kind.MESSAGE, two.number, b"\2")]
+        two.close()
+        node.advertise("/topic", "std_msgs/Int8", latch=True, qos=qos)
+        assert link.subscriber(4) == b""
+        await node.close()
+
+    asyncio.run(main())

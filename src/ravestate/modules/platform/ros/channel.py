@@ -31,7 +31,6 @@ class Channel:
     take: Callable[[Any], None] | None = None
     serve: Callable[[Any], Awaitable[Any]] | None = None
     pause: float = 0.0
-    last: memoryview | None = None
     fault: str = ""
     pending: memoryview | None = None
     timer: asyncio.TimerHandle | None = None
@@ -41,6 +40,11 @@ class Channel:
         """The absolute name of the topic, service or action."""
         return self.binding["name"]
 
+    @property
+    def latches(self) -> bool:
+        """Whether a late subscriber is to have the last message."""
+        return self.binding.get("latch", False)
+
     def publish(self, value: Any) -> None:
         """Publish a message: a message, a mapping of its fields, or the value of its only field.
 
@@ -49,10 +53,7 @@ class Channel:
         """
         if self.fault:
             raise PlatformError(self.fault)
-        body = self.node.types.encode(value, self.type)
-        if self.binding["latch"]:
-            self.last = body
-        self.node.publish(self, body)
+        self.node.publish(self, self.node.types.encode(value, self.type))
 
     async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
         """Call a service, or send a goal; return the response or the result.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 from .channel import Channel
@@ -14,13 +14,14 @@ from .connection import FromPublisher, ToSubscriber
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node, and its last message if it latches."""
+    """A publisher of another node, its last message if it latches, and the new channels that are to have it."""
 
     topic: str
     type: str
     md5: str
     latching: bool
     last: memoryview | None = None
+    late: list[Channel] = field(default_factory=list[Channel])
 
     def suits(self, channel: Channel) -> bool:
         """Return whether the publisher has the type that a channel reads. The bridge tells the designer if it has not."""
@@ -51,7 +52,8 @@ class Connections:
         self._readers.setdefault(channel.name, []).append(channel)
         for publisher in self._publishers.values():
             if publisher.last is not None and publisher.topic == channel.name and publisher.suits(channel):
-                asyncio.get_running_loop().call_soon(self._offer, channel, publisher.last, True)
+                publisher.late.append(channel)
+                asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
         """Let a channel have no more messages. Without a channel, the connections of a topic end."""
@@ -103,9 +105,16 @@ class Connections:
     def _take(self, publisher: Publisher, body: memoryview, newest: bool) -> None:  # a callback
         if publisher.latching:
             publisher.last = body
+            publisher.late.clear()  # they have this one
         for channel in list(self._readers.get(publisher.topic, ())):
             if publisher.suits(channel):
                 self._offer(channel, body, newest)
+
+    def _catch_up(self, publisher: Publisher) -> None:  # a callback
+        late, publisher.late = publisher.late, []
+        for channel in late:
+            assert publisher.last is not None  # else nobody is late
+            self._offer(channel, publisher.last, True)
 
     def _offer(self, channel: Channel, body: memoryview, newest: bool) -> None:  # a callback
         if channel in self._readers[channel.name]:  # nobody has closed it meanwhile
