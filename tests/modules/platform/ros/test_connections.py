@@ -5,6 +5,7 @@ import json
 import socket
 import struct
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Any
 
 from modules.platform.ros.networks import PATIENCE, until
@@ -96,6 +97,40 @@ def test_a_new_channel_has_the_latched_message_that_overtakes_it_and_no_older_on
         assert reader.taken == {1: [b"old", b"new"], 2: [b"new"], 3: [b"new"]}
         ours.close()
         signal.close()
+
+    run(main)
+
+
+def test_the_rate_of_a_channel_holds_for_both_ways_of_its_messages_together() -> None:
+    async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
+        channel = reader.channel(1, pause=1e6)
+        bridge = partial(channel.offer, owed=True)
+        taken = reader.taken[1]
+
+        def end_of_pause() -> None:
+            timer = channel.timer
+            assert timer is not None
+            timer._run()  # type: ignore[attr-defined]  # now
+            timer.cancel()
+
+        connections.add(channel)
+        theirs.send(wire(b"direct 1"))
+        await until(lambda: taken)
+        bridge(memoryview(b"bridge 1"))
+        assert taken == [b"direct 1"] and not reader.acknowledged
+        end_of_pause()
+        assert taken == [b"direct 1", b"bridge 1"] and reader.acknowledged == 1
+        bridge(memoryview(b"bridge 2"))
+        theirs.send(wire(b"direct 2"))
+        await until(lambda: bytes(channel.pending or b"") == b"direct 2")
+        end_of_pause()
+        assert taken[2:] == [b"direct 2"] and reader.acknowledged == 2
+        end_of_pause()
+        assert channel.timer is None and len(taken) == 3
+        bridge(memoryview(b"bridge 3"))
+        assert taken[3:] == [b"bridge 3"] and reader.acknowledged == 2
+        end_of_pause()
+        assert reader.acknowledged == 3
 
     run(main)
 

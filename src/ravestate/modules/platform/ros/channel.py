@@ -22,6 +22,9 @@ class Channel:
         binding: The description that the bridge gets.
         type: The full name of the type.
         fault: Why the bridge could not make it; empty if it could.
+        pending: The newest message that has come during the pause after another one, whichever way.
+        timer: The end of that pause.
+        owed: Whether the bridge waits for an acknowledgement.
     """
 
     node: Node
@@ -34,6 +37,7 @@ class Channel:
     fault: str = ""
     pending: memoryview | None = None
     timer: asyncio.TimerHandle | None = None
+    owed: bool = False
 
     @property
     def name(self) -> str:
@@ -70,20 +74,28 @@ class Channel:
         self.stop()
         self.node.drop(self)
 
-    def offer(self, body: memoryview, *, newest: bool) -> None:
-        """Take a message of a publisher's connection, unless a newer one replaces it."""
+    def offer(self, body: memoryview, *, newest: bool = True, owed: bool = False) -> None:
+        """Take a message of the topic, unless a newer one replaces it.
+
+        Args:
+            body: The message.
+            newest: Whether no newer one has come the same way.
+            owed: Whether the bridge waits for an acknowledgement before it sends the next one.
+        """
         if not self.binding["latest"]:
             self.node.take(self, body)
-        elif self.timer is not None:
+            return
+        self.owed |= owed
+        if self.timer is not None:
             self.pending = body
         elif newest:
-            self.node.take(self, body)
-            if self.pause:
-                self.rest(lambda: None)
-
-    def rest(self, then: Callable[[], None]) -> None:
-        """Take no message for the time of the pause; then call a function, and take the message that waits."""
-        self.timer = asyncio.get_running_loop().call_later(self.pause, self._rested, then)
+            try:
+                self.node.take(self, body)
+            finally:
+                if self.pause:
+                    self.timer = asyncio.get_running_loop().call_later(self.pause, self._rested)
+                else:
+                    self._rested()
 
     def stop(self) -> None:
         """Forget a message that waits for the end of the pause."""
@@ -92,8 +104,10 @@ class Channel:
             self.timer.cancel()
             self.timer = None
 
-    def _rested(self, then: Callable[[], None]) -> None:
+    def _rested(self) -> None:
         body, self.pending, self.timer = self.pending, None, None
-        then()
+        if self.owed:
+            self.owed = False
+            self.node.acknowledge(self)
         if body is not None:
-            self.offer(body, newest=True)
+            self.offer(body)

@@ -347,7 +347,7 @@ class Node:
     def _handle(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
         known = self.channels.get(channel)
         if kind is Kind.MESSAGE and known is not None:
-            self._message(known, body)
+            known.offer(body, owed=True)
         elif kind in (Kind.SUBSCRIBER, Kind.PUBLISHER):
             self._connect(kind, number, json.loads(bytes(body)))
         elif kind is Kind.CALL and known is not None:
@@ -380,19 +380,9 @@ class Node:
         except PlatformError as error:
             self._warn(f"{channel.name}: {error}")
 
-    def _message(self, channel: Channel, body: memoryview) -> None:
-        try:
-            self.take(channel, body)
-        finally:
-            if channel.binding["latest"]:
-                self._acknowledge(channel)
-
-    def _acknowledge(self, channel: Channel) -> None:
-        acknowledge = partial(self.send, Kind.ACK, channel.number, 0)
-        if channel.pause:
-            channel.rest(acknowledge)
-        else:
-            acknowledge()
+    def acknowledge(self, channel: Channel) -> None:
+        """Let the bridge send the next message."""
+        self._tell(Kind.ACK, channel.number)
 
     async def _serve(self, channel: Channel, number: int, body: memoryview) -> None:
         assert channel.serve is not None  # it is a server
