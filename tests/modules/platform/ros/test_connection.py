@@ -1,14 +1,16 @@
-"""The agent's own connection with a node of ROS 1."""
+"""The agent's own connections with nodes of ROS 1."""
 
 import asyncio
 import socket
+import statistics
 import struct
+import time
 from collections.abc import Awaitable, Callable
 
 import pytest
 
 from modules.platform.ros.networks import PATIENCE, until
-from ravestate.modules.platform.ros.connection import Connection
+from ravestate.modules.platform.ros.connection import LONGEST, TURN, FromPublisher, ToSubscriber
 
 Taken = list[tuple[bytes, bool]]
 
@@ -17,23 +19,39 @@ def wire(*bodies: bytes) -> bytes:
     return b"".join(struct.pack("<I", len(body)) + body for body in bodies)
 
 
-def run(main: Callable[[Connection, socket.socket, Taken, list[bool]], Awaitable[None]], *, depth: int = 0) -> None:
-    """Run a test with a connection, its other end, what has been taken, and whether it was lost."""
+def receive(main: Callable[[socket.socket, Taken, list[str]], Awaitable[None]], *, first: bytes = b"") -> None:
+    """Run a test with a publisher's socket, the messages that have been taken, and what else has happened."""
+
+    async def run() -> None:
+        ours, theirs = socket.socketpair()
+        ours.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
+        theirs.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
+        theirs.setblocking(False)
+        taken: Taken = []
+        events: list[str] = []
+
+        def take(body: memoryview, newest: bool) -> None:
+            taken.append((bytes(body), newest))
+
+        connection = FromPublisher(ours, take, lambda: events.append("lost"), events.append, first)
+        async with asyncio.timeout(PATIENCE):
+            await main(theirs, taken, events)
+        connection.close()
+        theirs.close()
+
+    asyncio.run(run())
+
+
+def send(main: Callable[[ToSubscriber, socket.socket, list[bool]], Awaitable[None]]) -> None:
+    """Run a test with a connection, the subscriber's socket, and whether the connection was lost."""
 
     async def run() -> None:
         ours, theirs = socket.socketpair()
         theirs.setblocking(False)
-        taken: Taken = []
         lost: list[bool] = []
-
-        def take(body: memoryview, newest: bool) -> None:
-            taken.append((bytes(body), newest))
-            if body == b"fault":
-                raise ValueError("a rule's fault")
-
-        connection = Connection(ours, take, lambda: lost.append(True), depth)
+        connection = ToSubscriber(ours, lambda: lost.append(True), 3)
         async with asyncio.timeout(PATIENCE):
-            await main(connection, theirs, taken, lost)
+            await main(connection, theirs, lost)
         connection.close()
         theirs.close()
 
@@ -42,47 +60,84 @@ def run(main: Callable[[Connection, socket.socket, Taken, list[bool]], Awaitable
 
 @pytest.mark.parametrize("piece", [1, 3, 7, 1 << 20])
 def test_messages_arrive_whole_in_pieces_of_any_size(piece: int) -> None:
-    async def main(connection: Connection, theirs: socket.socket, taken: Taken, lost: list[bool]) -> None:
-        bodies = [b"one", b"", b"x" * 100, b"last"]
-        data = wire(*bodies)
-        for start in range(0, len(data), piece):
-            connection.receive(data[start : start + piece])
+    bodies = [b"one", b"", b"x" * 100, b"last"]
+    data = wire(*bodies)
+
+    async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
+        for start in range(len(data[:2]), len(data), piece):
+            theirs.send(data[start : start + piece])
+            await asyncio.sleep(0)  # the loop's turn, in which the piece is read
+        await until(lambda: len(taken) == len(bodies))
         assert [body for body, _ in taken] == bodies
 
-    run(main)
+    receive(main, first=data[:2])
 
 
-def test_the_newest_of_a_block_is_known() -> None:
-    async def main(connection: Connection, theirs: socket.socket, taken: Taken, lost: list[bool]) -> None:
-        theirs.send(wire(b"old", b"new") + wire(b"half")[:6])
+def test_the_newest_of_all_that_have_come_is_known() -> None:
+    bodies = [bytes([n]) * 8000 for n in range(20)]  # each is longer than a block
+
+    async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
+        assert theirs.send(wire(*bodies) + wire(b"half")[:6]) > 20 * 8000
         await until(lambda: taken)
-        assert taken == [(b"old", False), (b"new", True)]
+        assert taken == [*((body, False) for body in bodies[:-1]), (bodies[-1], True)]
 
-    run(main)
+    receive(main)
 
 
-def test_a_message_longer_than_a_block_arrives() -> None:
-    async def main(connection: Connection, theirs: socket.socket, taken: Taken, lost: list[bool]) -> None:
-        await asyncio.get_running_loop().sock_sendall(theirs, wire(b"x" * 300_000, b"next"))
+def test_a_message_longer_than_a_turn_arrives() -> None:
+    async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
+        await asyncio.get_running_loop().sock_sendall(theirs, wire(b"x" * (TURN + 300_000), b"next"))
         await until(lambda: len(taken) == 2)
-        assert [len(body) for body, _ in taken] == [300_000, 4]
+        assert [len(body) for body, _ in taken] == [TURN + 300_000, 4]
 
-    run(main)
-
-
-def test_the_fault_of_one_message_loses_none_that_follow() -> None:
-    async def main(connection: Connection, theirs: socket.socket, taken: Taken, lost: list[bool]) -> None:
-        complaints: list[str] = []
-        asyncio.get_running_loop().set_exception_handler(lambda _, told: complaints.append(str(told["exception"])))
-        connection.receive(wire(b"one", b"fault", b"three"))
-        assert [body for body, _ in taken] == [b"one", b"fault", b"three"]
-        assert complaints == ["a rule's fault"]
-
-    run(main)
+    receive(main)
 
 
-def test_while_the_other_node_does_not_read_the_newest_messages_wait() -> None:
-    async def main(connection: Connection, theirs: socket.socket, taken: Taken, lost: list[bool]) -> None:
+def test_the_reads_of_a_long_message_stay_short() -> None:
+    async def main() -> None:
+        ours, theirs = socket.socketpair()
+        taken: list[int] = []
+        connection = FromPublisher(ours, lambda body, _: taken.append(len(body)), lambda: None, print)
+        size, piece = 16 << 20, 1 << 14
+        theirs.send(struct.pack("<I", size))
+        times: list[float] = []
+        for _ in range(size // piece):
+            theirs.send(bytes(piece))
+            start = time.thread_time()
+            connection.read()
+            times.append(time.thread_time() - start)
+        assert taken == [size]
+        assert statistics.median(times[-100:]) < 20 * statistics.median(
+            times[:100]
+        )  # a copy of all takes 200 times as long
+        connection.close()
+        theirs.close()
+
+    asyncio.run(main())
+
+
+def test_a_length_that_no_message_has_ends_the_connection() -> None:
+    async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
+        theirs.send(wire(b"good") + struct.pack("<I", LONGEST + 1) + b"x")
+        await until(lambda: len(events) == 2)
+        assert "announces a message of 268435457 bytes" in events[0] and events[1] == "lost"
+        assert taken == [(b"good", True)]
+
+    receive(main)
+
+
+def test_the_end_of_a_publisher_is_noticed_once() -> None:
+    async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
+        theirs.send(wire(b"last words"))
+        theirs.close()
+        await until(lambda: events)
+        assert (taken, events) == ([(b"last words", True)], ["lost"])
+
+    receive(main)
+
+
+def test_while_a_subscriber_does_not_read_the_newest_messages_wait() -> None:
+    async def main(connection: ToSubscriber, theirs: socket.socket, lost: list[bool]) -> None:
         bodies = [bytes([n]) * 1_000_000 for n in range(10)]
         for body in bodies:
             connection.send(body)
@@ -95,16 +150,20 @@ def test_while_the_other_node_does_not_read_the_newest_messages_wait() -> None:
         connection.send(b"again")
         assert await asyncio.get_running_loop().sock_recv(theirs, 100) == wire(b"again")
 
-    run(main, depth=3)
+    send(main)
 
 
-def test_the_end_of_the_other_node_is_noticed_once() -> None:
-    async def main(connection: Connection, theirs: socket.socket, taken: Taken, lost: list[bool]) -> None:
-        theirs.send(wire(b"last words"))
+def test_what_a_subscriber_sends_is_dropped_until_it_ends() -> None:
+    async def main(connection: ToSubscriber, theirs: socket.socket, lost: list[bool]) -> None:
+        await asyncio.get_running_loop().sock_sendall(theirs, struct.pack("<I", 0xFFFFFFF0) + bytes(1 << 20))
+        connection.send(b"one")
+        assert await asyncio.get_running_loop().sock_recv(theirs, 100) == wire(b"one")
+        held = [value for value in vars(connection).values() if isinstance(value, bytes | bytearray)]
+        assert not held and not lost
         theirs.close()
         await until(lambda: lost)
         connection.send(b"too late")
         await connection.flush()
-        assert (taken, lost) == ([(b"last words", True)], [True])
+        assert lost == [True]
 
-    run(main)
+    send(main)

@@ -4,7 +4,7 @@ import asyncio
 import socket
 
 from modules.platform.ros.networks import PATIENCE, until
-from ravestate.modules.platform.ros.frames import Frames, Kind
+from ravestate.modules.platform.ros.frames import HEAD, PASSED, Frames, Kind
 
 
 def test_the_fault_of_one_frame_loses_none_that_follow() -> None:
@@ -42,6 +42,26 @@ def test_bytes_that_are_no_frames_end_the_link() -> None:
         async with asyncio.timeout(PATIENCE):
             await until(lambda: lost)
         assert theirs.recv(1) == b""
+        theirs.close()
+
+    asyncio.run(main())
+
+
+def test_a_socket_that_is_handed_over_is_not_inherited() -> None:
+    async def main() -> None:
+        got: list[bool] = []
+        ours, theirs = socket.socketpair()
+
+        def take(kind: Kind, channel: int, number: int, body: memoryview) -> None:
+            with frames.passed() as sock:
+                got.append(sock.get_inheritable())
+
+        frames = Frames(ours, take, lambda: None)
+        socket.send_fds(theirs, [HEAD.pack(Kind.PUBLISHER, PASSED, 0, 1, 0)], [theirs.fileno()])
+        async with asyncio.timeout(PATIENCE):
+            await until(lambda: got)
+        assert got == [False]
+        frames.close()
         theirs.close()
 
     asyncio.run(main())

@@ -22,6 +22,9 @@ class Channel:
         binding: The description that the bridge gets.
         type: The full name of the type.
         fault: Why the bridge could not make it; empty if it could.
+        pending: The newest message that has come during the pause after another one, whichever way.
+        timer: The end of that pause.
+        owed: Whether the bridge waits for an acknowledgement.
     """
 
     node: Node
@@ -31,15 +34,20 @@ class Channel:
     take: Callable[[Any], None] | None = None
     serve: Callable[[Any], Awaitable[Any]] | None = None
     pause: float = 0.0
-    last: memoryview | None = None
     fault: str = ""
     pending: memoryview | None = None
     timer: asyncio.TimerHandle | None = None
+    owed: bool = False
 
     @property
     def name(self) -> str:
         """The absolute name of the topic, service or action."""
         return self.binding["name"]
+
+    @property
+    def latches(self) -> bool:
+        """Whether a late subscriber is to have the last message."""
+        return self.binding.get("latch", False)
 
     def publish(self, value: Any) -> None:
         """Publish a message: a message, a mapping of its fields, or the value of its only field.
@@ -49,10 +57,7 @@ class Channel:
         """
         if self.fault:
             raise PlatformError(self.fault)
-        body = self.node.types.encode(value, self.type)
-        if self.binding["latch"]:
-            self.last = body
-        self.node.publish(self, body)
+        self.node.publish(self, self.node.types.encode(value, self.type))
 
     async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
         """Call a service, or send a goal; return the response or the result.
@@ -69,20 +74,28 @@ class Channel:
         self.stop()
         self.node.drop(self)
 
-    def offer(self, body: memoryview, *, newest: bool) -> None:
-        """Take a message of a publisher's connection, unless a newer one replaces it."""
+    def offer(self, body: memoryview, *, newest: bool = True, owed: bool = False) -> None:
+        """Take a message of the topic, unless a newer one replaces it.
+
+        Args:
+            body: The message.
+            newest: Whether no newer one has come the same way.
+            owed: Whether the bridge waits for an acknowledgement before it sends the next one.
+        """
         if not self.binding["latest"]:
             self.node.take(self, body)
-        elif self.timer is not None:
+            return
+        self.owed |= owed
+        if self.timer is not None:
             self.pending = body
         elif newest:
-            self.node.take(self, body)
-            if self.pause:
-                self.rest(lambda: None)
-
-    def rest(self, then: Callable[[], None]) -> None:
-        """Take no message for the time of the pause; then call a function, and take the message that waits."""
-        self.timer = asyncio.get_running_loop().call_later(self.pause, self._rested, then)
+            try:
+                self.node.take(self, body)
+            finally:
+                if self.pause:
+                    self.timer = asyncio.get_running_loop().call_later(self.pause, self._rested)
+                else:
+                    self._rested()
 
     def stop(self) -> None:
         """Forget a message that waits for the end of the pause."""
@@ -91,8 +104,10 @@ class Channel:
             self.timer.cancel()
             self.timer = None
 
-    def _rested(self, then: Callable[[], None]) -> None:
+    def _rested(self) -> None:
         body, self.pending, self.timer = self.pending, None, None
-        then()
+        if self.owed:
+            self.owed = False
+            self.node.acknowledge(self)
         if body is not None:
-            self.offer(body, newest=True)
+            self.offer(body)

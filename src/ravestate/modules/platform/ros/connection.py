@@ -1,4 +1,4 @@
-"""A connection of ROS 1 between the agent and another node. Its messages pass without a way through the bridge."""
+"""Connections of ROS 1 between the agent and another node. Their messages pass without a way through the bridge."""
 
 from __future__ import annotations
 
@@ -11,38 +11,72 @@ from .outbox import Outbox
 
 LENGTH = struct.Struct("<I")
 BLOCK = 1 << 12
-"""The number of bytes to read at once, or more if a message lacks more. A block of short messages is one turn's work."""
+"""The number of bytes to read at once, or more if a message lacks more. To make room for more takes longer."""
+TURN = 1 << 20
+"""The number of bytes after which the loop has a turn."""
+MESSAGES = 1000
+"""The number of messages after which the loop has a turn."""
+LONGEST = 1 << 28
+"""The maximum length of a message. What says that it is longer is no message."""
 
 
-class Connection:
-    """A TCP connection that the bridge has made, and has passed to the agent: messages, each after its length.
+class _Connection:
+    """A TCP connection that the bridge has made, and has passed to the agent.
 
     Args:
         sock: The connected socket; this object closes it.
-        take: Called on the loop with each message that comes, and whether it is the newest that has been read.
-        lost: Called once on the loop when the other node has closed the connection.
-        depth: The maximum number of messages that wait for the other node. A further one replaces the oldest.
+        lost: Called once on the loop when the connection has ended, unless `close` has ended it.
     """
 
-    def __init__(
-        self,
-        sock: socket.socket,
-        take: Callable[[memoryview, bool], None],
-        lost: Callable[[], None],
-        depth: int = 0,
-    ) -> None:
+    def __init__(self, sock: socket.socket, lost: Callable[[], None]) -> None:
+        sock.setblocking(False)
         self._sock = sock
-        self._take = take
         self._lost = lost
-        self._loop = asyncio.get_running_loop()
-        self._out = Outbox(sock, self._end, depth)
-        self._rest = b""
-        self._lacks = BLOCK
         self._closed = False
-        self._loop.add_reader(sock, self._readable)
+        self._loop = asyncio.get_running_loop()
+        self._loop.add_reader(sock, self.read)
+
+    def read(self) -> None:
+        """Read what has come."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """Close the connection."""
+        if not self._closed:
+            self._closed = True
+            self._loop.remove_reader(self._sock)
+            self._sock.close()
+
+    def _receive(self, size: int) -> bytes | None:
+        """Return at most `size` bytes; none at the end of the connection, and `None` if nothing has come."""
+        try:
+            return self._sock.recv(size)
+        except (BlockingIOError, InterruptedError):
+            return None
+        except OSError:
+            return b""
+
+    def _end(self) -> None:
+        if not self._closed:
+            self.close()
+            self._lost()
+
+
+class ToSubscriber(_Connection):
+    """A connection with a subscriber. It has nothing to say: the agent drops what it sends.
+
+    Args:
+        sock: The connected socket; this object closes it.
+        lost: Called once on the loop when the subscriber has closed the connection.
+        depth: The maximum number of messages that wait for the subscriber. A further one replaces the oldest.
+    """
+
+    def __init__(self, sock: socket.socket, lost: Callable[[], None], depth: int) -> None:
+        super().__init__(sock, lost)
+        self._out = Outbox(sock, self._end, depth)
 
     def send(self, body: bytes | memoryview) -> None:
-        """Send a message, now or as soon as the other node reads."""
+        """Send a message, now or as soon as the subscriber reads."""
         if not self._closed:
             self._out.put(b"".join((LENGTH.pack(len(body)), body)))
 
@@ -50,49 +84,77 @@ class Connection:
         """Wait until all messages have left."""
         await self._out.flush()
 
+    def read(self) -> None:
+        """Find out whether the subscriber has closed the connection."""
+        if self._receive(BLOCK) == b"":
+            self._end()
+
     def close(self) -> None:
         """Close the connection."""
         if not self._closed:
-            self._closed = True
-            self._loop.remove_reader(self._sock)
             self._out.close()
-            self._sock.close()
+            super().close()
 
-    def receive(self, block: bytes) -> None:
-        """Take the messages that are complete with these bytes."""
-        data = self._rest + block if self._rest else block
-        view, start, bodies, lacks = memoryview(data), 0, list[memoryview](), 0
-        while len(data) - start >= LENGTH.size:
-            (size,) = LENGTH.unpack_from(data, start)
-            end = start + LENGTH.size + size
-            lacks = end - len(data)
-            if lacks > 0:
+
+class FromPublisher(_Connection):
+    """A connection with a publisher, which sends messages, each after its length.
+
+    Args:
+        sock: The connected socket; this object closes it.
+        take: Called on the loop with each message, and whether it is the newest of all that have come.
+        lost: Called once on the loop when the publisher has closed the connection, or sends no messages.
+        warn: Called with a sentence if what the publisher sends is no message.
+        first: The bytes that have been read already.
+    """
+
+    def __init__(
+        self,
+        sock: socket.socket,
+        take: Callable[[memoryview, bool], None],
+        lost: Callable[[], None],
+        warn: Callable[[str], None],
+        first: bytes = b"",
+    ) -> None:
+        super().__init__(sock, lost)
+        self._take = take
+        self._warn = warn
+        self._rest = bytearray(first)
+        self._lacks = BLOCK
+
+    def read(self) -> None:
+        """Read all that has come, then take the messages that are complete: only then it is known which is the newest."""
+        bodies = list[memoryview]()
+        goes_on, room = self._split(bodies), TURN
+        while goes_on and room > 0 and len(bodies) < MESSAGES:
+            wanted = self._lacks
+            block = self._receive(wanted)
+            if block is None:
                 break
-            bodies.append(view[start + LENGTH.size : end])
-            start = end
-        self._rest = data[start:]
-        self._lacks = max(BLOCK, lacks)
+            self._rest += block
+            room -= len(block)
+            goes_on = block != b"" and self._split(bodies)
+            if len(block) < wanted:
+                break  # nothing more has come
         for body in bodies:
-            if self._closed:
-                return
-            try:
+            if not self._closed:
                 self._take(body, body is bodies[-1])
-            except Exception as error:  # the fault of one message must not lose those that follow
-                self._loop.call_exception_handler({"message": "a message failed", "exception": error})
-
-    def _readable(self) -> None:
-        try:
-            block = self._sock.recv(self._lacks)
-        except (BlockingIOError, InterruptedError):
-            return
-        except OSError:
-            block = b""
-        if block:
-            self.receive(block)
-        else:
+        if not goes_on:
             self._end()
 
-    def _end(self) -> None:
-        if not self._closed:
-            self.close()
-            self._lost()
+    def _split(self, bodies: list[memoryview]) -> bool:
+        """Move the complete messages into a list; return whether the rest may be the start of a message."""
+        rest, start = self._rest, 0
+        self._lacks = BLOCK
+        while len(rest) - start >= LENGTH.size:
+            (size,) = LENGTH.unpack_from(rest, start)
+            if size > LONGEST:
+                self._warn(f"a publisher announces a message of {size} bytes, more than {LONGEST}: the connection ends")
+                return False
+            end = start + LENGTH.size + size
+            if end > len(rest):
+                self._lacks = min(max(BLOCK, end - len(rest)), TURN)
+                break
+            bodies.append(memoryview(bytes(memoryview(rest)[start + LENGTH.size : end])))
+            start = end
+        del rest[:start]
+        return True

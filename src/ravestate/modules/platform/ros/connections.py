@@ -5,22 +5,23 @@ from __future__ import annotations
 import asyncio
 import socket
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 from .channel import Channel
-from .connection import Connection
+from .connection import FromPublisher, ToSubscriber
 
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node, and its last message if it latches."""
+    """A publisher of another node, its last message if it latches, and the new channels that are to have it."""
 
     topic: str
     type: str
     md5: str
     latching: bool
     last: memoryview | None = None
+    late: list[Channel] = field(default_factory=list[Channel])
 
     def suits(self, channel: Channel) -> bool:
         """Return whether the publisher has the type that a channel reads. The bridge tells the designer if it has not."""
@@ -28,22 +29,20 @@ class Publisher:
         return binding["type"] == self.type and self.md5 in (binding["md5"], "*")
 
 
-def _ignore(body: memoryview, newest: bool) -> None:
-    """Ignore what a subscriber sends: there is nothing for it to send."""
-
-
 class Connections:
     """The connections that the bridge has made, and has passed to the agent.
 
     Args:
         hang_up: Tells the bridge that the connection with a number has ended.
+        warn: Called with a sentence for the log.
     """
 
-    def __init__(self, hang_up: Callable[[int], None]) -> None:
+    def __init__(self, hang_up: Callable[[int], None], warn: Callable[[str], None]) -> None:
         self._hang_up = hang_up
-        self._all: dict[int, Connection] = {}
+        self._warn = warn
+        self._all: dict[int, FromPublisher | ToSubscriber] = {}
         self._publishers: dict[int, Publisher] = {}
-        self._subscribers: dict[str, dict[int, Connection]] = {}
+        self._subscribers: dict[str, dict[int, ToSubscriber]] = {}
         """Topic → the connections with its subscribers."""
         self._readers: dict[str, list[Channel]] = {}
         """Topic → the channels that subscribe to it."""
@@ -53,7 +52,8 @@ class Connections:
         self._readers.setdefault(channel.name, []).append(channel)
         for publisher in self._publishers.values():
             if publisher.last is not None and publisher.topic == channel.name and publisher.suits(channel):
-                asyncio.get_running_loop().call_soon(self._offer, channel, publisher.last, True)
+                publisher.late.append(channel)
+                asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
         """Let a channel have no more messages. Without a channel, the connections of a topic end."""
@@ -74,22 +74,25 @@ class Connections:
             connection.send(body)
         return True
 
-    def to_subscriber(self, number: int, sock: socket.socket, topic: str, depth: int) -> Connection:
+    def to_subscriber(self, number: int, sock: socket.socket, topic: str, depth: int) -> ToSubscriber:
         """Take over a connection with a subscriber; at most `depth` messages wait for it."""
-        connection = Connection(sock, _ignore, partial(self._lost, number), depth)
+        connection = ToSubscriber(sock, partial(self._lost, number), depth)
         self._all[number] = self._subscribers.setdefault(topic, {})[number] = connection
         return connection
 
     def from_publisher(self, number: int, sock: socket.socket, publisher: Publisher, first: bytes) -> None:
         """Take over a connection with a publisher, of which some bytes have been read already."""
         self._publishers[number] = publisher
-        connection = self._all[number] = Connection(sock, partial(self._take, publisher), partial(self._lost, number))
-        connection.receive(first)
+        take, lost = partial(self._take, publisher), partial(self._lost, number)
+        warn = partial(self._warn_of, publisher)
+        connection = self._all[number] = FromPublisher(sock, take, lost, warn, first)
+        connection.read()
 
     async def flush(self) -> None:
         """Wait until all messages have left."""
-        for connection in list(self._all.values()):
-            await connection.flush()
+        for connections in list(self._subscribers.values()):
+            for connection in list(connections.values()):
+                await connection.flush()
 
     def close(self) -> None:
         """Close all connections."""
@@ -102,13 +105,27 @@ class Connections:
     def _take(self, publisher: Publisher, body: memoryview, newest: bool) -> None:  # a callback
         if publisher.latching:
             publisher.last = body
+            publisher.late.clear()  # they have this one
         for channel in list(self._readers.get(publisher.topic, ())):
             if publisher.suits(channel):
                 self._offer(channel, body, newest)
 
+    def _catch_up(self, publisher: Publisher) -> None:  # a callback
+        late, publisher.late = publisher.late, []
+        for channel in late:
+            assert publisher.last is not None  # else nobody is late
+            self._offer(channel, publisher.last, True)
+
     def _offer(self, channel: Channel, body: memoryview, newest: bool) -> None:  # a callback
         if channel in self._readers[channel.name]:  # nobody has closed it meanwhile
-            channel.offer(body, newest=newest)
+            try:
+                channel.offer(body, newest=newest)
+            except Exception as error:  # it must take away neither the other channels' messages nor those that follow
+                text = f"{channel.name}: a message failed"
+                asyncio.get_running_loop().call_exception_handler({"message": text, "exception": error})
+
+    def _warn_of(self, publisher: Publisher, text: str) -> None:  # a callback
+        self._warn(f"{publisher.topic}: {text}")
 
     def _lost(self, number: int) -> None:
         del self._all[number]

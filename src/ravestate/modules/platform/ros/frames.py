@@ -124,6 +124,8 @@ class Frames:
         try:
             if self._local:
                 block, fds, _, _ = socket.recv_fds(self._sock, BLOCK, 16)
+                for fd in fds:
+                    os.set_inheritable(fd, False)  # else a process that the agent starts keeps the connection open
                 self._fds.extend(fds)
             else:
                 block = self._sock.recv(BLOCK)

@@ -98,7 +98,9 @@ class Node:
         self._link: Link | None = None
         self._failed = failed
         self._numbers = itertools.count(1)
-        self._connections = Connections(partial(self._tell, Kind.HANGUP, 0))
+        self._connections = Connections(partial(self._tell, Kind.HANGUP, 0), self._warn)
+        self._latched: dict[str, memoryview] = {}
+        """Topic → the last message, if a channel latches it."""
         self._calls: dict[int, tuple[asyncio.Future[Any], Channel, Callable[[Any], None] | None]] = {}
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
         self._told: set[str] = set()
@@ -195,6 +197,8 @@ class Node:
         if self.channels.pop(channel.number, None) is not None:
             if channel.take is not None:
                 self._connections.drop(channel)
+            if not any(other.latches and other.name == channel.name for other in self.channels.values()):
+                self._latched.pop(channel.name, None)
             self._tell(Kind.UNBIND, channel.number)
 
     # ------------------------------------------------------------------------------- acting
@@ -233,6 +237,8 @@ class Node:
 
     def publish(self, channel: Channel, body: memoryview) -> None:
         """Send a message by the connections that the bridge has passed on; if there are none, by the bridge."""
+        if channel.latches:
+            self._latched[channel.name] = body
         if not self._connections.send(channel.name, body):
             self.send(Kind.MESSAGE, channel.number, 0, body)
 
@@ -310,15 +316,16 @@ class Node:
         frames = self._frames
         assert frames is not None  # the link has just become ready
         self._told.clear()  # a fault that comes back is logged again
+        latched = dict(self._latched)
         for channel in self.channels.values():
             channel.fault = ""
             frames.tell(Kind.BIND, channel.binding, channel.number)
-            if channel.last is not None:
-                frames.send(Kind.MESSAGE, channel.number, 0, channel.last)
+            if channel.latches and (body := latched.pop(channel.name, None)) is not None:
+                frames.send(Kind.MESSAGE, channel.number, 0, body)
         while self._waiting:
             kind, number, call, body = self._waiting.popleft()
             known = self.channels.get(number)
-            if number == 0 or (known is not None and (kind is not Kind.MESSAGE or known.last is None)):
+            if number == 0 or (known is not None and (kind is not Kind.MESSAGE or not known.latches)):
                 frames.send(kind, number, call, body)
         self.ready.set()
 
@@ -340,7 +347,7 @@ class Node:
     def _handle(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
         known = self.channels.get(channel)
         if kind is Kind.MESSAGE and known is not None:
-            self._message(known, body)
+            known.offer(body, owed=True)
         elif kind in (Kind.SUBSCRIBER, Kind.PUBLISHER):
             self._connect(kind, number, json.loads(bytes(body)))
         elif kind is Kind.CALL and known is not None:
@@ -362,9 +369,8 @@ class Node:
             self._connections.from_publisher(number, sock, Publisher(**what), first.encode("latin-1"))
             return
         connection = self._connections.to_subscriber(number, sock, **what)
-        for channel in self.channels.values():
-            if channel.name == what["topic"] and channel.last is not None:
-                connection.send(channel.last)
+        if (body := self._latched.get(what["topic"])) is not None:
+            connection.send(body)
 
     def take(self, channel: Channel, body: memoryview) -> None:
         """Take a message for a channel that subscribes."""
@@ -374,19 +380,9 @@ class Node:
         except PlatformError as error:
             self._warn(f"{channel.name}: {error}")
 
-    def _message(self, channel: Channel, body: memoryview) -> None:
-        try:
-            self.take(channel, body)
-        finally:
-            if channel.binding["latest"]:
-                self._acknowledge(channel)
-
-    def _acknowledge(self, channel: Channel) -> None:
-        acknowledge = partial(self.send, Kind.ACK, channel.number, 0)
-        if channel.pause:
-            channel.rest(acknowledge)
-        else:
-            acknowledge()
+    def acknowledge(self, channel: Channel) -> None:
+        """Let the bridge send the next message."""
+        self._tell(Kind.ACK, channel.number)
 
     async def _serve(self, channel: Channel, number: int, body: memoryview) -> None:
         assert channel.serve is not None  # it is a server

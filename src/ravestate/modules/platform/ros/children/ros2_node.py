@@ -149,6 +149,8 @@ class Ros2Node:
         if self._bindings[channel]["kind"] == "action":
             act = self._act
             self._goals[channel, number] = {"handle": None, "cancelled": False}  # now, so that `cancel` finds it
+        else:
+            self._calls[channel, number] = {"future": None, "cancelled": False}
         threading.Thread(target=self._careful, args=(act, channel, number, bytes(body)), daemon=True).start()
 
     def _careful(self, act, channel, number, body):
@@ -156,6 +158,7 @@ class Ros2Node:
             act(channel, number, body)
         except Exception as error:  # the caller gets the reason of any failure
             self._goals.pop((channel, number), None)
+            self._calls.pop((channel, number), None)
             self._pipe.tell(FAULT, reason(error), channel, number)
 
     def _call(self, channel, number, body):
@@ -163,6 +166,7 @@ class Ros2Node:
 
         binding, client = self._bindings[channel], self._channels[channel]
         cls = interface(binding["type"])
+        call = self._calls.get((channel, number), {"cancelled": True})
         if not client.wait_for_service(timeout_sec=SEEKING * binding["timeout"]):
             raise LookupError("nobody offers the service {}{}".format(binding["name"], self._hint(binding)))
 
@@ -174,7 +178,12 @@ class Ros2Node:
             else:
                 self._pipe.send(ANSWER, channel, number, serialize_message(future.result()))
 
-        future = self._calls[channel, number] = client.call_async(deserialize_message(body, cls.Request))
+        if call["cancelled"]:
+            return
+        future = call["future"] = client.call_async(deserialize_message(body, cls.Request))
+        if call["cancelled"]:  # meanwhile: `cancel` may have found no future
+            client.remove_pending_request(future)
+            return
         future.add_done_callback(done)
         self._executor.wake()
 
@@ -239,9 +248,11 @@ class Ros2Node:
 
     def cancel(self, channel, number):
         """Cancel a goal, or forget a call: a service that never answers leaves nothing behind."""
-        future = self._calls.pop((channel, number), None)
-        if future is not None:
-            self._channels[channel].remove_pending_request(future)
+        call = self._calls.pop((channel, number), None)
+        if call is not None:
+            call["cancelled"] = True
+            if call["future"] is not None:
+                self._channels[channel].remove_pending_request(call["future"])
         goal = self._goals.get((channel, number))
         if goal is not None:
             goal["cancelled"] = True

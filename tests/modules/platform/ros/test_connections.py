@@ -1,0 +1,199 @@
+"""The channels of topics of ROS 1 whose publishers the agent reads itself."""
+
+import asyncio
+import json
+import socket
+import struct
+from collections.abc import Awaitable, Callable
+from functools import partial
+from typing import Any
+
+from modules.platform.ros.networks import PATIENCE, until
+from ravestate.errors import PlatformError
+from ravestate.modules.platform.ros.channel import Channel
+from ravestate.modules.platform.ros.connections import Connections, Publisher
+from ravestate.modules.platform.ros.definitions import Definitions
+from ravestate.modules.platform.ros.frames import Handle, Kind
+from ravestate.modules.platform.ros.naming import quality
+from ravestate.modules.platform.ros.node import Node
+from ravestate.modules.platform.ros.types import Types
+
+
+def wire(*bodies: bytes) -> bytes:
+    return b"".join(struct.pack("<I", len(body)) + body for body in bodies)
+
+
+class Reader:
+    """In the place of a node: it keeps what its channels take."""
+
+    def __init__(self) -> None:
+        self.taken: dict[int, list[bytes]] = {}
+        self.acknowledged = 0
+
+    def channel(self, number: int, **options: Any) -> Channel:
+        self.taken[number] = []
+        binding = {"name": "/topic", "type": "Text", "md5": "m", "latest": "pause" in options}
+        return Channel(self, number, binding, "Text", **options)  # type: ignore[arg-type]  # it is used like a node
+
+    def take(self, channel: Channel, body: memoryview) -> None:
+        self.taken[channel.number].append(bytes(body))
+        if channel.take is not None:
+            channel.take(body)
+
+    def acknowledge(self, channel: Channel) -> None:
+        self.acknowledged += 1
+
+
+def run(main: Callable[[Reader, Connections, socket.socket], Awaitable[None]]) -> None:
+    """Run a test with a latching publisher's socket."""
+
+    async def run() -> None:
+        ours, theirs = socket.socketpair()
+        connections = Connections(lambda _: None, print)
+        async with asyncio.timeout(PATIENCE):
+            connections.from_publisher(1, ours, Publisher("/topic", "Text", "m", latching=True), b"")
+            await main(Reader(), connections, theirs)
+        connections.close()
+        theirs.close()
+
+    asyncio.run(run())
+
+
+def test_the_fault_of_one_channel_loses_no_message_of_another() -> None:
+    async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
+        def fault(body: Any) -> None:
+            raise ValueError("a rule's fault")
+
+        complaints: list[str] = []
+        asyncio.get_running_loop().set_exception_handler(lambda _, told: complaints.append(str(told["exception"])))
+        connections.add(reader.channel(1, take=fault))
+        connections.add(reader.channel(2))
+        theirs.send(wire(b"one", b"two"))
+        await until(lambda: len(reader.taken[2]) == 2)
+        assert reader.taken == {1: [b"one", b"two"], 2: [b"one", b"two"]}
+        assert complaints == ["a rule's fault"] * 2
+
+    run(main)
+
+
+def test_a_new_channel_has_the_latched_message_that_overtakes_it_and_no_older_one() -> None:
+    async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
+        connections.add(reader.channel(1))
+        theirs.send(wire(b"old"))
+        await until(lambda: reader.taken[1])
+        ours, signal = socket.socketpair()
+        loop = asyncio.get_running_loop()
+
+        def add() -> None:
+            loop.remove_reader(ours)
+            connections.add(reader.channel(2))
+
+        loop.add_reader(ours, add)  # it runs in the turn in which the newer message is read
+        signal.send(b"now")
+        theirs.send(wire(b"new"))
+        await until(lambda: reader.taken.get(2))
+        connections.add(reader.channel(3))
+        await until(lambda: reader.taken[3])
+        assert reader.taken == {1: [b"old", b"new"], 2: [b"new"], 3: [b"new"]}
+        ours.close()
+        signal.close()
+
+    run(main)
+
+
+def test_the_rate_of_a_channel_holds_for_both_ways_of_its_messages_together() -> None:
+    async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
+        channel = reader.channel(1, pause=1e6)
+        bridge = partial(channel.offer, owed=True)
+        taken = reader.taken[1]
+
+        def end_of_pause() -> None:
+            timer = channel.timer
+            assert timer is not None
+            timer._run()  # type: ignore[attr-defined]  # now
+            timer.cancel()
+
+        connections.add(channel)
+        theirs.send(wire(b"direct 1"))
+        await until(lambda: taken)
+        bridge(memoryview(b"bridge 1"))
+        assert taken == [b"direct 1"] and not reader.acknowledged
+        end_of_pause()
+        assert taken == [b"direct 1", b"bridge 1"] and reader.acknowledged == 1
+        bridge(memoryview(b"bridge 2"))
+        theirs.send(wire(b"direct 2"))
+        await until(lambda: bytes(channel.pending or b"") == b"direct 2")
+        end_of_pause()
+        assert taken[2:] == [b"direct 2"] and reader.acknowledged == 2
+        end_of_pause()
+        assert channel.timer is None and len(taken) == 3
+        bridge(memoryview(b"bridge 3"))
+        assert taken[3:] == [b"bridge 3"] and reader.acknowledged == 2
+        end_of_pause()
+        assert reader.acknowledged == 3
+
+    run(main)
+
+
+class Link:
+    """In the place of a bridge: it hands over sockets, and keeps the frames of the node."""
+
+    def __init__(self, handle: Handle, ready: Callable[[], None]) -> None:
+        self.failed: PlatformError | None = None
+        self.restarts = 0
+        self.pid: int | None = None
+        self.handle, self.ready = handle, ready
+        self.sent: list[tuple[Any, ...]] = []
+        self.sockets: list[socket.socket] = []
+
+    @property
+    def frames(self) -> Any:
+        return self
+
+    def start(self) -> None: ...
+    def kill(self) -> None: ...
+    def tell(self, kind: Kind, value: Any, channel: int = 0) -> None: ...
+
+    async def close(self) -> None: ...
+
+    def send(self, kind: Kind, channel: int, number: int, body: bytes | memoryview = b"") -> None:
+        self.sent.append((kind, channel, bytes(body)))
+
+    def passed(self) -> socket.socket:
+        return self.sockets.pop()
+
+    def subscriber(self, number: int) -> bytes:
+        """Hand over a connection with a new subscriber; return what it gets at once."""
+        ours, theirs = socket.socketpair()
+        self.sockets.append(ours)
+        what = {"topic": "/topic", "depth": 5}
+        self.handle(Kind.SUBSCRIBER, 0, number, memoryview(json.dumps(what).encode()))
+        with theirs:
+            theirs.setblocking(False)
+            try:
+                return theirs.recv(100)
+            except BlockingIOError:
+                return b""
+
+
+def test_a_late_subscriber_has_the_last_of_what_two_channels_latch() -> None:
+    async def main() -> None:
+        node = Node("ros1", Types(1, Definitions([])), lambda _, handle, ready, __: Link(handle, ready))
+        qos = quality(None, depth=5, latch=True)
+        one, two = (node.advertise("/topic", "std_msgs/Int8", latch=True, qos=qos) for _ in range(2))
+        link: Any = node._link  # pyright: ignore[reportPrivateUsage]  # the bridge's end
+        two.publish(1)
+        one.publish(2)
+        last = wire(b"\2")
+        assert [link.subscriber(1), link.subscriber(2)] == [last, last]
+        one.close()  # the topic is still there
+        assert link.subscriber(3) == last
+        link.sent.clear()
+        link.ready()
+        assert link.sent == [(Kind.MESSAGE, two.number, b"\2")]
+        two.close()
+        node.advertise("/topic", "std_msgs/Int8", latch=True, qos=qos)
+        assert link.subscriber(4) == b""
+        await node.close()
+
+    asyncio.run(main())
