@@ -17,7 +17,7 @@ TURN = 1 << 20
 MESSAGES = 1000
 """The number of messages after which the loop has a turn."""
 LONGEST = 1 << 28
-"""The maximum length of a message. What says that it is longer is no message."""
+"""The maximum length of a message. A greater length is that of something else."""
 
 
 class _Connection:
