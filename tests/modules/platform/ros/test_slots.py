@@ -178,6 +178,8 @@ def test_until_cancels_the_goal_of_an_action(
         if way == "the writer's until":
             await until(lambda: agent.failures)
             assert agent.failures == ["the goal was cancelled"]
+        if way == "perform":
+            await until(lambda: agent.interrupted)
         assert agent.interrupted == ([True] if way == "perform" else [])
 
     ros2_network.run(main)
