@@ -98,4 +98,5 @@ async def _talk(source: str, memory: Path) -> tuple[float, float]:
             waits.append(time.perf_counter() - start)
             await asyncio.sleep(0.3)
     # The time from the first look to the last one has no part of a period at its ends, unlike that of the talk.
-    return statistics.median(waits), (len(looks) - 1) / (looks[-1] - looks[0])
+    rate = (len(looks) - 1) / (looks[-1] - looks[0]) if looks else 0.0
+    return statistics.median(waits), rate
