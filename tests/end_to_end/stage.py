@@ -21,7 +21,7 @@ from ravestate.modules import webio
 from ravestate.modules.platform.webio.server import Server
 from ravestate.runtime.agent import Agent
 
-__all__ = ["PHONE", "Host", "Stage", "on_stage"]
+__all__ = ["PHONE", "Host", "Stage", "hide", "on_stage"]
 
 LIMIT = 180
 """Seconds after which a test that waits for what never comes is ended."""
@@ -39,6 +39,14 @@ FLAGS = [
     "--disable-sync",
 ]
 """So that Chromium asks for nothing from elsewhere."""
+
+
+async def hide(page: Page) -> None:
+    """Tell a page that it is in the background, as when the visitor opens another one."""
+    await page.evaluate(
+        "Object.defineProperty(document, 'visibilityState', {value: 'hidden'});"
+        "document.dispatchEvent(new Event('visibilitychange'))"
+    )
 
 
 class Host:

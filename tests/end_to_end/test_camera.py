@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.async_api import Page, expect
 
-from end_to_end.stage import PHONE, Host, Stage, on_stage
+from end_to_end.stage import PHONE, Host, Stage, hide, on_stage
 from end_to_end.test_access import findings
 from end_to_end.test_speech import point
 from modules.modality.visionio.photographs import PHOTOS, make, photo
@@ -188,10 +188,7 @@ async def test_in_the_background_the_camera_is_off(stage: Stage, video: Path) ->
         stage.open(served.address, browser=browser) as page,
     ):
         await turn_on(page)
-        await page.evaluate(
-            "Object.defineProperty(document, 'visibilityState', {value: 'hidden'});"
-            "document.dispatchEvent(new Event('visibilitychange'))"
-        )
+        await hide(page)
         await expect(page.get_by_role("alert")).to_have_text("The camera is off: the page was in the background.")
         assert served.sessions[0].camera is None
 

@@ -10,7 +10,7 @@ import pytest
 from playwright.async_api import Browser, Page, expect
 
 from end_to_end.host import host
-from end_to_end.stage import PHONE, Host, Stage, on_stage
+from end_to_end.stage import PHONE, Host, Stage, hide, on_stage
 from end_to_end.test_access import findings
 from end_to_end.test_widget import Museum
 from modules.platform.webio.ears import SAGA, WORD, babble, ears, saga, story
@@ -149,10 +149,7 @@ async def test_in_the_background_the_microphone_is_off(stage: Stage, tmp_path: P
         stage.open(served.address, browser=browser) as page,
     ):
         await turn_on(page)
-        await page.evaluate(
-            "Object.defineProperty(document, 'visibilityState', {value: 'hidden'});"
-            "document.dispatchEvent(new Event('visibilitychange'))"
-        )
+        await hide(page)
         await expect(page.get_by_role("alert")).to_have_text("The microphone is off: the page was in the background.")
         await expect(bar(page)).to_have_count(0)
         assert line_of(served).window is None

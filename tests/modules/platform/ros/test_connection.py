@@ -63,14 +63,18 @@ def test_messages_arrive_whole_in_pieces_of_any_size(piece: int) -> None:
     bodies = [b"one", b"", b"x" * 100, b"last"]
     data = wire(*bodies)
 
-    async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
-        for start in range(len(data[:2]), len(data), piece):
+    async def main() -> None:
+        ours, theirs = socket.socketpair()
+        taken: list[bytes] = []
+        connection = FromPublisher(ours, lambda body, _: taken.append(bytes(body)), lambda: None, print, data[:2])
+        for start in range(2, len(data), piece):
             theirs.send(data[start : start + piece])
-            await asyncio.sleep(0)  # the loop's turn, in which the piece is read
-        await until(lambda: len(taken) == len(bodies))
-        assert [body for body, _ in taken] == bodies
+            connection.read()  # as the loop does
+        assert taken == bodies
+        connection.close()
+        theirs.close()
 
-    receive(main, first=data[:2])
+    asyncio.run(main())
 
 
 def test_the_newest_of_all_that_have_come_is_known() -> None:

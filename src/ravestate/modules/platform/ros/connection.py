@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import asyncio
 import socket
 import struct
@@ -20,7 +21,7 @@ LONGEST = 1 << 28
 """The maximum length of a message. A greater length is that of something else."""
 
 
-class _Connection:
+class _Connection(abc.ABC):
     """A TCP connection that the bridge has made, and has passed to the agent.
 
     Args:
@@ -36,9 +37,9 @@ class _Connection:
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(sock, self.read)
 
+    @abc.abstractmethod
     def read(self) -> None:
         """Read what has come."""
-        raise NotImplementedError
 
     def close(self) -> None:
         """Close the connection."""
