@@ -20,7 +20,8 @@ Ten times as many spikes, rules or links may take about ten times the time.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 
 import ravestate as rs
 from benchmarks.bench import Bench
@@ -197,76 +198,42 @@ def cliques(links: int) -> float:
     return timed(Engine(rs.compile(m)), [Emit("m:heard")], 1, until=1.0)
 
 
+WORKLOADS: dict[str, tuple[int, Callable[[int], float]]] = {
+    "pairs": (SPIKES, partial(pairs, writes=False)),
+    "pairs that write": (SPIKES, partial(pairs, writes=True)),
+    "halves": (SPIKES, halves),
+    "stalemates": (SPIKES, stalemates),
+    "burst": (1_000, partial(burst, writes=False)),
+    "burst that writes": (1_000, partial(burst, writes=True)),
+    "topics, inputs": (RULES, partial(topics, raised=False)),
+    "topics, raised": (RULES, partial(topics, raised=True)),
+    "fallbacks": (RULES, lambda size: topics(size, raised=True, fallbacks=size)),
+    "pairs beside a fallback": (SPIKES, partial(rival_pairs, shared=False)),
+    "pairs beside another pair": (SPIKES, partial(rival_pairs, shared=True)),
+    "shared half": (5 * SPIKES, shared_half),
+    "recovering fallbacks": (RULES, partial(fallbacks, guarded=False)),
+    "guarded fallbacks": (RULES, partial(fallbacks, guarded=True)),
+    "independent writers": (RULES, independent),
+    "cliques": (90, cliques),
+}
+"""Workload → the size of the smaller run, and the seconds of processor time at a size."""
+
+
 def grow(workload: str, size: int) -> float:
     """Return the seconds of processor time of a workload at a size."""
-    match workload:
-        case "pairs":
-            return pairs(size, writes=False)
-        case "pairs that write":
-            return pairs(size, writes=True)
-        case "halves":
-            return halves(size)
-        case "stalemates":
-            return stalemates(size)
-        case "burst":
-            return burst(size, writes=False)
-        case "burst that writes":
-            return burst(size, writes=True)
-        case "topics, inputs":
-            return topics(size, raised=False)
-        case "topics, raised":
-            return topics(size, raised=True)
-        case "fallbacks":
-            return topics(size, raised=True, fallbacks=size)
-        case "pairs beside a fallback":
-            return rival_pairs(size, shared=False)
-        case "pairs beside another pair":
-            return rival_pairs(size, shared=True)
-        case "shared half":
-            return shared_half(size)
-        case "recovering fallbacks":
-            return fallbacks(size, guarded=False)
-        case "guarded fallbacks":
-            return fallbacks(size, guarded=True)
-        case "independent writers":
-            return independent(size)
-        case "cliques":
-            return cliques(size)
-        case _:
-            raise ValueError(workload)
-
-
-SIZES = {
-    "pairs": SPIKES,
-    "pairs that write": SPIKES,
-    "halves": SPIKES,
-    "stalemates": SPIKES,
-    "burst": 1_000,
-    "burst that writes": 1_000,
-    "topics, inputs": RULES,
-    "topics, raised": RULES,
-    "fallbacks": RULES,
-    "pairs beside a fallback": SPIKES,
-    "pairs beside another pair": SPIKES,
-    "shared half": 5 * SPIKES,
-    "recovering fallbacks": RULES,
-    "guarded fallbacks": RULES,
-    "independent writers": RULES,
-    "cliques": 90,
-}
-"""Workload → the size of the smaller run."""
+    return WORKLOADS[workload][1](size)
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
     """Compare each workload with itself at a tenth of the size."""
     ours = bench.ours("benchmarks.questions.growing")
-    few: dict[str, list[float]] = {name: [] for name in SIZES}
-    many: dict[str, list[float]] = {name: [] for name in SIZES}
+    few: dict[str, list[float]] = {name: [] for name in WORKLOADS}
+    many: dict[str, list[float]] = {name: [] for name in WORKLOADS}
     for _ in bench.rounds(5, 2):
-        for name, size in SIZES.items():
+        for name, (size, _) in WORKLOADS.items():
             few[name].append(min(ours.ask("grow", workload=name, size=size) for _ in range(5)))
             many[name].append(ours.ask("grow", workload=name, size=FACTOR * size))
-    for name, size in SIZES.items():
+    for name, (size, _) in WORKLOADS.items():
         title = f"{name}: {FACTOR * size:,}"
         yield compare(
             "growing", title, many[name], f"{size:,}", few[name], target="<= 13", reach=lambda ratio: ratio <= LINEAR
