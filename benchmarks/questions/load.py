@@ -8,6 +8,9 @@ is the process's own: other programs on the machine do not count.
 Evenly spaced inputs show the delays that are ours: garbage collection, and the contexts' turns on the loop. Inputs at
 random moments (exponential pauses) also wait for each other. The last figure tells how much of that any server has: the
 same moments, and a server that takes our time at full load for each input.
+
+The floor is a loop of constant work instead of an agent, at the same even moments. Its slowest percent are delays that
+the machine causes.
 """
 
 from __future__ import annotations
@@ -25,6 +28,8 @@ from benchmarks.peers.wire import serve
 CONTEXTS = 1_000
 LIMIT = 3.0
 """The most that the 99th percentile may be, as a multiple of the median."""
+STEPS, WARM = 1_000, 200
+"""The steps of the loop that finds out how long a step takes, and how often it runs."""
 
 
 class Users:
@@ -82,7 +87,8 @@ def load(inputs: int) -> dict[str, float]:
             await context.start()
         await users.serve(contexts, [0.0] * inputs)
         full = max(await users.serve(contexts, [0.0] * inputs)) / inputs
-        even = await users.serve(contexts, [2 * full * number for number in range(inputs)])
+        moments = [2 * full * number for number in range(inputs)]
+        even, floor = await users.serve(contexts, moments), bare_loop(moments, full)
         dues, due, pauses = [], 0.0, random.Random(2)
         for _ in range(inputs):
             due += pauses.expovariate(1 / (2 * full))
@@ -94,12 +100,38 @@ def load(inputs: int) -> dict[str, float]:
             "full": full,
             "even 50": percentile(even, 50),
             "even 99": percentile(even, 99),
+            "floor 50": percentile(floor, 50),
+            "floor 99": percentile(floor, 99),
             "random 50": percentile(mixed, 50),
             "random 99": percentile(mixed, 99),
             "server 99": percentile(constant_server(dues, full), 99),
         }
 
     return asyncio.run(measure())
+
+
+def bare_loop(dues: Sequence[float], each: float) -> list[float]:
+    """Return how long a loop of about `each` seconds of constant work takes if it begins at these times (seconds)."""
+    begin = time.process_time()
+    for _ in range(WARM):
+        add(STEPS)
+    steps = round(STEPS * WARM * each / (time.process_time() - begin))
+    times: list[float] = []
+    begin = time.process_time()
+    for due in dues:
+        while time.process_time() < begin + due:
+            pass
+        add(steps)
+        times.append(time.process_time() - begin - due)
+    return times
+
+
+def add(steps: int) -> int:
+    """Do constant work: add the first numbers."""
+    total = 0
+    for number in range(steps):
+        total += number
+    return total
 
 
 def constant_server(dues: Sequence[float], each: float) -> list[float]:
@@ -133,6 +165,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
         target=f"<= {LIMIT:g}",
         reach=lambda ratio: ratio <= LIMIT,
     )
+    yield compare("load", "bare loop, even: 99 % within", found["floor 99"], "50 % within", found["floor 50"])
     yield compare("load", "half load, random: 99 % within", found["random 99"], "50 % within", found["random 50"])
     yield compare(
         "load", "half load, random: 99 % within", found["random 99"], "a server of constant time", found["server 99"]

@@ -6,6 +6,7 @@ Importing this package loads no third-party package and no asyncio; names that n
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from ravestate.declare.condition import Condition, Constraint
@@ -59,14 +60,19 @@ _LATER = {
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
-        from ravestate.errors import nearest
-
-        raise AttributeError(f"ravestate has no {name!r}{nearest(name, __all__)}", name=name)
+        raise AttributeError(f"ravestate has no {name!r}{_hint(name)}", name=name)
     from importlib import import_module
 
     module, attribute = _LATER[name]
     value = globals()[name] = getattr(import_module(module), attribute)
     return value
+
+
+@lru_cache(maxsize=64)  # tools ask each module again and again for names that only some have
+def _hint(name: str) -> str:
+    from ravestate.errors import nearest
+
+    return nearest(name, __all__)
 
 
 def __dir__() -> list[str]:

@@ -1,6 +1,7 @@
-"""Workloads whose cost must grow as fast as their size, and the number of lines of the engine that each one executes.
+"""Workloads whose cost must grow as fast as their size, and the number of steps of the engine that each one takes.
 
-The lines can be counted in pure Python only, so ``test_growth.py`` runs this file in a process of its own.
+A step is a line of the engine, or a member in a list of a causal group's members: one line makes the whole list. Both can
+be counted in pure Python only, so ``test_growth.py`` runs this file in a process of its own.
 """
 
 from __future__ import annotations
@@ -14,10 +15,12 @@ from typing import Any
 
 import ravestate as rs
 from engine.test_halves import declared, runs
+from ravestate.engine.activation import Activation
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import Emit
+from ravestate.engine.group import Group
 
-FEW, MANY = 20, 200
+FEW, MANY = 50, 500
 ENGINE = "/ravestate/engine/"
 
 Work = Callable[[], None]
@@ -99,9 +102,15 @@ WORKLOADS: dict[str, Callable[[int], Work]] = {
 }
 
 
-def lines(work: Work) -> int:
-    """Return how many lines of the engine a piece of work executes."""
+def steps(work: Work) -> int:
+    """Return how many steps of the engine a piece of work takes."""
     count = 0
+
+    def members(group: Group) -> tuple[Activation, ...]:
+        nonlocal count
+        found = listed.fget(group)
+        count += len(found)
+        return found
 
     def trace(frame: FrameType, event: str, argument: Any) -> Any:
         nonlocal count
@@ -110,13 +119,16 @@ def lines(work: Work) -> int:
         count += event == "line"
         return trace
 
+    listed: Any = Group.members
+    setattr(Group, "members", property(members))  # noqa: B010  # it has no other setter
     sys.settrace(trace)
     try:
         work()
     finally:
         sys.settrace(None)
+        setattr(Group, "members", listed)  # noqa: B010
     return count
 
 
 if __name__ == "__main__":
-    print(json.dumps({name: [lines(make(size)) for size in (FEW, MANY)] for name, make in WORKLOADS.items()}))
+    print(json.dumps({name: [steps(make(size)) for size in (FEW, MANY)] for name, make in WORKLOADS.items()}))

@@ -11,6 +11,7 @@ from engine.test_halves import declared, runs
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Emit, Finish
 from ravestate.engine.explain import ActivationState, explain
+from ravestate.engine.trace import Record, Waits
 
 
 def alive(engine: Engine, rule: str) -> ActivationState:
@@ -50,17 +51,25 @@ def test_the_nats_are_those_of_the_clause_that_competes() -> None:
     assert alive(engine, "m:fallback").waits_for == (("m:two", pytest.approx(theirs - mine)),)
 
 
-def test_followers_name_the_rivals_of_their_leader() -> None:
+@pytest.mark.parametrize("traced", [False, True])
+def test_followers_name_the_rivals_of_their_leader(traced: bool) -> None:
     m = rs.Module("m")
     heard, out = m.signal("heard"), m.slot("out", "")
     declared(m, "topic", when=heard & m.signal("topic"), writes=out)
     for n in range(3):
         declared(m, f"fallback{n}", when=heard, writes=out, cooldown=5.0)
     engine = Engine(rs.compile(m))
+    records: list[Record] = []
+    engine.tracer = records.append if traced else None
     assert not runs(engine, Emit("m:heard"))
     for n in range(1, 3):
         names = [rule for rule, _ in alive(engine, f"m:fallback{n}").waits_for]
         assert names == ["m:topic", "m:fallback0"]
+    told = {record.rule: record.for_ for record in records if isinstance(record, Waits)}
+    assert not traced or told == {
+        "m:fallback0": ("m:topic",),
+        **{f"m:fallback{n}": ("m:topic", "m:fallback0") for n in range(1, 3)},
+    }
 
 
 def test_a_new_rule_that_only_looks_needs_no_deadline_for_earlier_spikes() -> None:

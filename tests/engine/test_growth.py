@@ -13,12 +13,12 @@ import pytest
 from engine.growth import WORKLOADS
 
 LINEAR = 13.0
-"""How many times as many lines the engine may execute for ten times the size."""
+"""How many times as many steps the engine may take for ten times the size."""
 
 
 @cache
 def counts() -> dict[str, tuple[int, int]]:
-    """Return the lines that the engine executes for each workload, at one size and at ten times that size."""
+    """Return the steps that the engine takes for each workload, at one size and at ten times that size."""
     settings = {**os.environ, "RAVESTATE_PURE": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-m", "engine.growth"]
     found = subprocess.run(command, env=settings, capture_output=True, text=True, check=True)
@@ -28,4 +28,4 @@ def counts() -> dict[str, tuple[int, int]]:
 @pytest.mark.parametrize("workload", WORKLOADS)
 def test_ten_times_the_work_takes_ten_times_the_steps(workload: str) -> None:
     few, many = counts()[workload]
-    assert 0 < many <= LINEAR * few, f"{few:,} lines become {many:,}: {many / few:.1f} times as many"
+    assert 0 < many <= LINEAR * few, f"{few:,} steps become {many:,}: {many / few:.1f} times as many"

@@ -10,7 +10,7 @@ import pytest
 import ravestate as rs
 from ravestate.engine.effects import Run
 from ravestate.engine.engine import Engine
-from ravestate.engine.events import Emit, Event, Finish, Wipe
+from ravestate.engine.events import AddRule, Emit, Event, Finish, Wipe
 from ravestate.engine.explain import explain
 
 
@@ -35,6 +35,10 @@ def runs(engine: Engine, *given: Event, now: float = 0.0, end: bool = True) -> l
                 if end:
                     engine.receive(Finish(effect.run, "done"), now)
     return found
+
+
+def void(_: object) -> None:
+    """Ignore a record."""
 
 
 def payloads(found: list[Run]) -> list[tuple[Any, ...]]:
@@ -142,6 +146,69 @@ def test_a_rule_that_resigned_leaves_the_spike_to_the_others() -> None:
     [run] = runs(engine, Emit("m:a"), Emit("m:b"), end=False)
     [other] = runs(engine, Finish(run.run, "resigned", "no"))
     assert (run.rule.name, other.rule.name) == ("m:first", "m:second")
+
+
+def with_added_pair(held: str, traced: bool) -> Engine:
+    """Return an engine with a rule `a & b` that was added beside a live spike of the signal `held`."""
+    m = rs.Module("m")
+    signals = {name: m.signal(name) for name in "ab"}
+    declared(m, "keeps", when=signals[held] & m.signal("c"))
+    engine = Engine(rs.compile(m))
+    engine.tracer = void if traced else None
+    assert not runs(engine, Emit(f"m:{held}", "old"))
+
+    @m.rule(when=signals["a"] & signals["b"])
+    async def both(ctx: Any) -> None:
+        """Do nothing."""
+
+    engine.receive(AddRule(engine.policy.with_rule(both)), 0.0)
+    return engine
+
+
+@pytest.mark.parametrize("traced", [False, True])
+@pytest.mark.parametrize("firsts", [2, 3])
+def test_a_rule_that_was_added_beside_a_live_spike_takes_it_in_the_place_of_a_lost_one(
+    firsts: int, traced: bool
+) -> None:
+    engine = with_added_pair("b", traced)
+    assert not runs(engine, *[Emit("m:a", n) for n in range(firsts)])
+    assert payloads(runs(engine, Emit("m:b", "new"))) == [(0, "new"), (1, "old")]
+    assert payloads(runs(engine, Emit("m:b", "newer"))) == [(n, "newer") for n in range(2, firsts)]
+    assert not runs(engine, now=10.0)
+
+
+@pytest.mark.parametrize("traced", [False, True])
+def test_the_older_spike_may_be_of_either_signal(traced: bool) -> None:
+    engine = with_added_pair("a", traced)
+    found = runs(engine, Emit("m:a", 1), Emit("m:b", 2), Emit("m:b", 3), Emit("m:a", 4))
+    assert payloads(found) == [(1, 2), (4, 3)]
+    assert payloads(runs(engine, Emit("m:b", 5))) == [("old", 5)]
+
+
+def test_a_rule_pairs_spikes_although_a_rule_beside_it_has_retired() -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    declared(m, "both", when=a & b)
+    declared(m, "other", when=a & m.signal("c"))
+    engine = Engine(rs.compile(m))
+    [run] = runs(engine, Emit("m:a"), Emit("m:c"), end=False)
+    engine.receive(Finish(run.run, "retired"), 0.0)
+    assert not runs(engine, Wipe("m:a"))
+    assert payloads(runs(engine, Emit("m:b", 1), Emit("m:a", 2))) == [(2, 1)]
+    assert payloads(runs(engine, Emit("m:a", 3), Emit("m:b", 4))) == [(3, 4)]
+    assert not runs(engine, Emit("m:a"), Emit("m:c"))
+
+
+@pytest.mark.parametrize("traced", [False, True])
+def test_a_predicate_that_is_false_spares_those_after_it(traced: bool) -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    declared(m, "both", when=a.where(lambda n: n is not None).where(lambda n: n > 0) & b)
+    engine = Engine(rs.compile(m))
+    engine.tracer = void if traced else None
+    engine.receive(Emit("m:a", None), 0.0)
+    assert not engine.effects()
+    assert payloads(runs(engine, Emit("m:a", 1), Emit("m:b", 2))) == [(1, 2)]
 
 
 def test_an_explanation_shows_a_first_spike() -> None:

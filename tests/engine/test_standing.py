@@ -73,3 +73,9 @@ def test_a_crossing_is_the_same_moment_whenever_one_asks_for_it() -> None:
         found.add(here.crossing(one, other))
         found.add(here.crossing(other, one))
     assert len(found) == 1, found
+
+
+def test_a_cooldown_that_has_passed_but_for_a_rounding_error_has_passed() -> None:
+    here, (one, other) = standing({1: 1.6}, 4.6, one={}, other={"cooldown": 3.0})  # 4.6 - 1.6 is less than 3.0
+    assert here.recovery(other) == (1.0, 0.0)
+    assert here.is_ahead(one, other)  # equals: the first declared goes first

@@ -1,6 +1,5 @@
 """The matcher: classes, none, confidence, and one run of the encoder for all matchers."""
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -107,18 +106,3 @@ def test_vectors_of_examples_come_from_a_file_the_next_time(
     assert runs == [["a purple cow"], ["a yellow horse"]]
     assert (Encoder().encode_lasting(texts) == first).all()
     assert len(runs) == 2
-
-
-def test_files_that_nobody_reads_any_more_are_removed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)
-    monkeypatch.setattr(cache_module, "FILES", 2)
-    encoder = Encoder()
-    for age, text in enumerate(("oldest", "older", "old")):
-        encoder.encode_lasting([text])
-        for file in (tmp_path / "vectors").iterdir():
-            about = file.stat()
-            os.utime(file, (about.st_atime - 10 * (3 - age), about.st_mtime - 10 * (3 - age)))
-    assert len(list((tmp_path / "vectors").iterdir())) == 2
-    encoder.encode_lasting(["older"])
-    encoder.encode_lasting(["new"])
-    assert len(list((tmp_path / "vectors").iterdir())) == 2

@@ -42,6 +42,8 @@ def lexicon() -> None:
         ("anna's dog", "Anna's dog."),
         ("see https://example.org/u?r=2", "See https://example.org/u?r=2."),
         ("my favourite colour is grey", "My favourite colour is grey."),
+        ("she never apologises", "She never apologises."),
+        ("memorise this", "Memorise this."),
         ("i use to live in hamburg", "I used to live in Hamburg."),
         ("my names tom", "My name is Tom."),
         ("where u from", "Where are you from?"),

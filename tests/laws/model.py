@@ -20,6 +20,9 @@ from ravestate.engine import events
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
+INSTANT = 0.5e-9
+"""Seconds within which moments are the same."""
+
 BATCH = 100
 """Rules without consent that start before the events of their runs arrive."""
 
@@ -40,10 +43,11 @@ class Model:
         self.retired: set[int] = set()
         self.ran: dict[int, float] = {}
         self.failures: list[RuleFailure] = []
+        self.faults: list[tuple[int, str, Any, Exception]] = []  # the predicates that have raised
         self.blamed: set[int] = set()
         self.chains: dict[tuple[Any, bool], set[int]] = {}
         self.out: list[Effect] = []
-        self.born = self.steps = self.count = self.groups = 0
+        self.born = self.steps = self.count = self.groups = self.runs = 0
 
     # ------------------------------------------------------------------------------- time
 
@@ -113,7 +117,7 @@ class Model:
             if act.state == GATHERS and not act.lacks() and self.ripe(act):
                 if act.gated and self.writing:
                     continue  # gates are judged anew when the signals of a write are out
-                act.gated = not self.opens(act.clause, act.rule)
+                act.gated = not self.opens(act.clause)
                 if not act.gated:
                     act.state = READY
             else:
@@ -136,6 +140,7 @@ class Model:
     def effects(self) -> list[Effect]:
         while not any(isinstance(effect, (Run, Cancel)) for effect in self.out):
             self.tick()
+            self.report()
             if any(isinstance(effect, Cancel) for effect in self.out):
                 break
             if self.failures:
@@ -146,6 +151,7 @@ class Model:
                 self.flag("core:activity", True)
             elif not (self.start_free() or self.consent_round() or self.break_stalemate() or self.settle_flags()):
                 break
+        self.report()
         out, self.out = self.out, []
         return out
 
@@ -168,7 +174,7 @@ class Model:
         return bool(act.rule.slots and act.clause.firm_bits)
 
     def guarded(self, act: Act) -> bool:
-        if self.opens(act.clause, act.rule):
+        if self.opens(act.clause):
             return True
         act.state = GATHERS
         return False
@@ -210,7 +216,7 @@ class Model:
     def recovery(self, rule: Any) -> tuple[float, float]:
         """Return how far a rule has recovered, and how fast it does (per second)."""
         ran = self.ran.get(rule.index)
-        if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown:
+        if not rule.cooldown or ran is None or self.now - ran >= rule.cooldown - INSTANT:
             return 1.0, 0.0
         return (self.now - ran) / rule.cooldown, 1.0 / rule.cooldown
 
@@ -365,13 +371,17 @@ class Model:
                     group.taken[slot] = [*(group.taken.get(slot) or ()), act]
         else:
             self.give_up(act, act.parents)  # L10: at its start
-        self.running[act.id] = act
+        self.runs += 1
+        act.number = self.runs
+        self.running[act.number] = act
         if rule.timeout is not None:
             act.due = self.now + rule.timeout
         act.watch = {clause.index: {} for clause in rule.until}
         payloads = {need.signal.name: act.held[need.index].payload for need in act.clause.needs}
         plans = self.policy.slot_plans
-        self.out.append(Run(act.id, rule.rule, payloads, {plans[s].name: self.value(plans[s]) for s in rule.readable}))
+        self.out.append(
+            Run(act.number, rule.rule, payloads, {plans[s].name: self.value(plans[s]) for s in rule.readable})
+        )
 
     # ------------------------------------------------------------------------------- spikes
 
@@ -432,7 +442,7 @@ class Model:
             self.withdraw(mine[0])
         for need in signal.watchers:
             for act in list(self.running.values()):
-                if act.state == RUNS and need.clause in act.rule.until and self.passes(need, payload, act.rule):
+                if act.state == RUNS and need.clause in act.rule.until and self.passes(need, payload):
                     held = act.watch[need.clause.index]
                     before = held.get(need.index)
                     if before is None or not need.min_age or before.born + need.max_age < self.now:
@@ -442,21 +452,35 @@ class Model:
             self.offer(need, spike)
         self.newborn = None
 
-    def passes(self, need: Any, payload: Any, rule: Any) -> bool:
-        return all(self.test(predicate, payload, rule) for predicate in need.predicates)
+    def passes(self, need: Any, payload: Any) -> bool:
+        return all(self.test(predicate, payload, need.clause) for predicate in need.predicates)
 
-    def test(self, predicate: Any, value: Any, rule: Any) -> bool:
+    def test(self, predicate: Any, value: Any, clause: Any) -> bool:
+        """L18: a predicate that raises is false."""
         try:
             return bool(predicate(value))
         except Exception as exception:
-            if id(predicate) not in self.blamed:
-                self.blamed.add(id(predicate))
-                self.out.append(Failed(rule.name, exception))
-                self.failures.append(RuleFailure(rule.name, exception))
+            self.faults.append((clause.index, clause.rule.name, predicate, exception))
             return False
 
-    def opens(self, clause: Any, rule: Any) -> bool:
-        return all(self.test(guard.predicate, self.value(slot), rule) for slot, guard in clause.guards)
+    def report(self) -> None:
+        """Report each predicate that has raised once, in declaration order (L5)."""
+        for _, rule, predicate, exception in sorted(self.faults, key=lambda fault: fault[0]):
+            if id(predicate) not in self.blamed:
+                self.blamed.add(id(predicate))
+                self.out.append(Failed(rule, exception))
+                self.failures.append(RuleFailure(rule, exception))
+        self.faults.clear()
+
+    def opens(self, clause: Any) -> bool:
+        return all(self.test(guard.predicate, self.value(slot), clause) for slot, guard in clause.guards)
+
+    def opens_quietly(self, slot: Any, guard: Any) -> bool:
+        """Whether a predicate on a slot is true, for the question whether a rival may come (L16)."""
+        try:
+            return bool(guard.predicate(self.value(slot)))
+        except Exception:
+            return False
 
     def offer(self, need: Any, spike: Spike) -> None:
         """L12: to every activation that lacks it, oldest first; then to the one that stands by."""
@@ -480,13 +504,13 @@ class Model:
         rule = need.clause.rule
         if self.old(need, spike) and not (spike.born == self.now and not need.max_age):
             return False
-        if not self.passes(need, spike.payload, rule):
-            return False
-        return need.detached or not (
+        if not need.detached and (
             rule.index in spike.refused
             or spike.group.root().consumed(rule.slots)
-            or (any(one.rule == rule.index for one in spike.line()))
-        )
+            or any(one.rule == rule.index for one in spike.line())
+        ):
+            return False
+        return self.passes(need, spike.payload)
 
     def coheres(self, act: Act, need: Any, spike: Spike) -> bool:
         kin = [
@@ -574,14 +598,14 @@ class Model:
             ages = [(need, self.now - held[need.index].born) for need in clause.needs]
             young = any(held[need.index].born + need.min_age > self.now for need, _ in ages)
             old = any(held[need.index].born + need.max_age < self.now for need, _ in ages)
-            if not young and not old and self.opens(clause, clause.rule):
+            if not young and not old and self.opens(clause):
                 self.cancel(act, "interrupted")
 
     def cancel(self, act: Act, reason: Any) -> None:
         act.state = CANCELLED
         act.told = reason
         act.due = inf
-        self.out.append(Cancel(act.id, reason))
+        self.out.append(Cancel(act.number, reason))
 
     # ------------------------------------------------------------------------------- slots
 
@@ -678,6 +702,7 @@ class Model:
             self.withdraw(spike)
 
     def on_addrule(self, event: Any) -> None:
+        known = len(self.policy.rule_plans)
         self.policy = event.policy
         self.chains.clear()
         clauses = self.policy.clause_plans
@@ -687,6 +712,11 @@ class Model:
                 spike.signal = self.policy.signal_plans[spike.signal.index]
         for spike in self.spikes:
             spike.signal = self.policy.signal_plans[spike.signal.index]
+        for rule in self.policy.rule_plans[known:]:  # report a predicate that raises
+            for need in (need for clause in rule.clauses for need in clause.needs):
+                for spike in self.spikes:
+                    if spike.signal is need.signal:
+                        self.passes(need, spike.payload)
 
     def on_finish(self, event: events.Finish) -> None:
         """L18."""
@@ -719,7 +749,7 @@ class Model:
                         self.lose(other, self.of_group(other, group))
         else:
             self.give_up(run, run.parents)
-        self.out.append(Ended(run.id, rule.name, outcome, fired))
+        self.out.append(Ended(run.number, rule.name, outcome, fired))
         heard = [one.signal.name for spike in run.held.values() for one in spike.line()]
         self.end(run)
         if event.kind == "retired":

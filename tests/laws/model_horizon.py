@@ -88,7 +88,7 @@ class Derivation:
         else:
             strength = max((min(mine, *best[:k], *best[k + 1 :], SURE) for k, mine in enumerate(here)), default=NO)
         for slot, guard in clause.guards:
-            opens = model.test(guard.predicate, model.value(slot), clause.rule)
+            opens = model.opens_quietly(slot, guard)
             if not opens and self.comes(slot.signals[0], group, slots) != SURE:
                 return NO
         return strength

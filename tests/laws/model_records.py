@@ -55,6 +55,7 @@ class Act:
     took: list[Group] = field(default_factory=list)
     wrote: bool = False
     told: str = ""
+    number: int = 0  # of its run
     due: float = inf
     watch: dict[int, dict[int, Spike]] = field(default_factory=dict)  # until clause → need → spike
 

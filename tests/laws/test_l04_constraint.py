@@ -112,6 +112,33 @@ def test_a_predicate_that_raises_is_an_error_of_its_rule_and_no_match(play: Any)
         assert moments(sim, out) == [(0.0, "both")]
 
 
+def test_a_false_predicate_of_until_spares_those_after_it(play: Any) -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+    writer(m, "long", a, output(m), after=1.0, until=b.where(lambda n: n is not None).where(lambda n: n > 0))
+    with play(m) as sim:
+        sim.emit(a)
+        sim.emit(b, None)
+        sim.advance(2.0)
+        assert sim.failures == []
+        assert sim.fired == ["m:long"]
+
+
+def test_predicates_that_raise_are_reported_in_the_order_of_their_rules(play: Any) -> None:
+    m = rs.Module("m")
+    a, b = m.signal("a"), m.signal("b")
+
+    def shared(n: float) -> bool:
+        return 1 / n > 0
+
+    writer(m, "pair", a.where(shared) & b, output(m, "one"))
+    writer(m, "other", a.where(lambda n: 1 / n > 0) & b, output(m, "two"))
+    writer(m, "single", a.where(shared).where(bool), output(m, "three"))
+    with play(m) as sim:
+        sim.emit(a, 0)
+        assert [rule for rule, _ in sim.failures] == ["m:pair", "m:other"]
+
+
 def gated() -> tuple[rs.Module, rs.Signal[Any], rs.Slot[Any], rs.Slot[Any]]:
     m = rs.Module("m")
     a, mood, out = m.signal("a"), m.slot("mood", "calm"), output(m)

@@ -1,7 +1,8 @@
-"""Random worlds, played on the engine and on the interpreter of the laws (``laws/model.py``).
+"""Random worlds, played on the engine and on the interpreter of the laws (``laws/model.py``), and with a tracer.
 
 ``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, fresh ones or those from FIRST. A third of the
-seeds are any worlds, a third worlds of pairs (``pair_worlds.py``), and a third crowds (``crowd_worlds.py``). It prints
+seeds are any worlds, a third worlds of pairs (``pair_worlds.py``), and a third crowds (``crowd_worlds.py``); many of them
+are varied (``variations.py``). It prints
 the smallest world for each of the first MOST differences.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 import random
 import sys
 import time
+from itertools import zip_longest
 from typing import Any
 
 from laws.model import Model
@@ -17,9 +19,13 @@ from properties.crowd_worlds import crowd_world_of
 from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
+from properties.variations import varied
 from properties.worlds import Counted, Endless, Play, World
 from ravestate.declare.core import RuleFailure
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
+from ravestate.engine.engine import Engine
+from ravestate.engine.trace import Record, Tracer
+from ravestate.runtime.journal import Entry, replay
 
 BIRTHS = 2_000
 MOMENTS = 300
@@ -33,6 +39,11 @@ ENOUGH = "too long to go on"
 
 
 WORLDS = (world_of, pair_world_of, crowd_world_of)
+
+
+def any_world_of(seed: int) -> World:
+    """Return the world of a seed."""
+    return varied(WORLDS[seed % 3](seed), seed)
 
 
 class Enough(Exception):
@@ -59,39 +70,42 @@ class Interpreter(Model):
 def story(world: World, machine: Any) -> list[str]:
     """Play a world; return what a machine did, a line for each effect."""
     lines: list[str] = []
-    numbers: dict[int, int] = {}
 
     def told(play: Play, effect: Effect) -> None:
         line = f"{play.now:10.6f} "
         match effect:
             case Run():
                 run = play.engine.running[effect.run]
-                numbers[effect.run] = len(numbers)
                 needs = run.clause.needs
                 held = run.held if isinstance(play.engine, Model) else run.spikes
                 spikes = [f"{n.signal.name}={shown(held[n.index].payload)}@{held[n.index].born:g}" for n in needs]
                 values = sorted((name, dict(v) if hasattr(v, "keys") else v) for name, v in effect.values.items())
-                line += f"run {effect.rule.name}[{run.clause.number}] on {' '.join(spikes)}, reading {values}"
+                line += f"run {effect.run} of {effect.rule.name}[{run.clause.number}] on {' '.join(spikes)}, reading {values}"
             case Ended():
-                line += f"end of run {numbers[effect.run]} of {effect.rule}: {effect.outcome} {effect.fired}"
+                line += f"end of run {effect.run} of {effect.rule}: {effect.outcome} {effect.fired}"
             case Cancel():
-                line += f"cancel run {numbers[effect.run]}: {effect.reason}"
+                line += f"cancel run {effect.run}: {effect.reason}"
             case Failed():
                 line += f"failure of {effect.rule}: {type(effect.exception).__name__}"
             case _:
                 line += repr(effect)
         lines.append(line)
 
-    play = Play(world, started=told, machine=machine, budget=4)
+    lines += played(Play(world, started=told, machine=machine, budget=4))
+    return lines
+
+
+def played(play: Play) -> list[str]:
+    """Play on; return why the play ended early, if it did."""
     try:
         for _ in range(MOMENTS):
             if not play.step():
                 break
     except Endless as endless:
-        lines.append(f"endless: {endless}")
+        return [f"endless: {endless}"]
     except Enough:
-        lines.append(ENOUGH)
-    return lines
+        return [ENOUGH]
+    return []
 
 
 def shown(payload: Any) -> str:
@@ -115,10 +129,49 @@ def difference(world: World) -> str:
     return ""
 
 
+def observation(world: World) -> str:
+    """Return what a tracer changes, in words; an empty text if it changes nothing (L24, L25).
+
+    It must not change the effects, even if it comes and goes. A journal written with a tracer must replay without, and
+    the other way round.
+    """
+
+    plain = Play(world, budget=4)
+    traced = Play(world, budget=4, traced=True)
+    now_and_then = Play(world, budget=4, before=_switch)
+    told = [[*play.heard, *ends] for play in (plain, traced, now_and_then) for ends in [played(play)]]
+    for name, lines in zip(("traced", "traced now and then"), told[1:], strict=True):
+        for one, other in zip_longest(told[0], lines, fillvalue="nothing more"):
+            if one != other:
+                return f"  untraced: {one}\n  {name}: {other}"
+    if not _repeats(plain, tracer=_ignore):
+        return "  a journal replays otherwise with a tracer"
+    if not _repeats(traced, tracer=None):
+        return "  a journal written with a tracer replays otherwise without"
+    return ""
+
+
+def _switch(play: Play) -> None:
+    """Add a tracer, or remove it."""
+    play.engine.tracer = None if play.engine.tracer is not None or not len(play.journal) % 3 else _ignore
+
+
+def _ignore(record: Record) -> None:
+    """Ignore a record."""
+
+
+def _repeats(play: Play, *, tracer: Tracer | None) -> bool:
+    """Return whether the journal of a play gives the same effects, with this tracer."""
+    assert play.policy is not None
+    engine = Engine(play.policy, patience=play.world.patience, report_ends=True)
+    engine.tracer = tracer
+    return repr(replay(engine, [Entry(time, event) for time, event in play.journal])) == repr(play.taken)
+
+
 def verdict(world: World) -> str:
-    """Return whether the engine keeps to the laws: an empty text, ``differs``, or the name of an exception."""
+    """Return whether the engine keeps to the laws: an empty text, the kind of a fault, or the name of an exception."""
     try:
-        return "differs" if difference(world) else ""
+        return "differs" if difference(world) else "a tracer changes it" if observation(world) else ""
     except Exception as exception:
         return repr(exception)
 
@@ -130,7 +183,7 @@ def main(count: int, first: int, most: int = 1) -> int:
     for seed in range(first, first + count):
         if seed > first and (seed - first) % 500 == 0:
             print(f"{seed - first} of {count} seeds: {len(faults)} differences", file=sys.stderr, flush=True)
-        world = WORLDS[seed % 3](seed)
+        world = any_world_of(seed)
         fault = verdict(world)
         if fault:
             print(f"seed {seed}: {fault}", flush=True)
@@ -138,7 +191,7 @@ def main(count: int, first: int, most: int = 1) -> int:
             if len(faults) <= most:
                 least = shrink(world, verdict)
                 try:
-                    words = difference(least)
+                    words = difference(least) or observation(least)
                 except Exception as exception:
                     words = f"breaks: {exception!r}"
                 print(f"seed {seed}: {least!r}\n{words}\n", flush=True)

@@ -178,7 +178,7 @@ def consistent(engine: Any) -> None:
                     assert spike in engine.state.live.get(spike.signal.index, ()), f"{activation} holds dead {spike}"
         assert activation.missing != clause.all_bits, f"{activation} holds nothing"
         assert (state == State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
-        assert (state >= State.RUNNING) == (engine.state.running.get(activation.id) is activation)
+        assert (state >= State.RUNNING) == (engine.state.running.get(activation.number) is activation)
         for group in activation.firm_groups():
             assert group.has(activation), f"{group} does not know of {activation}"
             for member in group.members:
@@ -247,7 +247,7 @@ def bounded(play: Play) -> None:
 def _holds(engine: Any, slot: Any, guard: Any) -> bool:
     try:
         return bool(guard.predicate(engine.read(slot.index)))
-    except ValueError:
+    except (ValueError, KeyError):
         return False
 
 
@@ -281,8 +281,7 @@ def empty(play: Play) -> None:
         "out",
     ):
         assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
-    assert not engine.state.free.new
-    assert not engine.state.free.line
+    assert engine.state.free.is_empty
     assert not engine.parts.agenda.queue.line
     assert not engine.parts.agenda.places
     assert engine.next_deadline() is None

@@ -43,6 +43,8 @@ def smaller(world: World) -> Iterator[World]:
         ):
             if slot != plain and slot != SlotOf():
                 yield replace(world, slots=(*world.slots[:n], plain, *world.slots[n + 1 :]))
+    if world.modules > 1:
+        yield replace(world, modules=1)
     if world.patience != 1.0:
         yield replace(world, patience=1.0)
     if world.together:

@@ -8,38 +8,60 @@ from __future__ import annotations
 import pytest
 
 from properties.crowd_worlds import crowd_world_of
-from properties.fuzz import difference, verdict
+from properties.fuzz import any_world_of, difference, observation, verdict
 from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
-from properties.worlds import World
+from properties.variations import varied
+from properties.worlds import RuleOf, SignalOf, Want, World
 
 SEEDS = 2_000
 PAIR_SEEDS = 400
 CROWD_SEEDS = 400
+OBSERVED_SEEDS = 1_200
 PARTS = 20
 
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_the_engine_keeps_to_the_laws(part: int) -> None:
     for seed in range(part, SEEDS, PARTS):
-        check(world_of(seed), seed)
+        check(varied(world_of(seed), seed), seed)
 
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_the_engine_keeps_to_the_laws_where_pairs_compete(part: int) -> None:
     for seed in range(part, PAIR_SEEDS, PARTS):
-        check(pair_world_of(seed), seed)
+        check(varied(pair_world_of(seed), seed), seed)
 
 
 @pytest.mark.parametrize("part", range(PARTS))
 def test_the_engine_keeps_to_the_laws_in_a_crowd(part: int) -> None:
     for seed in range(part, CROWD_SEEDS, PARTS):
-        check(crowd_world_of(seed), seed)
+        check(varied(crowd_world_of(seed), seed), seed)
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+def test_a_tracer_changes_nothing_and_journals_replay_with_and_without(part: int) -> None:
+    for seed in range(part, OBSERVED_SEEDS, PARTS):
+        world = any_world_of(seed)
+        if observation(world):
+            least = shrink(world, lambda smaller: str(bool(observation(smaller))))
+            pytest.fail(f"seed {seed}: {least!r}\n{observation(least)}")
 
 
 def test_a_rule_that_recovers_in_the_moment_of_another_event_meets_it() -> None:
     check(crowd_world_of(901_469), 901_469)
+
+
+@pytest.mark.parametrize("order", ["1010", "1001", "0110"])
+def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
+    world = World(
+        signals=(SignalOf(), SignalOf()),
+        rules=(RuleOf(when=((Want("s0"), Want("s1")),)),),
+        inputs=tuple((0.0, ("emit", f"s{number}", place)) for place, number in enumerate(order)),
+        together=True,
+    )
+    assert not observation(world)
 
 
 def check(world: World, seed: int) -> None:

@@ -36,6 +36,9 @@ __all__ = [
     "rule_of",
 ]
 
+MODULES = ("m", "m1", "m2")
+"""The names of the modules of a world."""
+
 BUDGET = 8
 """Runs after which a rule retires, so that every loop ends."""
 
@@ -63,7 +66,14 @@ def fussy(value: Any) -> bool:
     return True
 
 
-PREDICATES: dict[str, Callable[[Any], bool]] = {"odd": odd, "never": never, "fussy": fussy}
+def choosy(value: Any) -> bool:
+    """Return whether a value is true; raise on 1."""
+    if value == 1:
+        raise KeyError("one")
+    return bool(value)
+
+
+PREDICATES: dict[str, Callable[[Any], bool]] = {"odd": odd, "never": never, "fussy": fussy, "choosy": choosy}
 
 Op = tuple[Any, ...]
 """(``emit``, signal, payload), (``write``, slot, value), (``store``, slot, key, item), (``discard``, slot, key),
@@ -91,6 +101,7 @@ class Want(Brief):
     max_age: float | None = 5.0
     detached: bool = False
     where: str = ""
+    """The names of predicates, with blanks between them."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -159,7 +170,10 @@ class SlotOf(Brief):
 
 @dataclass(frozen=True, repr=False)
 class World(Brief):
-    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after a few seconds."""
+    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after a few seconds.
+
+    They are dealt out to the modules ``m, m1, m2, ...`` in turn.
+    """
 
     signals: tuple[SignalOf, ...] = ()
     slots: tuple[SlotOf, ...] = ()
@@ -168,21 +182,32 @@ class World(Brief):
     patience: float = 1.0
     together: bool = False
     """Whether the engine receives all events of one moment before its effects are taken."""
+    modules: int = 1
+
+    def home(self, name: str) -> int:
+        """Return the number of the module that declares a signal, a slot or a rule."""
+        number = name[1:].partition(":")[0]
+        return int(number) % self.modules if number.isdecimal() else 0
+
+    def full(self, name: str) -> str:
+        """Return the qualified name of a signal, a slot or a rule."""
+        return name if name.startswith("core:") else f"{MODULES[self.home(name)]}:{name}"
 
 
 class Names:
     """The signals and slots of a world's module by name."""
 
     def __init__(self, world: World) -> None:
-        self.module = module = rs.Module("m")
+        self.world = world
+        self.modules = [rs.Module(name) for name in MODULES[: world.modules]]
         self.signals: dict[str, Any] = {}
         self.slots: dict[str, Any] = {}
         for number, signal in enumerate(world.signals):
-            self.signals[f"s{number}"] = module.signal(
-                f"s{number}", keep=signal.keep, limit=signal.limit, input=signal.input
-            )
+            name = f"s{number}"
+            self.signals[name] = self.home(name).signal(name, keep=signal.keep, limit=signal.limit, input=signal.input)
         for number, slot in enumerate(world.slots):
             name = f"v{number}"
+            module = self.home(name)
             options: dict[str, Any] = {"keep": slot.keep, "limit": slot.limit, "input": slot.input}
             if slot.kind == "value":
                 made: Any = module.slot(name, 0, always=slot.always, **options)
@@ -192,10 +217,14 @@ class Names:
                 made = module.collection(name, **options)
             self.slots[name] = made
             for own in made.signals:
-                self.signals[own.name.removeprefix("m:")] = own
-        self.signals["never"] = module.signal("never", input=True)
+                self.signals[own.name.removeprefix(f"{module.name}:")] = own
+        self.signals["never"] = self.modules[0].signal("never", input=True)
         for own in (rs.startup, rs.shutdown, rs.error, *rs.activity.signals, *rs.pressure.signals):
             self.signals[own.name] = own
+
+    def home(self, name: str) -> rs.Module:
+        """Return the module that declares a signal, a slot or a rule."""
+        return self.modules[self.world.home(name)]
 
     def condition(self, clauses: tuple[Clause, ...]) -> Any:
         found: Any = None
@@ -207,7 +236,8 @@ class Names:
                 else:
                     one = self.signals[part.signal].min_age(part.min_age).max_age(part.max_age)
                     one = one.detached() if part.detached else one
-                    one = one.where(PREDICATES[part.where]) if part.where else one
+                    for predicate in part.where.split():
+                        one = one.where(PREDICATES[predicate])
                 whole = one if whole is None else whole & one
             found = whole if found is None else found | whole
         return found
@@ -222,7 +252,7 @@ def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
     def plain(ctx: Any) -> None:
         raise NotImplementedError
 
-    declare = names.module.rule(
+    declare = names.home(name).rule(
         when=names.condition(spec.when),
         reads=[names.slots[slot] for slot in spec.reads],
         writes=[names.slots[slot] for slot in spec.writes],
@@ -244,7 +274,7 @@ def compiled(world: World) -> tuple[Names, Policy]:
     names = Names(world)
     for number, rule in enumerate(world.rules):
         rule_of(names, rule, f"r{number}")
-    return names, rs.compile(names.module)
+    return names, rs.compile(*names.modules)
 
 
 class Endless(AssertionError):
@@ -319,7 +349,7 @@ class Play:
         self.engine: Any = self.machine(self.policy, patience=self.world.patience, report_ends=True)
         if self.traced:
             self.engine.tracer = lambda record: self.trace.append(repr(record))
-        self.specs = {f"m:r{number}": rule for number, rule in enumerate(self.world.rules)}
+        self.specs = {self.world.full(f"r{number}"): rule for number, rule in enumerate(self.world.rules)}
         self.calls: dict[str, int] = {}
         self.acts: dict[int, tuple[str, Act]] = {}  # of the runs that are alive
         self.todo: list[tuple[float, int, int, Op]] = []  # time, number, run, what
@@ -403,15 +433,17 @@ class Play:
         by = run or None
         match op:
             case ("emit", name, payload):
-                self.receive(events.Emit(self.signal(name), payload, by))
+                self.receive(events.Emit(self.world.full(name), payload, by))
             case ("write", name, value):
-                self.receive(events.Write(f"m:{name}", dict(value) if isinstance(value, tuple) else value, by))
+                self.receive(
+                    events.Write(self.world.full(name), dict(value) if isinstance(value, tuple) else value, by)
+                )
             case ("store", name, key, item):
-                self.receive(events.Store(f"m:{name}", key, item, by))
+                self.receive(events.Store(self.world.full(name), key, item, by))
             case ("discard", name, key):
-                self.receive(events.Discard(f"m:{name}", key, by))
+                self.receive(events.Discard(self.world.full(name), key, by))
             case ("wipe", name):
-                self.receive(events.Wipe(self.signal(name), by))
+                self.receive(events.Wipe(self.world.full(name), by))
             case ("start",):
                 self.receive(events.Start())
             case ("stop",):
@@ -424,15 +456,12 @@ class Play:
                     more = self.engine.policy.with_rule(rule_of(self.names, spec, name))
                 except rs.DeclarationErrors:
                     return  # it does not fit what is there
-                self.specs[f"m:{name}"] = spec
+                self.specs[self.world.full(name)] = spec
                 self.receive(events.AddRule(more))
             case ("finish", kind, reason):
                 self.finish(run, kind, reason)
             case _:
                 raise ValueError(op)
-
-    def signal(self, name: str) -> str:
-        return name if name.startswith("core:") else f"m:{name}"
 
     def finish(self, run: int, kind: str, reason: str = "") -> None:
         del self.acts[run]

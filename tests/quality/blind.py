@@ -9,9 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-import yaml
-
-from quality import language, modules, skills
+from quality import language, measure, modules, skills
 from quality.measure import NONE, Result, Triples, measure_labels, measure_triples
 from ravestate.language.matcher import bundled_matcher
 
@@ -35,7 +33,7 @@ def labelled(name: str, style: str = "") -> list[tuple[str, str]]:
 
 def triple_cases(name: str) -> list[tuple[str, Triples]]:
     """Return the sentences of a set with their triples, in lower case."""
-    cases = yaml.safe_load((HERE / f"{name}.yaml").read_text(encoding="utf-8"))
+    cases = measure.read_yaml(HERE / f"{name}.yaml")
     return [(case["text"], _low(case["triples"])) for case in cases]
 
 

@@ -16,9 +16,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-import yaml
-
-from quality.measure import HERE, Result, table
+from quality.measure import HERE, Result, read_yaml, table
 from ravestate.modules import genqa, nlp, rawio, verbaliser
 from ravestate.modules.skill.genqa import places
 from ravestate.modules.skill.genqa.document import Document
@@ -32,7 +30,7 @@ FILES = (ROWS, HERE / "thread_station_rows.yaml", HERE / "thread_town_rows.yaml"
 
 def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
     """Run the talks of a file, each in a context of its own; with `every`, only each such talk."""
-    content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    content = read_yaml(file)
     outcomes = ("right", "answered right", "rightly silent", "wrongly silent", "wrong")
     counts: dict[str, int] = dict.fromkeys(outcomes, 0)
     misses: list[str] = []

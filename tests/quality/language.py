@@ -17,7 +17,9 @@ from ravestate.modules import emotion
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 
-LABELLED = ("questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows")
+LABELLED = (
+    "questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
+)  # fmt: skip
 SETS = ("triples_rows", "typed_rows", *LABELLED)
 
 
@@ -65,6 +67,7 @@ SEE: dict[str, Callable[[str], str]] = {
     "emotion_rows": feelings,
     "feelings_rows": feelings,
     "acts_rows": acts_label,
+    "flags_rows": modules.flags,
 }
 
 
@@ -89,8 +92,7 @@ def _in_lower_case(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[st
 
 def typed() -> list[tuple[str, str]]:
     """The messages as people type them, with their triples."""
-    text = (measure.HERE / "typed_rows.yaml").read_text(encoding="utf-8")
-    return list(measure.yaml.safe_load(text).items())
+    return list(measure.read_yaml(measure.HERE / "typed_rows.yaml").items())
 
 
 @cache
@@ -103,7 +105,7 @@ def measured(name: str) -> Result:
         modules.prepare(text for text, _ in rows)
         result = measure_triples(lambda text: cased(modules.triples(text)), cases)
         return Result(name, result.cases, result.shares, result.misses)
-    if name in ("questions_rows", "intents_rows"):  # the others need no tree
+    if name in ("questions_rows", "intents_rows", "flags_rows"):  # the others need no tree
         modules.prepare(text for text, _ in labelled(name))
     return measure_labels(name, SEE[name], labelled(name))
 

@@ -12,8 +12,9 @@ import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-import yaml
+from ravestate.yaml_text import load_yaml
 
 HERE = Path(__file__).parent
 NONE = "-"  # the label of a sentence that the set's module must leave alone
@@ -68,6 +69,11 @@ class Result:
 # ------------------------------------------------------------------------------------------------ the sets
 
 
+def read_yaml(file: Path) -> Any:
+    """The value of a YAML file, read by the fast loader."""
+    return load_yaml(file.read_text(encoding="utf-8"), str(file))
+
+
 def labelled(name: str) -> list[tuple[str, str]]:
     """The sentences of a set with one label each."""
     lines = (HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
@@ -77,7 +83,7 @@ def labelled(name: str) -> list[tuple[str, str]]:
 
 def facts() -> list[Fact]:
     """The questions to genqa."""
-    cases = yaml.safe_load((HERE / "genqa.yaml").read_text(encoding="utf-8"))
+    cases = read_yaml(HERE / "genqa.yaml")
     return [
         Fact(case["question"], tuple(case.get("answers", ())), case.get("number"), case.get("tolerance", 0.0))
         for case in cases

@@ -26,6 +26,8 @@ from ravestate.modules.skill.genqa.answering import Answerer
 from ravestate.modules.skill.genqa.following import answer_in
 from ravestate.modules.skill.genqa.question import not_asked, parsed
 
+FLAGS = ("negated", "past", "hearsay", "conditional", "plan", "question", "request")
+
 
 def _seen(text: str) -> Analysis:
     return _analysed(text, tuple(bundled_matcher(name).loaded for name in (*MATCHERS, "answers")))
@@ -73,6 +75,13 @@ def triples(text: str) -> list[tuple[str, str, str]]:
 
 def _text(part: str | QuestionWord) -> str:
     return part.name if isinstance(part, QuestionWord) else part
+
+
+def flags(text: str) -> str:
+    """Return the flags of the last statement, by nlp; ``-`` if it holds."""
+    tree, entities = _read(text)
+    *_, last = statements_of(tree, entities, Clause.all_in(tree))
+    return "-" if last.holds else " ".join(flag for flag in FLAGS if getattr(last, flag))
 
 
 def question(text: str) -> QuestionWord | None:

@@ -2,7 +2,7 @@
 
     python tests/quality/suits.py
 
-learns the weights of `wildtalk.listening.suitability` from suits_rows.tsv and prints them; it takes half a minute.
+learns the weights of `wildtalk.listening.suitability` from suits_rows.tsv and prints them; it takes a minute.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ravestate.language.encoder import Encoder
-from ravestate.language.normal import plain
+from ravestate.language.nearest import Nearest
 from ravestate.language.reranker import Reranker
+from ravestate.language.sentences import sentences
+from ravestate.modules.skill.wildtalk.listening.lookup import BESIDE
 from ravestate.modules.skill.wildtalk.listening.suitability import Evidence
 
 if TYPE_CHECKING:
@@ -36,18 +37,15 @@ def evidence(name: str) -> tuple[list[Evidence], NDArray[Any]]:
     rows = [line.split("\t") for line in lines if line and not line.startswith("#")]
     groups = [(utterance, sentences.split(" | ")) for utterance, _, sentences in rows]
     scores = iter(Reranker().score_pairs([(text, said) for said, texts in groups for text in texts]).tolist())
-    encoder = Encoder()
-    vectors = iter(encoder.encode([plain(text) for said, texts in groups for text in (said, *texts)]))
+    examples = [text for _, texts in groups for text in texts]
+    index, places = Nearest(examples), iter(range(len(examples)))
+    index.load()
     found: list[Evidence] = []
-    for _, texts in groups:
-        whole = next(vectors)
-        found.append(
-            Evidence(
-                [next(scores) for _ in texts],
-                [float(next(vectors) @ whole) for _ in texts],
-                [len(text.split()) for text in texts],
-            )
-        )
+    for said, examples in groups:
+        at = [next(places) for _ in examples]
+        texts = [said, *(one for one in sentences(said) if len(one.split()) >= BESIDE)]
+        near = max(index.compared(texts, at))
+        found.append(Evidence(near, index.similarities(said, at), [next(scores) for _ in examples]))
     return found, np.array([int(label == "suits") for _, label, _ in rows])
 
 
@@ -66,5 +64,5 @@ def weights() -> NDArray[Any]:
 
 
 if __name__ == "__main__":
-    print("CONSTANT, MEAN, BEST, MEANING, LENGTH =", *np.round(weights(), 3))
+    print("CONSTANT, NEAR, SECOND, MEANING, BEST, MEAN =", *np.round(weights(), 3))
     sys.exit(0)

@@ -27,6 +27,7 @@ LABELS = {
     "intents_rows": {"hi", "bye", "play", "-"},
     "quiet_rows": {"quiet", "leave", "-"},
     "feelings_rows": {"shy", "surprised", "happy", "affectionate", "sad", "-"},
+    "flags_rows": {"negated", "past", "hearsay", "conditional", "plan", "question", "request", "-"},
     "emotion_rows": {"shy", "surprised", "happy", "affectionate", "sad", "-"},
 }
 

@@ -15,12 +15,12 @@ def test_the_set_is_large_enough_and_says_nothing_twice() -> None:
 
 def test_no_question_to_the_world_is_among_those_of_the_calibration() -> None:
     calibration = Path(__file__).parents[1] / "modules" / "skill" / "genqa" / "questions.yaml"
-    known = set(map(modules.plain, measure.yaml.safe_load(calibration.read_text(encoding="utf-8"))))
+    known = set(map(modules.plain, measure.read_yaml(calibration)))
     assert known.isdisjoint(modules.plain(fact.question) for fact in measure.facts())
 
 
 def test_a_fact_is_either_answerable_or_a_case_for_silence() -> None:
-    cases = measure.yaml.safe_load((measure.HERE / "genqa.yaml").read_text(encoding="utf-8"))
+    cases = measure.read_yaml(measure.HERE / "genqa.yaml")
     for case in cases:
         assert case.get("silent", False) == (not case.keys() & {"answers", "number"}), case
 

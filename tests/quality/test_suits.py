@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from quality.suits import evidence
-from ravestate.modules.skill.wildtalk.listening.hearing import ALIKE
+from ravestate.modules.skill.wildtalk.listening.lookup import ALIKE
 
 
 def test_most_replies_that_it_chooses_suit() -> None:

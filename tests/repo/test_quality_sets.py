@@ -55,7 +55,8 @@ def known() -> dict[str, Path]:
     found = {plain(sentence): file for file in seen for sentence in _sentences(file)}
     for file in ROOT.glob("src/**/bank/*.tsv"):
         for line in file.read_text(encoding="utf-8").splitlines():
-            found |= {plain(said): file for said in line.split("\t")[1].split("|")}
+            if line.strip() and not line.startswith("#"):
+                found |= {plain(said): file for said in line.split("\t")[1].split("|")}
     return found
 
 

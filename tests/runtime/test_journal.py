@@ -194,3 +194,35 @@ def test_an_interrupted_run_is_interrupted_again() -> None:
     asyncio.run(main())
     effects = [effect for batch in replay(Engine(policy), journal.entries) for effect in batch]
     assert [effect.reason for effect in effects if isinstance(effect, Cancel)] == ["interrupted"]
+
+
+def test_a_journal_written_without_a_tracer_replays_with_one_and_the_other_way_round() -> None:
+    n = rs.Module("n")
+    one, two = n.signal("one"), n.signal("two")
+
+    @n.rule(when=one & two)
+    async def pair(ctx: rs.RuleContext) -> None: ...
+
+    policy = rs.compile(n)
+
+    async def journal_of(*, trace: bool) -> list[Entry]:
+        journal = Journal()
+        async with rs.Context(policy, journal=journal, trace=trace) as context:
+            for signal in (two, one, two, one):
+                context.emit(signal)
+            await context.quiet()
+        return journal.entries
+
+    told: list[list[str]] = []
+    for written_traced in (False, True):
+        entries = asyncio.run(journal_of(trace=written_traced))
+        for replayed_traced in (False, True):
+            engine = Engine(policy)
+            engine.tracer = void if replayed_traced else None
+            told.append([repr(batch) for batch in replay(engine, entries)])
+    assert "run=2" in "".join(told[0])
+    assert all(one == told[0] for one in told)
+
+
+def void(record: Record) -> None:
+    """Ignore a record."""

@@ -256,7 +256,7 @@ export interface Raiser {
   outcome: string;
   /** The time of the outcome (seconds); None without an outcome. */
   time: number | null;
-  /** The same as a sentence. */
+  /** The outcome as a sentence. */
   words: string;
 }
 
@@ -281,7 +281,7 @@ export interface RuleView {
   background: boolean;
 }
 
-/** The run `run`, or code outside the rules if that is 0, gave a slot a value. */
+/** A slot got a value; `run` is the number of the run that wrote it, or 0 if code outside the rules did. */
 export interface Set {
   kind: "set";
   time: number;
@@ -401,7 +401,7 @@ export interface ActivationState {
   lacks: string[];
   /** The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie). */
   waits_for: [string, number][];
-  /** The latest time at which it runs or gives a spike up (seconds); None if there is no such time. */
+  /** The latest time at which the activation runs or gives a spike up (seconds); None if there is none. */
   until: number | null;
 }
 
@@ -443,7 +443,7 @@ export interface Emit {
   payload?: unknown;
 }
 
-/** How far a rule came for an input, from the furthest to the least far. */
+/** The stage that a rule reached for an input; the furthest stage comes first. */
 export type Verdict =
   | "fired"
   | "running"

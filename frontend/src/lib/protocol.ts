@@ -62,7 +62,7 @@ export interface Ping {
 /**
  * The visitor's microphone goes on or off in this window.
  *
- * While it is on, binary frames carry its sound, and this window plays the agent's sound. At most one window of a conversation has it: the last one that turned it on.
+ * While the microphone is on, binary frames carry its sound, and this window plays the agent's sound. At most one window of a conversation has the microphone: the last window that turned it on.
  */
 export interface Microphone {
   type: "microphone";
@@ -86,7 +86,7 @@ export interface Hush {
 /**
  * The visitor's camera goes on or off in this window.
  *
- * At most one window of a conversation has it: the last one that turned it on.
+ * At most one window of a conversation has the camera: the last window that turned it on.
  */
 export interface Camera {
   type: "camera";

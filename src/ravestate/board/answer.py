@@ -14,7 +14,7 @@ class Raiser:
 
     Attributes:
         outcome: The outcome of the rule's run, or ``running``, or ``not run``.
-        words: The same as a sentence.
+        words: The outcome as a sentence.
         time: The time of the outcome (seconds); None without an outcome.
     """
 
@@ -48,7 +48,7 @@ class WhyNot:
 
     Attributes:
         rule, spike, signal, time: The rule and the spike in question; the time is the spike's birth (seconds).
-        verdict: The last step that the rule reached. If it made several attempts, the best one counts.
+        verdict: The last step that the rule reached in its best attempt.
         words: The reason for the verdict, in a sentence or two.
         at: The time at which the verdict was decided (seconds); None while it is undecided.
         clause: The number of the clause that took a spike; None if no clause did.

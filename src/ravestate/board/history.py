@@ -23,9 +23,9 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the missing signals; after the attempt's end, the signals that were missing then. `complete` is the time
-    when the attempt had all its spikes (seconds), or None. `started` is None until the run starts. `settled` is None
-    until the run ends.
+    `lacks` has the missing signals; once the attempt has ended, it has the signals that were missing at the end.
+    `complete` is the time at which the attempt had all its spikes (seconds), or None. `started` is None until the run
+    starts. `settled` is None until the run ends.
     """
 
     id: int
@@ -144,8 +144,8 @@ class History:
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run that answered the cause of the group; None if no run of the given rules did.
 
-        `hears` maps the name of each rule to consider to the signals that its clauses consume, clause by clause. A
-        detached constraint consumes no signal (L19).
+        The keys of `hears` are the names of the given rules. Each value has one collection for each clause of the rule:
+        the signals that the clause consumes. A detached constraint consumes no signal (L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
@@ -262,7 +262,10 @@ class Rivals:
         return join(parts)
 
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
-        """Return the lead of the rule `name` in utility as text in brackets; empty if that rule is not ahead."""
+        """Return a text in brackets with the lead of the rule `name` over `rule` in utility (nats).
+
+        The text is empty if the rule `name` is not ahead.
+        """
         other = self._description.rule(name)
         if other is None or name == rule.name:
             return ""
@@ -273,18 +276,18 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the name of the rule that answered, and the path to it.
+        """Return the name of the rule that answered a lost spike, and that rule's path as text.
 
-        The path begins with the rule that raised the answering rule's input, if a rule did.
+        The path is ``raiser → name`` if another rule raised the input of the answering rule, and else only the name.
         """
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Return a phrase that says when the patience of `rule` ran out, and which rule had waited for it.
+        """Return a phrase about the time at which the patience of `rule` ran out, and about the rule that had waited.
 
-        If rules waited several times, the phrase is about the last wait that ended at or before `end` (seconds).
+        After several waits, the phrase is about the last wait that ended at or before `end` (seconds).
         """
         pressed = self._history.pressed.get(rule.name, [])
         # `pressed` is sorted by `until`, because a rule's patience never changes.

@@ -9,7 +9,7 @@ from itertools import chain
 from types import MappingProxyType
 from typing import Any, cast
 
-DEEPEST = 30  # the maximum depth of nested containers; the content of deeper ones is left out
+DEEPEST = 30  # the maximum depth of nested containers; the content of deeper containers is left out
 LONGEST = 100_000  # the maximum number of characters of a text, or of bytes, within a value; the rest is left out
 
 TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)}

@@ -98,7 +98,7 @@ class LiveSource:
         )
 
     def explain(self, rule: str) -> Explained:
-        """Return the current state of a rule: the spikes that it holds and lacks, and the rules that it waits for."""
+        """Return the current state of a rule: its spikes, its missing signals, and the rules that it waits for."""
         found = self._context.explain(rule)
         clauses = [ExplainedClause(clause.effective, clause.gates) for clause in found.clauses]
         return Explained(rule, found.now, found.retired, clauses, list(found.activations))

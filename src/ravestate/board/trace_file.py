@@ -30,8 +30,8 @@ from ravestate.policy.policy import Policy
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
-"""The maximum number of commas and opening brackets in a file: a file with more of them would fill the memory. 64 MB of
-records have some four million."""
+"""The maximum number of commas and opening brackets in a file: a file with more of them would fill the memory. Records
+of 64 MB have about four million commas and brackets."""
 
 LONGEST = 120  # the maximum number of seconds that reading a file may take
 

@@ -34,7 +34,7 @@ def why_not(
     opens: Opens | None = None,
     whole: bool = True,
 ) -> WhyNot:
-    """Return an explanation of why a rule did not fire for the cause of a spike, or how it fired.
+    """Return the explanation of why a rule did not fire for the cause of a spike, or a report of its run.
 
     For a live policy, `opens` evaluates its slot predicates. The answer may be incomplete unless the trace is `whole`.
 
@@ -49,10 +49,10 @@ def why_not(
 
 
 Reached = tuple[Verdict, str, float | None]
-"""How far a rule came, the reason as text, and the time at which that was decided (seconds; None if it is not yet)."""
+"""The last step that a rule reached, the reason as text, and the time of the decision (seconds; None without one)."""
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""A `Reached`, and the attempt that came this far; None if there was no attempt."""
+"""A `Reached`, and the attempt that reached the step; None if there was no attempt."""
 
 ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
@@ -80,7 +80,7 @@ class _Inquiry:
     # ------------------------------------------------------------------------------------ the verdict
 
     def judge(self, rule: RuleView) -> Judgement:
-        """Return how far a rule came at best in this group."""
+        """Return the last step that a rule reached in this group, from its best attempt."""
         if rule.name not in self._judged:
             tried = [(*self._judge(rule, attempt), attempt) for attempt in self.history.of(rule.name)]
             self._judged[rule.name] = (
@@ -168,7 +168,7 @@ class _Inquiry:
         return Verdict.FIRED, join(parts), at
 
     def _pending(self, rule: RuleView, clause: ClauseView, attempt: Attempt, ripe: float | None) -> Reached:
-        """Return how far an attempt that still holds spikes has come."""
+        """Return the last step of an attempt that still holds spikes."""
         if attempt.lacks or attempt.complete is None:
             held = join(dict.fromkeys(held.signal for held in attempt.held))
             return Verdict.LACKED, f"it has {held} and still lacks {join(attempt.lacks)}", None

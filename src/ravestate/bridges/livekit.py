@@ -30,7 +30,7 @@ log = logging.getLogger("ravestate.livekit")
 
 
 class RavestateAgent(Agent):
-    """A LiveKit agent that answers with a Ravestate agent, in the place of a language model.
+    """A LiveKit agent that answers with a Ravestate agent instead of a language model.
 
     The session needs no ``llm``. The agent may also speak unasked. LiveKit's preemptive generation is off, because
     it would send the agent words before the user has finished.
@@ -63,7 +63,7 @@ class RavestateAgent(Agent):
         await self._begun()
 
     async def on_exit(self) -> None:
-        """Stop the agent at once: the session does not say its words any more."""
+        """Stop the agent at once, because the session no longer says the agent's words."""
         conversation, self._conversation = self._conversation, None
         if self._watching is not None:
             self._watching.cancel()

@@ -35,7 +35,7 @@ except ImportError as error:
 
 
 class RavestateProcessor(FrameProcessor):
-    """A processor that answers with a Ravestate agent, in the place of a language model.
+    """A processor that answers with a Ravestate agent instead of a language model.
 
     It takes the user's words from a user aggregator's `LLMContextFrame`, or from each `TranscriptionFrame` where there is
     no aggregator. It pushes each utterance of the agent, asked for or not, as the frames of a language model's response.
@@ -60,7 +60,7 @@ class RavestateProcessor(FrameProcessor):
         self._conversation = Conversation(contexts_of(agent)(), self._utterances.put_nowait, "pipecat")
         self._tasks: list[asyncio.Task[None]] = []  # until cleanup
         self._taken: object = None  # the last message of the user that the agent has heard
-        self._guessed = False  # whether the last words may not be the user's whole turn
+        self._guessed = False  # whether the user's turn may go on after the last words
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
         """Tell the agent about a frame, and pass the frame on unless it is meant for a language model."""
@@ -144,5 +144,5 @@ class RavestateProcessor(FrameProcessor):
 
 
 def _text_in(parts: Iterable[dict[str, str]]) -> str:
-    """Return the text in a message that may have pictures as well."""
+    """Return the text of a message, which may also have pictures."""
     return " ".join(part["text"] for part in parts if part["type"] == "text")

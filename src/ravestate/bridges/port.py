@@ -26,11 +26,11 @@ AnyAgent = Context | Agent | Policy | Module | ModuleType | str | Path | Sequenc
 
 - a module, several modules, or the policy of ``rs.compile``, which many conversations may share
 - the path of an agent file (``agent.yaml``), or a module's name as on the command line (``hibye``, ``./hello.py``)
-- an ``rs.Context`` that has not started, for settings or a seed of its own; it serves one conversation
+- an ``rs.Context`` that has not started, for special settings or a seed; it serves only one conversation
 """
 
-LONGEST = 30.0  # the seconds that a conversation's end waits for an answer that is not complete
-FAREWELL = 5.0  # the seconds that the agent has for a farewell
+LONGEST = 30.0  # the maximum number of seconds for which `Conversation.end` waits for an answer
+FAREWELL = 5.0  # the maximum number of seconds for the agent's farewell
 
 
 def contexts_of(agent: AnyAgent) -> Callable[[], Context]:
@@ -66,11 +66,11 @@ def _loaded(agent: Agent | Policy | Module | ModuleType | str | Path | Sequence[
 
 
 class Utterance:
-    """An utterance of the agent, as an async iterator of its pieces, which come while the utterance grows."""
+    """An utterance of the agent: an async iterator, which yields each piece when the agent has written the piece."""
 
     def __init__(self) -> None:
         self.text = ""
-        """The text so far, with the pieces after an interruption."""
+        """The text so far, including the pieces after an interruption."""
         self._pieces: asyncio.Queue[str | None] = asyncio.Queue()
         self.ended = False
         """Whether the iterator ends after the pieces so far."""
@@ -92,7 +92,7 @@ class Utterance:
     async def __anext__(self) -> str:
         piece = await self._pieces.get()
         if piece is None:
-            self.end()  # so that the next call ends as well
+            self.end()  # so that the next call raises StopAsyncIteration, too
             raise StopAsyncIteration
         return piece
 
@@ -116,7 +116,7 @@ class Conversation:
         self._begun = self._over = False
 
     async def begin(self) -> None:
-        """Start the agent, unless it runs already: the user is there."""
+        """Start the agent, unless it already runs, and tell it that the user is there."""
         if self._begun:
             return
         self._begun = True

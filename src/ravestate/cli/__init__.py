@@ -31,14 +31,14 @@ COMMANDS = {
     "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
     "vision": "say whose faces are in pictures, learn a face, check the camera",
     "activity": "say what somebody plays in a video, teach an activity",
-    "ros": "check an agent's topics and services, list the network's, and show the messages of one",
+    "ros": "check an agent's topics and services, list the network's topics, show a topic's messages",
     "robot": "start a stand-in robot with a face on a web page, alone or with an agent behind it",
     "new": "write a small project to start from",
 }
 
 
 LAST_GRACE = 0.5
-"""The seconds for which the ended command waits for functions of rules that still run."""
+"""The seconds for which an ending command waits for rules whose functions still run."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

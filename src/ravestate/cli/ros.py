@@ -1,4 +1,4 @@
-"""``ravestate ros``: check what an agent is bound to, list the topics of the network, and show the messages of one."""
+"""``ravestate ros``: check what an agent is bound to, list the topics of the network, and show a topic's messages."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ async def _topics(options: argparse.Namespace, node: Node, graph: dict[str, Any]
         ("actions", ("servers",)),
     ):
         for row in sorted(graph[kind], key=lambda row: row["name"]):
-            if any(row[noun] for noun in nouns):  # else it is this command's own
+            if any(row[noun] for noun in nouns):  # without other ends, only this command uses the topic
                 ends = ", ".join(counted(row[noun], noun) for noun in nouns)
                 print(f"{kind[:-1]:<7}  {row['name']}  {', '.join(row['types']) or '?'}  {ends}")
     return 0

@@ -20,7 +20,7 @@ OPTIONS = {
     "-p": "parameter", "--param": "parameter", "-r": "remap", "--remap": "remap", "--params-file": "file",
     "--log-level": "", "--log-config-file": "", "-e": "", "--enclave": "", "--log-file-name": "",
 }  # fmt: skip
-"""The options of ROS 2 with a value → what the value is; empty for those that say nothing about the agent."""
+"""Option of ROS 2 that takes a value → the kind of the value; empty if the value says nothing about the agent."""
 
 
 def translate(arguments: Sequence[str]) -> list[str]:

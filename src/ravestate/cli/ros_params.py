@@ -29,7 +29,7 @@ def from_file(path: Path, node: str, namespace: str) -> Found:
         namespace: Its namespace, such as ``/robot``.
 
     Raises:
-        UsageError: The file is missing, or no parameter file.
+        UsageError: The file is missing, or is not a parameter file.
     """
     try:
         document = load_yaml(path.read_text("utf-8"), str(path))
@@ -50,9 +50,9 @@ def from_file(path: Path, node: str, namespace: str) -> Found:
 
 
 def from_server(node: str, namespace: str) -> Found:
-    """Return settings and their values from the parameter server of ROS 1: the private parameters of a node.
+    """Return the private parameters of a node on the parameter server of ROS 1, as settings and their values.
 
-    ``roslaunch`` puts them there. Without a master, there are none.
+    ``roslaunch`` writes these parameters to the server. Without a master, the result is empty.
     """
     uri = os.environ.get("ROS_MASTER_URI") or "http://localhost:11311"
     own = "/" + f"{namespace}/{node}".strip("/")
@@ -67,7 +67,7 @@ def from_server(node: str, namespace: str) -> Found:
 
 
 def setting(version: str, name: str) -> str | None:
-    """Return the setting that a parameter is: ``module.key``; None for one that concerns no module."""
+    """Return the setting ``module.key`` that a parameter stands for; None if the parameter concerns no module."""
     if name == SIMULATED:
         return f"{version}.{SIMULATED}"
     return name if "." in name and not name.startswith(OTHERS) else None

@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     learning = actions.add_parser(
         "learn",
         help="remember a person's face from pictures of them",
-        description="File the face of a person in memory. Each picture has one face, that of the person. Ask them first.",
+        description="Store a person's face in memory. Each picture must show one face, theirs. Ask the person first.",
     )
     learning.add_argument("name", metavar="NAME", help="the person's name")
     for action in (telling, learning):
@@ -196,7 +196,7 @@ def _faces(eye: Eye, file: Path) -> list[dict[str, Any]]:
     try:
         data = file.read_bytes()
     except OSError as error:
-        raise PlatformError(f"visionio: it cannot be read: {error.strerror}") from None
+        raise PlatformError(f"visionio: the file cannot be read: {error.strerror}") from None
     seen = eye.look_now(["faces"], {"thorough": 2, "most": 1000}, frame=Frame(data))
     return [] if seen is None else seen["faces"]
 
@@ -214,7 +214,7 @@ def _eye(settings: Any) -> Generator[Eye]:
 
 @contextmanager
 def _memory(settings: Any, *, make: bool) -> Generator[Memory | None]:
-    """Open memory; give None if there is none and none is to be made."""
+    """Open the memory. Give None if there is no memory and `make` is false."""
     from ravestate.modules.meta.ontology.opening import open_memory, path_of
 
     path = path_of(settings)

@@ -108,7 +108,7 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one or several slots, or signals, as a tuple without duplicates. For the other arguments, see `condition`."""
+    """Return one or more slots or signals as a tuple without duplicates. For the other arguments, see `condition`."""
     if isinstance(values, kind):
         return (values,)
     try:

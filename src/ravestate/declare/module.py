@@ -169,7 +169,7 @@ class Module:
             emits: The signal or signals that the function may emit.
             weight: A factor above 0 that multiplies the utility (L9).
             cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-            patience: Seconds that other rules wait until this rule is ready (L16); by default, the context's patience.
+            patience: Seconds that other rules wait for this rule to be ready (L16); by default, the context's patience.
             until: A condition that interrupts a run (L21).
             timeout: Seconds that a run may take (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).

@@ -17,8 +17,8 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""Two adjacent vertices of a layer (upper, lower) → the minimum pixels between them. `False` stands for a dummy."""
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed ones would blur each other
+"""Two adjacent vertices of a layer (upper, lower), `False` for a dummy → the minimum pixels between the two."""
+_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
 _LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, but entering and leaving lines stay apart

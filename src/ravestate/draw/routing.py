@@ -1,4 +1,4 @@
-"""Edge routing: it makes lines of points between vertices that have coordinates."""
+"""Edge routing: the lines between vertices whose coordinates are known, as lists of points."""
 
 from __future__ import annotations
 

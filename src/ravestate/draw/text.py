@@ -96,5 +96,5 @@ def node_size(node: Node) -> tuple[float, float]:
 
 
 def label_size(label: str) -> tuple[float, float] | None:
-    """Return the width and height of an edge's label in pixels, or ``None`` if it is empty."""
+    """Return the width and height of an edge's label in pixels, or ``None`` if the label is empty."""
     return (float(round(width(shown(label, LABEL), LABEL) + 8.0)), 16.0) if label else None

@@ -1,19 +1,34 @@
 """The automaton: events and times in, effects out. Pure: no clock, thread, lock, random number or hash order.
 
-An event takes one way through the parts of an `Engine`, which share one `State`:
+The code cites the laws of the automaton by number, such as L15. ``docs/explanation/processing-model.md`` explains the
+laws, and ``tests/laws`` has one file of tests for each law.
 
-1. *Receive.* `Engine.receive` gets the event and calls its handler. A write goes to `Slots`, which raises the signals.
-2. *Match.* `Matching.birth` creates the spike and offers it to activations: `Holdings.acquire`, then `Holdings.update`.
-   `Halves`, `Benches` and `ConflictSets` save activations that would change nothing. `Holdings.complete` queues a ready one.
-3. *Consent.* `Engine.effects` lets the `Agenda` choose. `Consent.ask` looks for rivals, and a `Horizon` judges whether
-   each may still come. With consent, `Runs.start` orders the run. Without it, `Waits.begin` keeps the `Refusal`.
-   A `Roster` finds the rivals in a large group, and `Leaders` save questions whose answer is known.
-4. *Effects.* `Runs.finish` settles a run by the table `OUTCOMES`. `Waits.wake` returns the activations that ask again.
+An `Engine` at work has `Parts` (``parts.py``): one class per file, all with the same `State`. An event takes one way
+through the parts:
 
-Time takes the same way from `Engine.advance`, which has a handler for each kind of deadline (`DUE`). When a patience ends,
-the waiting activation asks again, and `Consent` eliminates the rival.
+1. *Receive.* `Engine.receive` finds the event's handler in the table `HANDLERS` (``parts.py``). A write goes to `Slots`,
+   which raises the slot's signals.
+2. *Match.* `Matching.birth` creates the spike and offers it to activations, which take it by `Holdings.acquire`. Then
+   `Holdings.update` finds out whether the activation is ready. A simple clause needs no such check, because one spike
+   makes it ready (`Clause.simple`). `Holdings.complete` queues the ready activation. `Halves`, `Benches` and
+   `ConflictSets` save activations that would change nothing.
+3. *Start.* `Engine.effects` runs the loop in `Parts.effects`, until a run must start or stop, or nothing is left to do.
+   Activations that need no consent start first (`Agenda.start_free`). The caller performs these effects, reports the
+   runs that have ended, and calls `Engine.effects` again.
+4. *Consent.* Once no such activation is left, `Agenda.consent_round` lets the other ready activations ask.
+   `Consent.ask` looks for rivals, and a `Horizon` judges whether each may still come. With consent, `Runs.start` orders
+   the run. Without it, `Waits.begin` keeps the `Refusal`. A `Roster` finds the rivals in a large group, and `Leaders`
+   save questions whose answer is known. `stalemate` finds activations that wait for nothing but each other.
+5. *End.* `Runs.finish` settles a run by the table `OUTCOMES`.
+6. *Wake.* A change that may lift a refusal marks a causal group in `State.dirty` or a hope in `State.stirred`, or puts
+   the activation into `State.asking`. The next round of consent begins with `Waits.wake`, which returns the activations
+   that ask again.
 
-To see why a rule waits, read the `Refusal` of its activation; `explain` puts it into words.
+Time takes the same way from `Engine.advance`. The table `DUE` (``parts.py``) has a handler for each kind of deadline.
+When a patience ends, the waiting activation asks again, and `Consent` eliminates the rival.
+
+To see why a rule waits, call `explain`: it names the rules that each activation waits for. The activation's `Refusal`
+also has the activations (`blockers`), groups (`interests`) and hopes on which the wait depends.
 """
 
 from ravestate.compiled import prefer

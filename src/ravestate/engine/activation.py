@@ -96,14 +96,18 @@ class Activation:
     """A clause plus the spikes that it has acquired.
 
     Attributes:
-        id: A number that grows with each new activation; also the number of its run.
+        id: A number that grows with each new activation. Only the trace, snapshots and explanations show it: with a
+            tracer, another activation with the same spikes may run.
+        number: The number of its run in events and effects; 0 until it runs. Runs are numbered in the order of their
+            start, so a tracer cannot change the number (L24, L25).
         spikes: For each need of the clause, the spike that meets it; None if there is none yet.
         state: The `State`, as a whole number.
         missing: The bits of the clause's needs without a spike.
         ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
-        place: While it is ready and needs no consent: its place in the queue (``free.py``).
-        pressed: If it may never be ready: a group in which others wait for it → when its patience ends (seconds; L16).
-        refusal: While it waits: the reasons (``consent.py``).
+        newest: If it needs no consent: the number of its newest spike, when it became ready.
+        place: While it is ready and needs no consent: its place in the queue (``free.py``), if it has one of its own.
+        pressed: Group in which others wait for it, while it may never be ready → when its patience ends (seconds; L16).
+        refusal: While it waits: the reasons (``refusal.py``).
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
         groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
@@ -119,6 +123,8 @@ class Activation:
         "id",
         "lineage",
         "missing",
+        "newest",
+        "number",
         "place",
         "pressed",
         "refusal",
@@ -132,11 +138,13 @@ class Activation:
 
     def __init__(self, id: int, clause: Clause) -> None:
         self.id = id
+        self.number = 0
         self.clause = clause
         self.state: int = GATHERING
         self.spikes: list[Spike | None] = [None] * len(clause.needs)
         self.missing = clause.all_bits
         self.ripens = NEVER
+        self.newest = 0
         self.place: Place | None = None
         self.pressed: dict[Group, float] = NOTHING  # replaced on first use
         self.refusal: Refusal | None = None

@@ -1,12 +1,13 @@
 """The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
 
-1. Rules that write no slot start at once.
-2. When none of them is left, ready writers ask for consent (``consent.py``): older causes first, and the greatest
-   utility first within a cause. By then, rules that never suspend have ended.
-3. When no writer may start either, the engine updates the built-in flags.
+1. Activations that need no consent start at once: their rules write no slot, or all their constraints are detached.
+2. When none of these is left, the other ready activations ask for consent (``consent.py``): older causes first, and the
+   greatest utility first within a cause. By then, rules that never suspend have ended.
+3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true comes
+   earlier, before step 1 (``parts.py``).
 
-Suppose that an activation waits for a rule, and that rule ends. Then the activation asks again in the same instant, after
-all other rules that end in this instant.
+When a rule ends, the activations that wait for it ask again in the same instant, after all other rules that end in this
+instant. So the caller of `Engine.effects` must first give the engine all events of the instant.
 """
 
 from __future__ import annotations
@@ -45,20 +46,22 @@ class Agenda:
         self.queue = Line()
         """The activations that ask in this instant, the best first."""
         self.places: dict[Activation, Any] = {}
-        """Activation in the queue → its place that counts. Other places that it has in the queue are out of date."""
+        """Activation in the queue → its present place. The queue may also hold outdated places of the activation."""
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
         self.time = 0.0
-        """The time of the order (seconds)."""
+        """The time for which the queue was put in order (seconds)."""
         self.breakers: list[tuple[tuple[float, int, int], Activation]] = []
         """The activations that wait for nothing but each other, the best first."""
 
     def start_free(self) -> None:
         """Start ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
         state = self.state
+        free = state.free
         started = 0
-        while started < BATCH and (activation := state.free.pop()) is not None:
-            if activation.clause.guards and not self._pass_guards(activation):
+        while started < BATCH and (free.new or free.batch or free.line):
+            activation = free.pop()
+            if activation is None or (activation.clause.guards and not self._pass_guards(activation)):
                 continue
             if state.loops.runs > MANY and state.loops.defer(activation):
                 continue
@@ -99,10 +102,10 @@ class Agenda:
         written: set[int] = set()
         later: list[Any] = []
         while line:
-            turn = queue.take()  # not unpacked: it is compared as it is
+            turn = queue.take()  # not unpacked, because it is compared as a whole
             activation = turn[4]
             if places.get(activation) != turn:
-                continue  # it has another place by now
+                continue  # the activation has another place by now
             del places[activation]
             if not self._may_ask(activation):
                 continue
@@ -122,9 +125,7 @@ class Agenda:
             places[turn[4]] = turn
         if later:
             queue.join(later)
-        if not (
-            line or state.asking or state.dirty or state.stirred or state.acts or state.free.new or state.free.line
-        ):
+        if not (line or state.asking or state.dirty or state.stirred or state.acts) and state.free.is_empty:
             self._break_stalemate()
 
     def settle_flags(self) -> bool:
@@ -145,7 +146,7 @@ class Agenda:
         return False
 
     def _line_up(self, asking: dict[Activation, None]) -> None:
-        """Give activations their places in the queue. If the order has changed, all get new places."""
+        """Give activations their places in the queue. If the order has changed, the whole queue gets new places."""
         state, queue, places = self.state, self.queue, self.places
         if state.reordered or (self.recovering and state.now != self.time):
             asking.update(dict.fromkeys(places))
@@ -174,7 +175,7 @@ class Agenda:
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _ask(self, activation: Activation) -> bool:
-        """Ask for consent; return whether the activation has it. If not, it waits, and others may ask instead."""
+        """Ask for consent, and return whether it is given. Without consent, the activation waits, and others may ask."""
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
@@ -197,15 +198,15 @@ class Agenda:
 
     def _turn(self, activation: Activation) -> Any:
         """Return the activation's place in the queue, a `Turn`: older causes first, and the best first within a cause."""
-        groups = activation.firm_groups()
+        groups, clause = activation.firm_groups(), activation.clause
         cause = groups[0].id if len(groups) == 1 else min([group.id for group in groups])
-        return (cause, *self.state.order(activation), activation)
+        return (cause, -self.state.effective(clause), clause.index, activation.id, activation)
 
     def _break_stalemate(self) -> None:
         """Start the best of the activations that wait for nothing but each other, if there are any."""
         state, breakers = self.state, self.breakers
         if not (state.refused or state.stuck):
-            breakers.clear()  # none of them is stuck any more
+            breakers.clear()  # no activation is stuck any more
             return
         found = stalemate(self.consent, state.refused, state.stuck)
         state.refused.clear()
@@ -221,12 +222,12 @@ class Agenda:
         while breakers:
             order, best = heapq.heappop(breakers)
             if best not in stuck:
-                continue  # it has asked again since
+                continue  # this activation has asked again since
             if order != state.order(best):
                 heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
                 continue
             for group in best.firm_groups():
-                for other in group.interested:  # their wait depends on the group, which this start changes
+                for other in group.interested:  # these waits depend on the group, which this start changes
                     stuck.discard(other)
                     state.refused[other] = None
             self.runs.start(best)
@@ -236,11 +237,14 @@ class Agenda:
 def _is_taken(activation: Activation) -> bool:
     """Return whether one of the activation's slots is taken in each of its groups."""
     slots = activation.clause.rule.slotset
-    return all([not group.taken.keys().isdisjoint(slots) for group in activation.firm_groups()])
+    for group in activation.firm_groups():
+        if not group.taken or group.taken.keys().isdisjoint(slots):
+            return False
+    return True
 
 
 def _presses(activations: Iterable[Activation]) -> bool:
-    """Return whether an activation counts for ``core:pressure``: one that hears a built-in flag does not."""
+    """Return whether an activation counts for ``core:pressure``: it does unless it hears a built-in flag."""
     for activation in activations:
         if not activation.clause.reflexive:
             return True

@@ -1,4 +1,4 @@
-"""A bench: first spikes of a pair that wait together (``benches.py``)."""
+"""A bench: first spikes of a pair that wait together for their counterpart (``benches.py``)."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from ravestate.policy.model import Half
 
 
 class Bench:
-    """Spikes that a half holds, and the one counterpart of them all.
+    """Spikes that a half holds, and the one counterpart that they share.
 
     Attributes:
         half: The half.
-        spikes: The spikes, oldest first, each with the activation number just before theirs.
+        spikes: The spikes, oldest first. Each comes with the number just before those of its activations.
         partner: The counterpart, or None if the spikes lack one.
         late: The spikes that have grown too old for the half while they had a counterpart.
     """

@@ -1,13 +1,16 @@
-"""Benches: pairs of a rule that no better rule competes with.
+"""Benches: first spikes of a pair that wait together for the second spike, their *counterpart*.
 
-A new spike completes a hundred first spikes that wait for a counterpart. One pair runs, and the others take the next
-counterpart (L12). So only the first pair, the *head*, has an activation. The other first spikes sit on a bench,
-which takes the next counterpart as a whole.
+Suppose that a hundred first spikes wait when a counterpart arrives. The counterpart completes a hundred pairs. Only one
+pair runs, and the first spikes of the other pairs take the next counterpart (L12). So only one pair, the *head*, has an
+activation. The other first spikes sit on a bench, and the whole bench takes the next counterpart.
 
-Such a rule waits for no rival, so a group refuses it only while a slot is taken there. If the head's group refuses, the
-next spike gets its activation at once, and asks in the same round. The order of a bench is that of the questions: no rule
-raises the signals, so an older spike has an older causal group. Before a group merges, its spikes leave their benches. To
-the rivals that it goes before, a spike on a bench with a counterpart is a ready activation (`Consent`).
+Only a clause that no better clause competes with has benches (`Half.sole`). Its activations wait for no rival, so a
+group refuses them only while a slot is taken there. If a group refuses the head, the next spike on the bench gets an
+activation at once, which asks in the same round.
+
+The spikes of a bench ask from the oldest to the youngest, as consent demands: no rule raises their signals, so an older
+spike has an older causal group. Before a group merges, its spikes leave their benches. `Consent` treats each spike on a
+bench with a counterpart as a ready activation, for which activations of lesser utility wait.
 """
 
 from __future__ import annotations
@@ -34,12 +37,12 @@ class Benches:
         self.state = holdings.state
 
     def seat(self, half: Half, partner: Spike) -> None:
-        """Give a counterpart to all spikes of a half that lack one."""
+        """Give a new counterpart to the spikes of a half that lack a counterpart."""
         del self.state.halves[half]
         self._place(self.state.pools.pop(half), partner)
 
     def check(self, partner: Spike) -> None:
-        """Give the benches of a counterpart another one if it is lost to them; else make sure that they have heads."""
+        """Give each bench of a counterpart a head, or another counterpart if the bench has lost this counterpart."""
         state = self.state
         for bench in list(state.benches.get(partner, {}).values()):
             rule = bench.half.needs[0].clause.rule
@@ -50,7 +53,7 @@ class Benches:
                 self._lead(bench, partner)
 
     def rise(self, spike: Spike) -> None:
-        """Create the activations of a spike on benches with counterparts: it is about to lose the spike (L12)."""
+        """Create the activations of a spike on benches with counterparts, which are about to lose a spike (L12)."""
         state = self.state
         for half in state.halves_of(spike) if state.benches else ():
             bench = state.bench_of(half, spike)
@@ -58,14 +61,14 @@ class Benches:
                 self.make(bench, spike)
 
     def settle(self) -> None:
-        """Make the heads of the benches whose heads have gone."""
+        """Create new heads for the benches whose heads have gone."""
         state = self.state
         while state.headless:
             partner, _ = state.headless.popitem()
             self.check(partner)
 
     def next_heads(self, refused: Activation) -> list[Activation]:
-        """Return the activations that ask instead of one that was refused consent."""
+        """Create the next head of each bench whose head was refused consent. Return the new heads that may ask."""
         state = self.state
         heads: list[Activation] = []
         for partner in refused.spikes:
@@ -107,7 +110,7 @@ class Benches:
         self._lead(bench, partner)
 
     def _move(self, bench: Bench) -> None:
-        """Give a bench the oldest live counterpart that fits (L12), if there is one."""
+        """Give a bench the oldest live counterpart that fits (L12). Without one, its spikes lack a counterpart again."""
         state, half = self.state, bench.half
         self.holdings.entries.vacate(bench)
         need = other_need(half.needs[0])
@@ -124,7 +127,7 @@ class Benches:
         for spike in bench.spikes:
             group = spike.group.root()
             if group.interested:
-                state.dirty[group] = None  # a rival that was ready may be under pressure now
+                state.dirty[group] = None  # the spike was a ready rival, and may be under pressure now
         late, bench.late = bench.late, []
         for spike in late:
             if spike in bench.spikes:
@@ -140,7 +143,7 @@ class Benches:
         return longer
 
     def _lead(self, bench: Bench, partner: Spike) -> None:
-        """Make a head, unless another activation asks for the counterpart before the spikes of the bench."""
+        """Create the head of a bench, unless another activation runs with the counterpart, or asks for it first."""
         need = bench.half.needs[0]
         first = next(iter(bench.spikes))
         cause = min(first.group.root().id, partner.group.root().id)
@@ -152,14 +155,14 @@ class Benches:
             if holder.state >= RUNNING:
                 return
             if holder.state == WAITING and not taken and holder not in self.state.asking:
-                continue  # another group refuses it
+                continue  # another group refuses this activation
             if (min([group.id for group in holder.firm_groups()]), holder.id) <= order:
                 return
         self.make(bench, first)
 
 
 def other_need(need: Need) -> Need:
-    """Return the other need of a clause of two."""
+    """Return the other need of a clause that has two needs."""
     return need.clause.needs[1 - need.index]
 
 

@@ -76,10 +76,10 @@ class ConflictSets:
         """Return whether a clause takes a spike: its rule has not retired, and its predicates fit the payload."""
         if self.state.retired and clause.rule.index in self.state.retired:
             return False
-        for predicate in clause.needs[0].predicates:
-            if not self.state.test(predicate, spike.payload, clause.rule):
-                self.holdings.pass_by(clause, spike, "payload")
-                return False
+        need = clause.needs[0]
+        if need.predicates and not self.state.accepts(need, spike.payload):
+            self.holdings.pass_by(clause, spike, "payload")
+            return False
         return True
 
     def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:

@@ -1,11 +1,12 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses consent while one of the activation's slots is taken in it, or while the activation has a rival there. A
-rival is another viable clause that writes one of these slots, has greater effective utility, and has a stake in the
-group. A clause has a stake if it holds a spike of the group, or lacks a signal that a rule of the group may cause.
+A group refuses consent to an activation while one of its runs has taken a slot of the activation. It also refuses while
+the activation has a rival in the group. A rival is another viable clause that writes one of these slots, has greater
+effective utility, and has a stake in the group. A clause has a stake if it holds a spike of the group, or lacks a signal
+that a rule of the group may cause.
 
-A rival that may never become ready is under pressure: when its patience ends, the activation waits for it no longer. Each
-group grants a rival its patience once (L16).
+Pressure applies to a rival whose readiness is uncertain. When the rival's patience ends, the activation stops waiting for
+the rival. A rival gets its patience once in each group (L16).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import FIRM, NO, Horizon
 from ravestate.engine.idle import Idle
 from ravestate.engine.leaders import Leaders
-from ravestate.engine.refusal import Refusal
+from ravestate.engine.refusal import CONSENT, Refusal
 from ravestate.engine.roster import causers, writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
@@ -47,24 +48,28 @@ class Consent:
         Args:
             activation: The activation.
             idle: Activations that count as doing nothing.
-            commit: Whether rivals come under pressure, and give up when their patience is over.
+            commit: Whether rivals come under pressure, and are eliminated when their patience has ended.
         """
+        clause = activation.clause
+        groups = activation.firm_groups()
+        if clause.unrivalled and not _is_taken(groups, clause.rule):
+            return CONSENT
         asks = commit and not idle
         if asks and self.leaders.found:
             following = self.leaders.refuse(activation)
             if following is not None:
                 return following
         refusal = Refusal()
-        clause = activation.clause
         standing = self.state.standing
-        groups = activation.firm_groups()
         for group in groups:
             refusal.interests[group] = None
         horizon: Horizon | None = None
-        soon: list[tuple[Clause, list[Activation], Group]] = []  # rivals that are not ahead yet, but in the next moment
+        soon: list[
+            tuple[Clause, list[Activation], Group]
+        ] = []  # rivals that are behind now, but will be ahead in the next moment
         eliminated = False
         for group in groups:
-            if group.taken and _note_taken(refusal, group, clause.rule):
+            if (group.taken and _note_taken(refusal, group, clause.rule)) or clause.unrivalled:
                 continue
             for half, spike in self._rival_halves(clause, group) if group.entries else ():
                 if clause.rule.cooldown and not half.sole:
@@ -87,7 +92,7 @@ class Consent:
             if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                 eliminated = True
         if eliminated and refusal.names:
-            return self.ask(activation, idle)  # the verdict on an earlier rival may depend on the eliminated one
+            return self.ask(activation, idle)  # the verdict on an earlier rival may depend on the eliminated rival
         if asks and refusal.names and not refusal.taken:
             self.leaders.add(activation)
         if horizon is not None:
@@ -107,19 +112,24 @@ class Consent:
         *,
         commit: bool,
     ) -> bool:
-        """Judge each activation of a rival and its stand-by in a group. Return whether one was eliminated."""
+        """Judge the activations of a rival in a group, and the rival's stand-by there.
+
+        A rival that may still become ready is added to `refusal`, the refusal that `ask` returns.
+
+        Return whether an activation was eliminated.
+        """
         eliminated = False
-        apart = False  # whether one of them holds no spike of the group, but waits for one
+        apart = False  # whether an activation holds no spike of the group, but waits for such a spike
         sure: list[Activation] = []
         if self.state.halves and horizon.open_bits(rival, group):
             self.halves.unfold_clause(rival)
         living = [*members, *horizon.elsewhere(rival, group)]
         if len(living) > 1:
-            living.sort(key=by_age)  # oldest first: an old activation with a young spike covers younger activations
+            living.sort(key=by_age)  # oldest first, because an older activation may cover younger ones (`_is_covered`)
         for member in (*living, None):
             if member is None:
                 if apart:
-                    break  # the older activation takes the signal
+                    break  # that activation takes the signal first, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_still(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)
@@ -146,29 +156,31 @@ class Consent:
     def _judge_half(
         self, refusal: Refusal, horizon: Horizon, best: Need, spike: Spike, clause: Clause, *, commit: bool
     ) -> bool:
-        """Judge all clauses of a half that holds a spike by the best of them, or unfold the half.
+        """Judge the clauses of a half that holds a spike: either by the best clause, or by unfolding the half.
 
-        The best clause can stand for all if each clause lacks only a second spike, and all have the same prospects of
-        that spike. Otherwise, the half is unfolded, and each clause is judged on its own.
+        The best clause can stand for all clauses if each lacks only a second spike, and all have the same prospects of
+        getting that spike. Otherwise, the half is unfolded, and each clause is judged on its own.
 
-        Return whether clauses were eliminated.
+        Clauses that may still become ready are added to `refusal`, the refusal that `ask` returns.
+
+        Return whether a clause was eliminated.
         """
         rival, half, group = best.clause, best.half, spike.group.root()
         assert half is not None
         bench = self.state.bench_of(half, spike)
-        if bench is not None and bench.partner is not None:  # it is ready
+        if bench is not None and bench.partner is not None:  # the rival is ready
             _note_firm(refusal, tuple([one for one in bench.partner.holders if one.clause is rival]))
             refusal.name(rival)
             return False
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
-            horizon.judge(rival, None, group)[0] != NO  # its stand-by is a rival as well
-            or horizon.open_bits(rival, group)  # its activations elsewhere may take a spike of this group
-            or (strength == FIRM and rival.rule.index in self.state.active)  # an older activation may cover it
-            or (strength != NO and self._is_held_beside(half, spike))  # or cover another clause of the half
+            horizon.judge(rival, None, group)[0] != NO  # the clause's stand-by is a rival as well
+            or horizon.open_bits(rival, group)  # activations in other groups may take a spike of this group
+            or (strength == FIRM and rival.rule.index in self.state.active)  # an older activation may cover the rival
+            or (strength != NO and self._is_held_beside(half, spike))  # or it may cover another clause
             or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
-            self.halves.unfold(spike, half)  # no derivation rests on the new activations
+            self.halves.unfold(spike, half)  # the horizon stays valid: no derivation rests on the new activations
         elif strength == FIRM:
             _note_firm(refusal, roots)
             refusal.name(rival)
@@ -185,10 +197,14 @@ class Consent:
         return False
 
     def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
-        """Put the clauses of a half that go before `clause` under pressure; eliminate those whose patience is over.
+        """Put the clauses of a half that are ahead of `clause` under pressure. Eliminate clauses whose patience has ended.
 
-        `State.pressed` has a list for each spike and half. Its first item is for the best clauses, the second for the
-        clauses after these, and so on. Return whether clauses were eliminated.
+        For each spike and half, `State.pressed` has a list of pairs: a count of clauses, and the end of their patience.
+        Each count starts at the half's best clause, so it includes the clauses of earlier pairs.
+
+        Clauses that may still become ready are added to `refusal`, the refusal that `ask` returns.
+
+        Return whether a clause was eliminated.
         """
         state = self.state
         pressed = state.pressed.get(spike, {}).get(half, [])
@@ -214,16 +230,19 @@ class Consent:
         return eliminated
 
     def _best(self, half: Half, spike: Spike, clause: Clause) -> Need | None:
-        """Return the need of the best other clause for which a half holds a spike, if it goes before `clause`."""
+        """Return the need of the best clause, other than `clause`, for which a half holds a spike.
+
+        Return None if `clause` is ahead of that best clause, or if the half holds the spike for no other clause.
+        """
         for need in half.best:
             if need.clause is not clause and self.state.keeps(need, spike):
                 return need if self.state.standing.is_ahead(need.clause, clause) else None
         return None
 
     def is_contested(self, best: Activation) -> bool:
-        """Return whether a rival may come between the best of a conflict set and one of its alternatives.
+        """Return whether a rival may come between the best clause of a conflict set and one of the alternatives.
 
-        Such a rival waits for the best, but the alternative waits for the rival, and puts it under pressure.
+        Such a rival waits for the best clause, but the alternative waits for the rival, and puts it under pressure.
         """
         state = self.state
         clauses = state.alternatives[best][0]
@@ -255,10 +274,14 @@ class Consent:
     def press(
         self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True
     ) -> float:
-        """Return when a rival's patience in a group ends (seconds). `by` waits for the rival, which may never be ready.
+        """Return the time at which a rival's patience in a group ends (seconds), or minus infinity without pressure.
 
-        With `commit`, the first call puts the rival under pressure (L16). `member` is the rival's activation, or None if
-        the clause stands by.
+        Args:
+            rival: The rival, which may never become ready.
+            member: The rival's activation, or None for the rival's stand-by.
+            group: The group.
+            by: The activation that waits for the rival.
+            commit: Whether the first call puts the rival under pressure (L16).
         """
         state = self.state
         table: dict[Any, float]
@@ -275,7 +298,7 @@ class Consent:
             return table.get(key, -NEVER)
         patience = rival.rule.patience
         until = table[key] = state.now + (state.patience if patience is None else patience)
-        if until > state.now and member is not None:  # a refusal keeps the time for a stand-by
+        if until > state.now and member is not None:  # `Refusal.recheck` keeps the time for a stand-by
             state.deadlines.add(until, PATIENCE, (group, member))
         if state.tracer is not None:
             missing = rival.all_bits if member is None else member.missing
@@ -284,12 +307,12 @@ class Consent:
         return until
 
     def eliminate(self, rival: Activation) -> None:
-        """Make a rival whose patience is over give its spikes up for good (L16)."""
+        """End a rival whose patience has ended. The rival's rule gives the spikes up for good (L16)."""
         for spike in rival.firm_spikes():
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # another clause of the rule keeps the spike that it holds
+                    self.halves.sets.unfold(other)  # else the rule's clauses in this queue would lose the spike too
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 
@@ -314,7 +337,7 @@ class Consent:
         return Horizon(self.state, still, idle)
 
     def _rival_halves(self, clause: Clause, group: Group) -> list[tuple[Half, Spike]]:
-        """Return the halves that hold spikes of the group for clauses that write a slot of `clause`, with the spikes."""
+        """Return each half that writes a slot of `clause`, paired with each spike of the group that the half holds."""
         slots = clause.rule.slotset
         found: list[tuple[Half, Spike]] = []
         for spike in group.entries:
@@ -322,14 +345,17 @@ class Consent:
         return found
 
     def _rivals(self, activation: Activation, group: Group) -> list[tuple[Clause, list[Activation]]]:
-        """Return the clauses that may write one of the activation's slots for the group, in declaration order, each
-        with its activations there."""
+        """Return the clauses that may write one of the activation's slots in the group, in declaration order.
+
+        Each clause comes with its activations in the group. A clause without activations there is left out if its
+        utility is less than that of the activation's clause: its stand-by is no rival.
+        """
         clause = activation.clause
         slots = clause.rule.slotset
         worth = self.state.standing.effective(clause)
         found: dict[Clause, list[Activation]] = {}
         causes = self.state.causes
-        alone = len(group.members) == 1  # the activation itself
+        alone = group.count == 1  # the activation itself
         for member in () if alone else writers(group, clause.rule.slots, causes):
             theirs = member.clause
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
@@ -341,6 +367,15 @@ class Consent:
                 if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                     found.setdefault(theirs, [])
         return sorted(found.items(), key=_place)
+
+
+def _is_taken(groups: Sequence[Group], rule: RulePlan) -> bool:
+    """Return whether one of the rule's slots is taken in one of the groups."""
+    for group in groups:
+        for slot in rule.slots if group.taken else ():
+            if slot in group.taken:
+                return True
+    return False
 
 
 def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
@@ -356,14 +391,14 @@ def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
 
 
 def _note_firm(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
-    """Note the work in progress on which a rival rests."""
+    """Note the activations whose progress decides whether a rival becomes ready."""
     for root in roots:
         refusal.blockers[root] = None
     refusal.firm.append(roots)
 
 
 def _is_covered(younger: Activation, older: Sequence[Activation]) -> bool:
-    """Return whether one of the older activations, which are still to run, holds all spikes of a younger one."""
+    """Return whether one of the older activations holds all spikes of a younger one. The older ones are still to run."""
     spikes = younger.firm_spikes() if older else ()
     return any([all([spike in one.spikes for spike in spikes]) for one in older])
 

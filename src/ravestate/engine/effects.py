@@ -16,7 +16,7 @@ class Run:
     """An order to call a rule's function, and to report its end by the event `Finish`.
 
     Attributes:
-        run: The number of the run, which every event of the run carries.
+        run: The number of the run, which every event of the run carries. Runs are numbered in the order of their start.
         rule: The rule whose function to call.
         payloads: Qualified name of a signal whose spike the run holds → the spike's payload.
         values: Qualified name of a slot that the run may read → its current value (L13).
@@ -65,7 +65,7 @@ class Spiked:
 @dataclass(slots=True)
 class Ended:
     """A report of the outcome of a run, if the engine has `report_ends`. ``fired`` is false if the run resigned, or if
-    it failed or was wiped before it wrote a slot. A run that was interrupted has fired, even if it failed then."""
+    it failed or was wiped before it wrote a slot. An interrupted run has fired, even if it failed afterwards."""
 
     run: int
     rule: str

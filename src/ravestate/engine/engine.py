@@ -72,7 +72,7 @@ class Engine:
         handler(parts, event)
         self.policy = parts.state.policy
         if rested and parts.state.at_rest:
-            self._rest(parts)  # no rule hears of the event
+            self._rest(parts)  # no rule hears the event
 
     def advance(self, now: float) -> None:
         """Let time pass until `now` (seconds), deadline by deadline. A repeated or early call changes nothing."""
@@ -86,7 +86,10 @@ class Engine:
         return None if self._parts is None else self._parts.state.deadlines.next()
 
     def effects(self) -> list[Effect]:
-        """Return the effects to perform now. Call this again after performing them, until the list is empty."""
+        """Return the effects to perform now. Call this again after performing them, until the list is empty.
+
+        First give the engine all events of the present instant, such as the ends of runs: the engine decides here.
+        """
         parts = self._parts
         if parts is None:
             return []
@@ -112,7 +115,7 @@ class Engine:
         return parts
 
     def parts_at(self, now: float) -> Parts:
-        """Let time pass until `now` (seconds), and return the parts, for an event that nothing records."""
+        """Let time pass until `now` (seconds), and return the parts. Use them only for an event that nothing records."""
         parts = self._parts or self.parts
         if now != parts.state.now:
             parts.pass_time(now)

@@ -22,7 +22,7 @@ class Entries:
         self.state = state
 
     def enter(self, spike: Spike, half: Half, before: int) -> None:
-        """Let a half hold a spike; `before` is the activation number just before theirs."""
+        """Let a half hold a spike; `before` is the number just before those of the spike's activations."""
         state = self.state
         held = state.halves.get(half)
         if held is None:
@@ -94,7 +94,7 @@ class Entries:
                 self.vacate(bench)
 
     def vacate(self, bench: Bench) -> None:
-        """Take its counterpart from a bench."""
+        """Remove the counterpart of a bench."""
         state, partner = self.state, bench.partner
         assert partner is not None
         bench.partner = None
@@ -117,9 +117,9 @@ class Entries:
                     self.part(spike, need)
 
     def refuse_best(self, spike: Spike, half: Half, begin: int, end: int) -> bool:
-        """Make the rules of a half's clauses from `begin` to `end`, the best first, give a spike up for good.
+        """Make rules give a spike up for good: those of the half's clauses from place `begin` to `end` in `Half.best`.
 
-        Return whether the half held the spike for one of them.
+        Return whether the half held the spike for one of these clauses.
         """
         parted, refused = spike.parted or set(), spike.refused or set()
         needs = [need for need in half.best[begin:end] if need.clause.index not in parted]

@@ -1,4 +1,4 @@
-"""Explanations of a rule: why it runs, waits, or did not fire (L25), as data and as text.
+"""Explanations (L25), as data and as text: the reasons why a rule runs, waits, or did not fire.
 
 `ravestate.board.why_not` explains one input in detail and builds on the phrases here.
 """
@@ -42,7 +42,7 @@ class ActivationState:
         holds: The signal and the age (seconds) of each spike that the activation holds.
         lacks: The signals of the spikes that it lacks.
         waits_for: The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie).
-        until: The latest time at which it runs or gives a spike up (seconds); None if there is no such time.
+        until: The latest time at which the activation runs or gives a spike up (seconds); None if there is none.
     """
 
     id: int
@@ -146,10 +146,7 @@ def _activation(state: State, activation: Activation) -> ActivationState:
     refusal = activation.refusal
     if refusal is not None:
         mine = state.effective(clause)
-        ahead = (
-            refusal.leader.refusal.names if refusal.leader is not None and refusal.leader.refusal is not None else {}
-        )
-        for rule, rival in {**ahead, **refusal.names}.items():
+        for rule, rival in refusal.all_names.items():
             waits.append((rule, max(0.0, state.effective(rival) - mine)))
     bounds = [activation.ripens, min(activation.pressed.values(), default=NEVER), activation.deadline]
     if activation.state == GATHERING:
@@ -273,7 +270,7 @@ def join(names: Iterable[str]) -> str:
 
 
 def _missing(state: State, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
-    """Yield a sentence for each signal of a rule that has not occurred: which rules may raise it, how each ended."""
+    """Yield a sentence for each signal of a rule that has not occurred: the rules that may raise it, and their ends."""
     if not records:
         return
     occurred = {record.signal for record in records if isinstance(record, Born)}

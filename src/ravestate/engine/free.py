@@ -11,39 +11,82 @@ Place = tuple[int, int, int, Activation]
 
 
 class Free(Line):
-    """A queue of ready activations. Most join at its end; those that lost a spike and took another join anywhere.
+    """A queue of ready activations. Most join at its end; after a loss and a new spike, an activation joins anywhere.
 
     Attributes:
-        new: The activations without a place so far.
+        new: The activations that have become ready since the last call of `pop`.
+        batch: Activations that became ready while the queue was empty, the first one last. Thousands may wait, so they
+            get places only if others join before all of them have started.
     """
 
-    __slots__ = ("new",)
+    __slots__ = ("batch", "new")
 
     def __init__(self) -> None:
         super().__init__()
         self.new: list[Activation] = []
+        self.batch: list[Activation] = []
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no activation waits."""
+        return not (self.new or self.batch or self.line)
 
     def pop(self) -> Activation | None:
         """Remove the first activation that is still ready, and return it; None if there is none."""
         new, line = self.new, self.line
-        if len(new) == 1 and not line:
+        if len(new) == 1 and not (line or self.batch):
             activation = new.pop()
             return activation if activation.state == READY else None
         if new:
-            self.join([_place(activation) for activation in new])
-            new.clear()
+            self._take_up(new)
+        batch = self.batch
+        while batch:
+            activation = batch.pop()
+            if activation.state == READY:
+                return activation
         while line:
             place = self.take()
             activation = place[3]
-            if activation.place == place:  # else it was added again since
+            if activation.place == place:  # else the activation has another place by now
                 activation.place = None
                 if activation.state == READY:
                     return activation
         return None
 
+    def _take_up(self, new: list[Activation]) -> None:
+        """Add the new activations to the queue."""
+        places = [_place(activation) for activation in self.batch]
+        for activation in new:
+            activation.newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
+        if self.line or places:
+            self.join([*places, *[_place(activation) for activation in new]])
+            self.batch.clear()
+            new.clear()
+            return
+        if not _is_sorted(new):
+            new.sort(key=_order)
+        new.reverse()
+        self.batch, self.new = new, self.batch
+
+
+def _is_sorted(activations: list[Activation]) -> bool:
+    """Return whether activations are in order; most often they are."""
+    before = activations[0]
+    for activation in activations:
+        if before.newest > activation.newest or (
+            before.newest == activation.newest and _order(before) > _order(activation)
+        ):
+            return False
+        before = activation
+    return True
+
+
+def _order(activation: Activation) -> tuple[int, int, int]:
+    """Return the sort key of an activation: its newest spike, then its declaration, then its age."""
+    return (activation.newest, activation.clause.index, activation.id)
+
 
 def _place(activation: Activation) -> Any:
-    """Give an activation its place: first in the order of its newest spike, then of declaration."""
-    newest = max([spike.id for spike in activation.spikes if spike is not None], default=0)
-    activation.place = (newest, activation.clause.index, activation.id, activation)
+    """Give an activation a place of its own, in the same order."""
+    activation.place = (activation.newest, activation.clause.index, activation.id, activation)
     return activation.place

@@ -42,7 +42,7 @@ class Group:
     Attributes:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
-        interested: The waiting activations that ask again when something ends in the group.
+        interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
         pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
         roster: The members of a large group by slot and by rule (``roster.py``), once a question has needed them.
         answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
@@ -54,7 +54,7 @@ class Group:
     def __init__(self, id: int) -> None:
         self.id = id
         self.into: Group | None = None  # the group into which this group has merged, if it has
-        self._member: Activation | None = None  # most groups never have a second one, and need no table
+        self._member: Activation | None = None  # most groups never have a second member, and need no table
         self._others: dict[Activation, None] = NOTHING
         # Most groups never need the following tables, so each table is created on first use.
         self.taken: dict[int, tuple[Activation, ...] | None] = NOTHING
@@ -96,8 +96,10 @@ class Group:
             self._others[activation] = None
         elif self._member is None:
             self._member = activation
-        else:
+        elif self._others is NOTHING:
             self._others = {activation: None}
+        else:
+            self._others[activation] = None
         if self.roster is not None:
             self.roster.enter(activation)
 
@@ -106,13 +108,14 @@ class Group:
         if activation is self._member:
             self._member = None
         elif activation in self._others:
-            self._others.pop(activation)
+            del self._others[activation]
         else:
             return
-        if not self.count:
-            self.roster = None
-        elif self.roster is not None:
-            self.roster.leave(activation)
+        if self.roster is not None:
+            if self.count:
+                self.roster.leave(activation)
+            else:
+                self.roster = None
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
         """Take a slot for the runs `holders`; None takes it for good. Runs share a slot if their groups have merged."""
@@ -144,7 +147,7 @@ class Group:
         return next((self.answers[slot] for slot in slots if slot in self.answers), ("", 0))
 
     def concern(self, activation: Activation) -> None:
-        """Make a waiting activation ask again when something ends in this group."""
+        """Make a waiting activation ask again when something changes in this group (`State.dirty`)."""
         if self.interested is NOTHING:
             self.interested = {activation: None}
         else:

@@ -1,4 +1,4 @@
-"""Halves: spikes that meet the first need of a clause of two needs.
+"""Halves: spikes that wait, without an activation, for the second spike of a clause that has two needs.
 
 A thousand rules `input & topic` would need a thousand activations for each input, although only a few of the topics
 occur. If a hundred first spikes wait for a counterpart, a new spike fits them all, but only the oldest will get it. So a
@@ -7,6 +7,8 @@ first spike is an entry in a table (``entries.py``). The engine makes activation
 - for a rule that writes no slot: one activation, with the oldest first spike
 - for the best writer of a slot: also one activation, but all first spikes hold the second (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses
+- for a rule that was added beside a live spike of its signals: also one with each first spike, because an activation
+  may take the live spike in the place of a lost one
 
 Entries are *unfolded* into ordinary activations for a tracer, to merge groups, and to retire or add a rule. `Consent`
 unfolds an entry to judge each of its clauses by itself. As in a conflict set, the numbers of these activations are
@@ -47,39 +49,39 @@ class Halves:
     def offer(self, signal: SignalPlan, spike: Spike) -> list[Need]:
         """Offer a new spike to the halves of its signal; return the needs to which it must be offered one by one."""
         state = self.state
-        others: list[Need] = []
         group = spike.group.root()
-        single = state.tracer is not None or state.loops.full
-        if single:
+        if group.interested:
+            state.dirty[group] = None
+        if state.tracer is not None or state.loops.full:
             self.unfold_all()
+            return [need for half in signal.halves for need in half.needs]
         for half in signal.halves:
-            if single or (state.retired and not state.retired.isdisjoint(half.places)):
-                others += half.needs
+            if state.retired and state.retired.issuperset(half.places):
                 continue
             first = half.needs[0]  # a need with a predicate has a half of its own
-            rule = first.clause.rule
-            if not all([state.test(predicate, spike.payload, rule) for predicate in first.predicates]):
+            if group.finished(first.clause.rule.slots):
                 continue
-            if group.finished(rule.slots):
+            if first.predicates and not state.accepts(first, spike.payload):
                 continue
-            paired: set[int] = set()
+            apart: set[int] = set()  # the clauses for which the half does not hold the spike
             for need in half.needs:
+                if state.retired and need.clause.rule.index in state.retired:
+                    apart.add(need.clause.index)
+                    continue
                 if need in state.lacking:
                     self.holdings.offer_to_lacking(need, spike)
                 if state.halves and (group.entries or not half.kin) and self._pair(need, spike, group):
-                    paired.add(need.clause.index)
+                    apart.add(need.clause.index)
             before = state.activations
             state.activations += len(half.needs)
-            if len(paired) < len(half.needs):
-                if paired:
-                    spike.parted = paired | (spike.parted or set())
+            if len(apart) < len(half.needs):
+                if apart:
+                    spike.parted = apart | (spike.parted or set())
                 self.entries.enter(spike, half, before)
                 if state.hoping:
                     self.holdings.waits.stir_half(half)
                 self._inherit_pressure(spike, half, group)
-        if group.interested:
-            state.dirty[group] = None
-        return others
+        return []
 
     def unfold_all(self) -> None:
         """Create the activations of all alternatives and entries."""
@@ -112,7 +114,7 @@ class Halves:
                 self.unfold(spike, half)
 
     def take_over(self, activation: Activation, group: Group) -> None:
-        """Put a clause's activation under the pressure that its stand-by had in a group, if it had any (L16)."""
+        """Put a new activation under the pressure that its clause's stand-by had in a group, if there was any (L16)."""
         until = (group.pressed or {}).get(activation.clause.index)
         if until is not None:
             self.holdings.put_under_pressure(activation, group, until)
@@ -142,30 +144,43 @@ class Halves:
         if len(waiting) > 1 and partner.half is not None and partner.half.sole:
             self.holdings.benches.seat(partner.half, spike)
             return False
-        free = not need.clause.rule.slots
+        one = not need.clause.rule.slots and not (state.added and self._has_elder(need.clause))
         if need.kin != need.bit:
             found: list[Spike] = sorted((s for s in group.entries if state.keeps(partner, s)), key=waiting.__getitem__)
         else:
-            found = self._find(partner, waiting)
-        for first in found[:1] if free else found:
+            found = self._find(partner, waiting, one=one)
+        for first in found[:1] if one else found:
             activation = self._make(partner, first)
             self.holdings.acquire(activation, need, spike)
             self.holdings.waits.stir(activation)
             self.holdings.update(activation)
-        return free and bool(found)
+        return one and bool(found)
 
-    def _find(self, need: Need, waiting: OrderedDict[Spike, int]) -> list[Spike]:
-        """Return the spikes that a half holds for a need, oldest first; for a rule that writes no slot, only the oldest."""
+    def _has_elder(self, clause: Clause) -> bool:
+        """Return whether a live spike that fits a clause may be older than the clause's rule.
+
+        No half holds such a spike, but an activation that loses another spike takes it (L12).
+        """
+        state = self.state
+        for need in clause.needs:
+            for spike in state.live.get(need.signal.index, ()):
+                if spike.id > state.added:
+                    break
+                if state.fits(need, spike):
+                    return True
+        return False
+
+    def _find(self, need: Need, waiting: OrderedDict[Spike, int], *, one: bool) -> list[Spike]:
+        """Return the spikes that a half holds for a need, oldest first; if `one`, only the oldest."""
         state, half, found, passed = self.state, need.half, list[Spike](), 0
         assert half is not None
-        free = not need.clause.rule.slots
         row = state.rows.get(half)
         if row is not None:
-            return row.find(need, state, all_=not free)
+            return row.find(need, state, all_=not one)
         for first in waiting:
             if state.keeps(need, first):
                 found.append(first)
-                if free:
+                if one:
                     break
             else:
                 passed += 1
@@ -176,7 +191,7 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """Make the activation of each clause whose stand-by was under pressure, and is no stand-by any more."""
+        """Create the activations of the clauses whose stand-by was under pressure. They take this pressure over."""
         for number in group.pressed or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)

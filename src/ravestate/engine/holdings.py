@@ -55,7 +55,7 @@ class Holdings:
         return activation
 
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
-        """Give an activation a patience in a group that began before the activation was created (L16)."""
+        """Give a new activation a patience in a group. The patience began before the activation was created (L16)."""
         activation.pressed = {group: until}
         if until > self.state.now:
             self.state.deadlines.add(until, PATIENCE, (group, activation))
@@ -63,7 +63,7 @@ class Holdings:
     # ------------------------------------------------------------------------------------ taking
 
     def acquire(self, activation: Activation, need: Need, spike: Spike) -> None:
-        """Give an activation a spike that meets one of its needs."""
+        """Give an activation a spike that meets one of the activation's needs."""
         state = self.state
         activation.spikes[need.index] = spike
         activation.missing &= ~need.bit
@@ -161,7 +161,7 @@ class Holdings:
                 self.entries.let_expire(spike, spike.born + need.max_age)
 
     def complete(self, activation: Activation, *, late: bool = False) -> None:
-        """Make an activation ready and queue it: a writer asks for consent, and any other activation starts without it.
+        """Make an activation ready and queue it: a writer asks for consent, and any other activation just starts.
 
         If the activation's loop has had too many turns (L23), only a second call, with `late`, queues the activation.
         """
@@ -187,7 +187,7 @@ class Holdings:
         self.state.gated.pop(activation, None)
 
     def _unhead(self, activation: Activation) -> None:
-        """Note that benches need another head, if an activation was one."""
+        """If an activation was the head of benches, note that these need another head."""
         state = self.state
         if state.benches:
             for spike in activation.spikes:
@@ -197,7 +197,7 @@ class Holdings:
                     state.headless[spike] = None
 
     def on_ripen(self, activation: Activation) -> None:
-        """Judge an activation again whose spikes are old enough now (L14)."""
+        """Judge an activation again, because its spikes are old enough now (L14)."""
         activation.ripens = NEVER
         self.update(activation)
 
@@ -211,7 +211,7 @@ class Holdings:
             if spike.born + half.max_age <= time:
                 bench = self.state.bench_of(half, spike)
                 if bench is not None and bench.partner is not None:
-                    bench.late.append(spike)  # it lacks nothing
+                    bench.late.append(spike)  # with a counterpart, the spike does not expire
                 else:
                     self.entries.drop(spike, half)
 
@@ -241,7 +241,7 @@ class Holdings:
         kin = 0
         for need in needs:
             kin |= need.kin
-        # The lost spike may have excluded spikes of other groups, which may now meet the kin needs.
+        # The lost spike may have kept out spikes of other groups. Those may now meet the kin needs.
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
@@ -259,7 +259,7 @@ class Holdings:
     def give_up(self, run: Activation, reason: str) -> None:
         """Make the run's rule give up the run's non-detached spikes for good, in all its other activations."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # mark all of them first: an activation that loses a spike takes another at once
+        for spike in run.stands_on:  # mark all first: an activation that loses a spike takes another at once
             self.benches.rise(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:
@@ -310,7 +310,10 @@ class Holdings:
             state.busy -= 1
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
-        """Take the spike of a need from an activation; `by` is the run that is the reason, or None."""
+        """Take the spike of a need from an activation; `by` is the run that is the reason, or None.
+
+        The activations that wait in the spike's causal group ask again: the group becomes dirty (`Waits.wake`).
+        """
         state = self.state
         spike = activation.spikes[need.index]
         if spike is None:
@@ -323,10 +326,8 @@ class Holdings:
                 group.part(activation)
             if group.interested:
                 state.dirty[group] = None
-        if spike not in activation.spikes:
-            spike.release(activation)
-            if not (spike.is_held or spike.entries):
-                self.entries.forget(spike)
+        if spike not in activation.spikes and not (spike.release(activation) or spike.entries):
+            self.entries.forget(spike)
         if reason and state.tracer is not None:
             rule, run = ("", 0) if by is None else (by.clause.rule.name, by.id)
             mine = activation.clause.rule.name

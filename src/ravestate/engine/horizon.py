@@ -1,7 +1,7 @@
 """The horizon (L16): whether the missing constraints of a rival may yet be met.
 
-A signal is in the horizon of a group if some rule of the group may yet cause it. Such a rule runs, or its own
-constraints are met or may still be met. This is a least fixed point over an and-or graph. Few signals matter at a time,
+A signal is in the horizon of a group if some rule of the group may yet cause it. A rule may
+cause a signal if it runs, or if its own constraints are met or may yet be met. This is a least fixed point over an and-or graph. Few signals matter at a time,
 so the engine derives each one backwards, from its causes to live activations. A static closure (`Causes.ancestors`)
 cuts off the causes that no live rule of the group can reach.
 
@@ -13,10 +13,11 @@ A derivation has one of three strengths:
 ``NO``           nothing leads to the signal
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
-An activation that waits for the asking activation cannot help before the latter has had its turn: it counts as still.
+An activation that waits for the asking activation cannot help until the asking activation has had its turn. So it
+counts as *still*: it does nothing.
 
-A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`: it yields
-the steps whose strengths it needs, and `_solve` keeps those that wait on a stack of its own.
+A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`, which
+yields the steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack of its own.
 
 A derivation that needs itself reads its own *bound*: the strength that is proven so far, at first `NO`. All strengths
 that rest on a bound are open. If a bound has risen when the oldest derivation of a cycle ends, the cycle is derived again.
@@ -42,11 +43,11 @@ FIRM: Final = 2
 
 SlotNumbers = frozenset[int]
 Place = tuple[int, Group, SlotNumbers]
-"""The object of a derivation: a signal (its number) comes in a group, by rules that write none of some slots."""
+"""The goal of a derivation: a signal (its number) arises in a group, without rules that write the excluded slots."""
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
-"""Instead of the depth of an open derivation: the strength is final, or only a bound that nobody may read any more."""
+"""Special depths. `FINAL` marks a final strength. `STALE` marks a bound that no step may read any more."""
 
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
@@ -55,19 +56,19 @@ Step = Generator[Any, int, int]
 class Horizon:
     """The horizons of the engine's groups at one moment, for one asking activation.
 
-    It changes no spike, group or activation. A predicate that raises is reported (`State.test`).
+    It changes no spike, group or activation.
 
     Args:
         state: The state of the engine.
-        still: The activations that count as doing nothing: the asking one, and those that wait for it.
+        still: The activations that count as doing nothing: the asking activation, and the activations that wait for it.
         idle: More activations that count as doing nothing.
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups on whose state the latest results depend.
-        hopes: Pairs of a kind and the number of a rule or signal: changes of these may change the results. For
-            `OUTSIDE`, a change counts if the rule has at most this many other activations.
-        recheck: The time at which a spike that a result depends on grows too old to be looked at (seconds).
+        hopes: Pair of a kind and the number of a rule or signal → a count. A change to that rule or signal may change
+            the results. For `OUTSIDE`, it counts only if the rule that raises it has at most that many other activations.
+        recheck: The earliest time (seconds) at which a spike under the results reaches its maximum age.
     """
 
     __slots__ = (
@@ -93,10 +94,10 @@ class Horizon:
         self.still = still
         self.idle = idle
         self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
-        # For each place: its strength, the roots of a firm one, and the depth of the oldest open derivation it rests on.
+        # For each place: its strength, its roots if it is firm, and the depth of the oldest open derivation beneath it.
         self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
         self._depth = 0  # how many derivations are in progress
-        self._since = FINAL  # the depth of the oldest one whose bound the derivation in progress has read
+        self._since = FINAL  # the depth of the oldest derivation whose bound the present derivation has read
         self._open: list[Place] = []  # the places that rest on bounds
         self._risen = 0  # how often a bound has risen
         self._far: dict[tuple[int, Group], bool] = {}  # the results of `_outside`
@@ -114,17 +115,17 @@ class Horizon:
         return any([activation in idle for idle in self.idle])
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
-        """Return how viable a clause is in a group, and the live activations on which a firm result rests.
+        """Return how viable a clause is in a group (a strength), and the live activations on which a firm result rests.
 
-        `activation` is None for the clause's stand-by. Without a spike of the group, an activation has a stake there
-        only if a signal of the group's horizon is among its missing needs.
+        `activation` is None for the clause's stand-by. An activation without a spike of the group has a stake there only
+        if it lacks a signal of the group's horizon.
         """
         self.roots.clear()
         strength = _solve(self._viable(clause, activation, group, clause.rule.slotset))
         return strength, tuple(dict.fromkeys(self.roots))
 
     def forget(self, activation: Activation) -> None:
-        """Leave out an activation that is about to end, and what was derived while it lived."""
+        """Discard all derivations that may rest on an activation that is about to end."""
         rule = activation.clause.rule
         if self.state.causes.helpful.isdisjoint(rule.raises):
             return  # no derivation rests on it
@@ -134,7 +135,7 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return the bits of the needs for which a clause's activations in other groups may get a spike of the group."""
+        """Return a clause's needs (as bits) that this group may meet for activations in other groups."""
         if clause.apart:
             return 0  # any spike that it lacks must come from the group that it stands on
         reach = self._rules(group).keys()
@@ -162,6 +163,10 @@ class Horizon:
         ]
 
     def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: SlotNumbers) -> Step:
+        """Return the strength with which a clause may become ready in a group; `activation` is None for its stand-by.
+
+        Rules that write one of `slots` cannot help.
+        """
         rule = clause.rule
         if rule.index in self.state.retired:
             return NO
@@ -181,7 +186,7 @@ class Horizon:
                     others.append(home)
                     self.visited[home] = None
             if not missing:
-                self.roots.append(activation)  # the activation is ready, or will ripen
+                self.roots.append(activation)  # the activation is ready, or will be when its spikes are old enough
         # For each need, or set of kin needs: how firmly this group may meet it, and how firmly any group may.
         here: list[int] = []
         best: list[int] = []
@@ -242,7 +247,7 @@ class Horizon:
         return strength or (SPECULATIVE if self._outside(need, group) else NO)
 
     def _guards(self, clause: Clause, group: Group, slots: SlotNumbers) -> Generator[Any, int, bool]:
-        """Return whether each of a clause's predicates on slots is true, or its slot may yet change in this group."""
+        """Return whether every slot predicate of a clause is true, or has a slot that this group may yet change."""
         for slot, guard in clause.guards:
             if self.state.opens(slot, guard):
                 continue
@@ -275,7 +280,7 @@ class Horizon:
                 self._close(first, STALE)
                 known[place] = FIRM, tuple(dict.fromkeys(self.roots[mark:])), FINAL
                 since = FINAL
-            elif since < depth:  # it is part of the cycle of an older derivation
+            elif since < depth:  # this derivation is part of the cycle of an older one
                 self._risen += best > bound
                 known[place] = best, (), since
                 self._open.append(place)
@@ -292,7 +297,7 @@ class Horizon:
             return best
 
     def _close(self, first: int, since: int) -> None:
-        """Make the strengths of the open places from the position `first` final or stale."""
+        """Mark the strengths of the open places as final or stale, from the index `first` on."""
         for place in self._open[first:]:
             self._known[place] = self._known[place][0], (), since
         del self._open[first:]
@@ -325,6 +330,7 @@ class Horizon:
         return best
 
     def _rules(self, group: Group) -> Mapping[int, Mapping[Activation, None]]:
+        """Return the members of a group by rule (its number), and note that the results depend on the group."""
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
@@ -342,6 +348,7 @@ class Horizon:
         return found
 
     def _is_far(self, signal: int, group: Group) -> bool:
+        """Return whether a live rule of another group might raise a signal, and note the hope."""
         causes = self.state.causes
         wide = causes.wide_ancestors(signal)
         if wide:
@@ -359,7 +366,7 @@ class Horizon:
         return False
 
     def _apart(self, rule: int, group: Group, *, near: bool) -> int:
-        """Return how many activations of a rule do nothing, or (`near`) belong to a group."""
+        """Return how many activations of a rule do nothing. With `near`, also count the rule's other activations in a group."""
         if self._still is None:
             self._still = {}
             for activation in self.still:
@@ -376,7 +383,11 @@ class Horizon:
 
 
 def _solve(step: Step) -> int:
-    """Run a derivation with all its steps, and return its strength."""
+    """Run a derivation with all its steps, and return its strength.
+
+    A recursion as deep as a long chain of causes might exceed Python's limit. So each step towards another cause is
+    yielded to this loop (`_comes`, `_caused`). A ``yield from`` only divides one step into several functions.
+    """
     waiting: list[Step] = []
     strength: Any = None
     while True:

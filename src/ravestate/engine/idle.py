@@ -8,7 +8,7 @@ from ravestate.engine.activation import Activation
 
 
 class Idle:
-    """A set of activations in a fixed order; `counts` is the number of a rule → how many of them are of this rule."""
+    """A set of activations in a fixed order; `counts` is the number of a rule → how many members it has."""
 
     __slots__ = ("_members", "counts")
 

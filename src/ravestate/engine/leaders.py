@@ -1,12 +1,15 @@
 """Leaders: a refused activation speaks for the activations behind it.
 
-Suppose that a thousand fallbacks are ready, and the best of them is refused. All others are refused as well, because the
-best goes before them. So only the best, the *leader*, asks in full (``consent.py``). The others *follow*: they wait for the
-leader, and look at no other rival.
+Suppose that a thousand fallbacks are ready, and the best fallback is refused. All others are refused as well, because
+the best fallback is ahead of them. So only the best fallback, the *leader*, asks in full (``consent.py``). The others
+*follow*: they wait for the leader, and look at no other rival.
 
-A rival between the leader and another activation prevents this. The other activation would put such a rival under
-pressure, or expect help from it, but the leader did not (L16). Then the other activation asks in full, and leads the next.
-A leader's effects help no rule that writes a slot: to those behind it, the leader counts as active.
+A rival whose utility lies between those of the leader and another activation prevents this. The other activation
+would put this rival under pressure, or expect help from it, but the leader did not (L16). So the other activation asks
+in full, and leads the activations after it.
+
+If a follower asked in full, it would also count on the effects of the leader. So an activation can lead only if its
+effects help no rule that writes a slot.
 """
 
 from __future__ import annotations
@@ -24,8 +27,8 @@ class Leader:
 
     Attributes:
         activation: The activation.
-        next: The first clause that follows the activation and prevents others from following; None if there is none.
-        recovering: More such clauses. Their places change with time.
+        next: The best clause behind the activation that prevents others from following; None if there is none.
+        recovering: More such clauses, of rules that recover. Their places in the order change with time.
     """
 
     __slots__ = ("activation", "known", "next", "recovering")
@@ -38,7 +41,7 @@ class Leader:
 
 
 class Leaders:
-    """The leaders of one round of questions; `found` is a causal group and the slots that are asked for → its leader."""
+    """The leaders of one round of questions; `found` maps a causal group and the slots asked for to the leader."""
 
     __slots__ = ("found", "state")
 
@@ -49,7 +52,7 @@ class Leaders:
     def add(self, activation: Activation) -> None:
         """Make a refused activation a leader, if it can be one."""
         groups, rule = activation.firm_groups(), activation.clause.rule
-        if len(groups) == 1 and self.state.tracer is None and self.state.causes.helpful.isdisjoint(rule.raises):
+        if len(groups) == 1 and self.state.causes.helpful.isdisjoint(rule.raises):
             self.found[groups[0], rule.slotset] = Leader(activation)
 
     def refuse(self, activation: Activation) -> Refusal | None:

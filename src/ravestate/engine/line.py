@@ -10,7 +10,7 @@ class Line:
     """A queue of places, which are tuples; the least one is the first.
 
     Attributes:
-        line: The places that joined before all others, the first one last. It is empty only if the queue is.
+        line: The places that joined ahead of all others, in reverse order. This list is empty only if the queue is.
     """
 
     __slots__ = ("_between", "line")

@@ -55,7 +55,7 @@ class Lineage(NamedTuple):
 
 
 class Loops:
-    """The runs of the present instant, and the deferred turns of loops. Rules that an error names go to `memory`.
+    """The runs of the present instant, and the deferred turns of loops. `memory` notes rules that an error has named.
 
     Attributes:
         runs: How many runs there have been in this instant.

@@ -171,10 +171,6 @@ class Matching:
         rule = clause.rule
         if state.retired and rule.index in state.retired:
             return
-        for predicate in need.predicates:
-            if not state.test(predicate, spike.payload, rule):
-                holdings.pass_by(clause, spike, "payload")
-                return
         if not need.detached:
             if clause.cyclic and spike.descends_from(rule.index):
                 holdings.pass_by(clause, spike, "caused")
@@ -182,6 +178,9 @@ class Matching:
             if spike.group.taken and spike.group.finished(rule.slots):
                 holdings.pass_by(clause, spike, "consumed")
                 return
+        if need.predicates and not state.accepts(need, spike.payload):
+            holdings.pass_by(clause, spike, "payload")
+            return
         if need in state.lacking:
             holdings.offer_to_lacking(need, spike)
         if need.detached and clause.asks_detached:
@@ -211,7 +210,7 @@ class Matching:
         holdings.update(activation)
 
     def _show(self, need: Need, spike: Spike) -> None:
-        """Give a new spike to the activations that look at its signal already, for they hold the newest (L19)."""
+        """Give a new spike to the activations that look at its signal: these hold the newest spike (L19)."""
         for activation in list(self.state.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
                 held = activation.spikes[need.index]

@@ -36,6 +36,7 @@ class Memory:
         "ran",
         "report_ends",
         "retired",
+        "runs",
         "spikes",
         "unseen",
         "values",
@@ -65,6 +66,8 @@ class Memory:
         """The numbers of the rules that an error has named for an endless loop."""
         self.activations = 0
         """The number of the newest activation."""
+        self.runs = 0
+        """The number of the newest run."""
         self.spikes = 0
         """The number of the newest spike."""
         self.groups = 0
@@ -85,6 +88,7 @@ class Memory:
         self.blamed = other.blamed
         self.looped = other.looped
         self.activations = other.activations
+        self.runs = other.runs
         self.spikes = other.spikes
         self.groups = other.groups
 

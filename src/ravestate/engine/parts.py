@@ -1,6 +1,6 @@
 """The parts of an engine at work, one file each, which share one `State`.
 
-This file has the events, the deadlines and the order of the effects. The work is in the parts.
+This file has the handlers of events and deadlines, and the loop that decides what comes next. The parts do the work.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ravestate.policy.policy import Policy
 
 
 class Parts:
-    """The parts of an engine of a policy. They have no state of their own: all of it is in `state`."""
+    """The parts of one engine at work. They have no state of their own: all their state is in `state`."""
 
     __slots__ = ("agenda", "halves", "holdings", "matching", "runs", "slots", "state")
 
@@ -78,6 +78,8 @@ class Parts:
         free = state.free
         # Reports (of spikes, ends, failures) do not end the loop: only a run to start or cancel does.
         while not state.acts:
+            if state.faults:
+                state.report_faults()
             if state.deadlines.earliest <= state.now:
                 self.advance(state.now)
             elif state.errors:
@@ -87,7 +89,7 @@ class Parts:
                 self.matching.birth(error, failure, (), self.matching.new_group(), None, lineage)
             elif state.busy and not state.values.get(state.activity.index):
                 self.slots.set_flag(state.activity, True)
-            elif free.new or free.line:
+            elif free.new or free.batch or free.line:
                 agenda.start_free()
             elif agenda.has_questions:
                 agenda.consent_round()
@@ -98,6 +100,8 @@ class Parts:
             else:
                 state.loops.rest()
                 break
+        if state.faults:
+            state.report_faults()
         out = state.out
         state.out = []
         state.acts = False
@@ -107,13 +111,13 @@ class Parts:
     # The runner calls these, after `Engine.parts_at`, if nothing records the events.
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
-        """Handle the event `Write` at the present time."""
+        """Handle the event `Write` at the present time; `run` is the number of the run, or None for code outside."""
         state = self.state
         writer = None if run is None else state.running.get(run) or self._run(run)
         self.slots.write(state.slot_of.get(slot) or self._slot(slot), value, writer)
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
-        """Handle the event `Emit` at the present time."""
+        """Handle the event `Emit` at the present time; `run` is the number of the run, or None for code outside."""
         state = self.state
         emitter = None if run is None else state.running.get(run) or self._run(run)
         self.matching.emit(state.signal_of.get(signal) or self._signal(signal), payload, emitter)
@@ -125,26 +129,33 @@ class Parts:
     # ------------------------------------------------------------------------------------ events
 
     def on_start(self, event: events.Start) -> None:
+        """Raise ``core:startup``."""
         self.matching.emit(self.state.signal_of["core:startup"], None, None)
 
     def on_stop(self, event: events.Stop) -> None:
+        """Raise ``core:shutdown``."""
         self.matching.emit(self.state.signal_of["core:shutdown"], None, None)
 
     def on_write(self, event: events.Write) -> None:
+        """Write a slot."""
         self.write(event.slot, event.value, event.run)
 
     def on_store(self, event: events.Store) -> None:
+        """Store an item in a collection."""
         slot = self._collection(event.slot)
         self.slots.store(slot, event.key, event.item, None if event.run is None else self._run(event.run))
 
     def on_discard(self, event: events.Discard) -> None:
+        """Remove an item from a collection."""
         slot = self._collection(event.slot)
         self.slots.store(slot, event.key, ABSENT, None if event.run is None else self._run(event.run))
 
     def on_emit(self, event: events.Emit) -> None:
+        """Raise a signal."""
         self.emit(event.signal, event.payload, event.run)
 
     def on_wipe(self, event: events.Wipe) -> None:
+        """Withdraw the live spikes of a signal and all their descendants; cancel the runs that stand on them (L20)."""
         signal = self._signal(event.signal)
         wiper = None if event.run is None else self._run(event.run)
         state = self.state
@@ -157,6 +168,7 @@ class Parts:
             self.holdings.kill(spike, "wiped")
 
     def on_finish(self, event: events.Finish) -> None:
+        """Settle a run whose function has ended (L18)."""
         if event.kind not in KINDS:
             raise EngineError(f"a run ends by one of {', '.join(KINDS)}, not by {event.kind!r}")
         run = self._run(event.run)
@@ -165,7 +177,7 @@ class Parts:
             self._retire(run.clause.rule)
 
     def on_add_rule(self, event: events.AddRule) -> None:
-        """Replace the policy by one that begins with the same rules in the same order, and has more."""
+        """Replace the policy by a policy that begins with the same rules in the same order, and has more rules."""
         state = self.state
         known, plans = state.policy.rule_plans, event.policy.rule_plans
         if [plan.rule for plan in plans[: len(known)]] != [plan.rule for plan in known]:
@@ -174,6 +186,9 @@ class Parts:
         state.adopt(event.policy)
         state.asking.update(state.waiting)
         for plan in plans[len(known) :]:
+            for need in (need for clause in plan.clauses for need in clause.needs if need.predicates):
+                for spike in state.live.get(need.signal.index, ()):
+                    state.accepts(need, spike.payload)  # only to report a predicate that raises
             looking = [clause for clause in plan.clauses if clause.asks_detached]
             for need in (need for clause in looking for need in clause.needs if need.detached):
                 for spike in state.live.get(need.signal.index, ()):
@@ -192,29 +207,37 @@ class Parts:
     # ------------------------------------------------------------------------------------ deadlines
 
     def on_ripen(self, time: float, activation: Activation) -> None:
+        """Judge an activation again, because its spikes are old enough (L14)."""
         self.holdings.on_ripen(activation)
 
     def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
+        """Show a spike to a detached need for which it is old enough now (L19)."""
         self.matching.on_look(looking)
 
     def on_recheck(self, time: float, activation: Activation) -> None:
+        """Make an activation ask again, because its refusal may end at this time."""
         if activation.state == WAITING and activation.refusal is not None:
             activation.refusal.recheck = NEVER
             self.state.asking[activation] = None
 
     def on_patience(self, time: float, owner: tuple[Group, Activation]) -> None:
+        """Make the activations that wait in a group ask again, because a rival's patience has ended (L16)."""
         self.state.dirty[owner[0].root()] = None
 
     def on_expire(self, time: float, spike: Spike) -> None:
+        """Make incomplete holders give up a spike that is too old for them (L14)."""
         self.holdings.on_expire(time, spike)
 
     def on_forget(self, time: float, spike: Spike) -> None:
+        """Remove a spike that is too old for every detached need, if nothing holds it."""
         self.holdings.entries.on_forget(spike)
 
     def on_timeout(self, time: float, run: Activation) -> None:
+        """Cancel a run that has taken too long."""
         self.runs.cancel(run, "timeout")
 
     def on_watch(self, time: float, watch: Watch) -> None:
+        """Judge an `until` condition whose spikes are old enough now (L21)."""
         self.runs.on_watch(watch)
 
     def _signal(self, name: str) -> SignalPlan:

@@ -38,7 +38,7 @@ class Reason(StrEnum):
 
 
 class Outcome(Reason):
-    """How a run ended (L18); the phrase completes a sentence that begins with the rule's name."""
+    """An outcome of a run (L18); the phrase completes a sentence that begins with the rule's name."""
 
     DONE = reason("done", "finished")
     RESIGNED = reason("resigned", "resigned")
@@ -49,7 +49,7 @@ class Outcome(Reason):
 
 
 class StopReason(Reason):
-    """Why the engine asked a run to stop."""
+    """A reason for which the engine asked a run to stop."""
 
     INTERRUPTED = reason("interrupted", "its until condition was met")
     TIMEOUT = reason("timeout", "its timeout ran out")
@@ -57,7 +57,7 @@ class StopReason(Reason):
 
 
 class LossReason(Reason):
-    """Why an activation gave up a spike."""
+    """A reason for which an activation gave up a spike."""
 
     AGE = reason("age", "the spike was too old")
     CONSUMED = reason("consumed", "another rule answered it")
@@ -68,7 +68,7 @@ class LossReason(Reason):
 
 
 class PassReason(Reason):
-    """Why a rule did not take a spike."""
+    """A reason for which a rule did not take a spike."""
 
     PAYLOAD = reason("payload", "its payload did not match the predicate")
     CONSUMED = reason("consumed", "another rule had answered its cause")
@@ -76,7 +76,7 @@ class PassReason(Reason):
 
 
 class DropReason(Reason):
-    """Why a spike was withdrawn (L20, L23)."""
+    """A reason for which a spike was withdrawn (L20, L23)."""
 
     OVERFLOW = reason("overflow", "its signal had too many spikes")
     SUPERSEDED = reason("superseded", "a later spike replaced it")
@@ -84,7 +84,7 @@ class DropReason(Reason):
 
 
 class Verdict(Reason):
-    """How far a rule came for an input, from the furthest to the least far."""
+    """The stage that a rule reached for an input; the furthest stage comes first."""
 
     FIRED = reason("fired", "It fired", "good")
     RUNNING = reason("running", "It is running", "busy")

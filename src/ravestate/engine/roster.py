@@ -1,8 +1,8 @@
 """A roster: the members of a large causal group by slot and by rule.
 
-A thousand rules may hear one input. A question about one slot then concerns the few members that write it, so it must
-not look at all of them. A group of few members needs no roster. The roster of a larger group is made at the first such
-question; from then on, ``holdings.py`` keeps it.
+A thousand rules may hear one input. A question about one slot then concerns only the few members that write the slot.
+So it must not look at all members. A group of few members needs no roster. The roster of a larger group is made at the
+first such question. From then on, `Group.join` and `Group.part` keep it up to date.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ravestate.policy.causes import Causes
 from ravestate.policy.model import RulePlan
 
 FEW: Final = 8
-"""The most members of a group without a roster."""
+"""The maximum number of members of a group without a roster."""
 
 
 class Roster:

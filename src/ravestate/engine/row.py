@@ -1,4 +1,4 @@
-"""A row: the spikes that a half holds, so that each of its clauses finds its own without a look at all of them."""
+"""A row: the spikes of a half in order, so that each clause of the half finds its spikes without a long search."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ SPARE = 32
 class Row:
     """The spikes of a half, oldest first.
 
-    A half may hold a spike for some of its clauses only. A spike that it holds no longer for a clause does not come back.
-    So the row notes for each clause how many spikes at its beginning are of no use.
+    A half may hold a spike for only some of its clauses. A spike that the half has given up for a clause does not come
+    back. So the row notes, for each clause, how many spikes at the row's beginning are of no use.
     """
 
     __slots__ = ("_held", "_last", "_spikes", "_starts")
@@ -45,7 +45,7 @@ class Row:
         return found
 
     def _catch_up(self) -> None:
-        """Add the spikes that have come since, and if too many have gone, leave these out."""
+        """Add the spikes that have come since the last call. If too many spikes have gone, remove these."""
         held = self._held
         new: list[Spike] = []
         for spike in reversed(held):

@@ -51,7 +51,9 @@ class Runs:
                     group.take(slot, (activation,))
         elif len(clause.needs) > 1 or len(rule.clauses) > 1:
             self.holdings.give_up(activation, "consumed")  # L10
-        state.running[activation.id] = activation
+        state.runs += 1
+        activation.number = state.runs
+        state.running[state.runs] = activation
         loops = state.loops
         loops.runs += 1
         if loops.runs > MANY and (loop := loops.trace(activation)):
@@ -68,13 +70,13 @@ class Runs:
             if spike is not None:
                 payloads[spike.signal.name] = spike.payload
         values: dict[str, Any] = {}
-        for slot in rule.readable:
-            values[state.policy.slot_plans[slot].name] = state.read(slot)
+        for view in rule.views:
+            values[view.name] = state.read(view.index)
         if state.tracer is not None:
             ids = tuple([spike.id for spike in activation.spikes if spike is not None])
             state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids))
         state.acts = True
-        state.out.append(Run(activation.id, rule.rule, payloads, values))
+        state.out.append(Run(activation.number, rule.rule, payloads, values))
 
     def cancel(self, run: Activation, reason: CancelReason) -> None:
         """Cancel a run, and order the runtime to stop its function."""
@@ -85,7 +87,7 @@ class Runs:
         if state.tracer is not None:
             state.tracer(trace.Told(state.now, run.id, run.clause.rule.name, reason))
         state.acts = True
-        state.out.append(Cancel(run.id, reason))
+        state.out.append(Cancel(run.number, reason))
 
     # ------------------------------------------------------------------------------------ until
 
@@ -94,8 +96,7 @@ class Runs:
         state = self.state
         for need in spike.signal.watchers:
             for run, watch in list(state.watches.get(need.clause, {}).items()):
-                rule = run.clause.rule
-                if run.state == RUNNING and all([state.test(p, spike.payload, rule) for p in need.predicates]):
+                if run.state == RUNNING and state.accepts(need, spike.payload):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < state.now:
                         watch.spikes[need.index] = spike  # else the older spike ripens first
@@ -135,7 +136,7 @@ class Runs:
     def finish(self, run: Activation, kind: events.OutcomeKind, reason: str, exception: BaseException | None) -> None:
         """Settle a run whose function has ended: `verdict` has the table of the outcomes (L18)."""
         state = self.state
-        del state.running[run.id]
+        del state.running[run.number]
         rule = run.clause.rule
         outcome, fired = verdict(run.told, kind, run.wrote) if run.told or kind != DONE else (DONE, True)
         if run.told == "timeout":
@@ -158,7 +159,7 @@ class Runs:
             text = reason or (said(exception) if exception is not None else "")
             state.tracer(trace.Settled(state.now, run.id, rule.name, outcome, text, fired, exception))
         if state.report_ends:
-            state.out.append(Ended(run.id, rule.name, outcome, fired))
+            state.out.append(Ended(run.number, rule.name, outcome, fired))
         on_error = outcome == FAILED and _handles_error(run)
         self.holdings.end(run)
         if outcome == FAILED:
@@ -198,7 +199,7 @@ class Runs:
         for group in groups:
             for spike in list(group.entries) if state.benches else ():
                 self.holdings.benches.rise(spike)
-            for other in list(writers(group, rule.slots, state.causes)) if len(group.members) > 1 else ():
+            for other in list(writers(group, rule.slots, state.causes)) if group.count > 1 else ():
                 if (
                     other is not run
                     and other.state < RUNNING
@@ -221,7 +222,7 @@ class Runs:
                 group.free(slot, run)
             self.state.dirty[group] = None
         for spike in run.stands_on if self.state.alternatives else ():
-            for other in list(spike.holders):  # another clause of the rule must not take its alternatives along
+            for other in list(spike.holders):  # else the alternatives of `other` would be lost with the spike
                 if other.clause.rule is run.clause.rule and other is not run and other in self.state.alternatives:
                     self.sets.unfold(other)
         self.holdings.give_up(run, "resigned")
@@ -230,11 +231,13 @@ class Runs:
 
 def _roots(run: Activation) -> list[Group]:
     """Return the groups to which the run's groups belong now, each once."""
+    if len(run.groups) == 1:
+        return [run.groups[0].root()]
     return list(dict.fromkeys([group.root() for group in run.groups]))
 
 
 def _handles_error(run: Activation) -> bool:
-    """Return whether a run holds a spike of ``core:error``, or a descendant: its exception signals no other one."""
+    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure raises no further one."""
     return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
 
 

@@ -27,7 +27,7 @@ class Slots:
         self.matching = matching
 
     def write(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
-        """Write a slot, for a run or for code outside. An equal value changes nothing, unless the slot says otherwise."""
+        """Write a slot, for a run or for code outside. An equal value changes nothing, unless the slot has `always`."""
         if slot.is_collection:
             self._replace(slot, value, run)
             return
@@ -40,7 +40,7 @@ class Slots:
     def set_flag(self, flag: SlotPlan, value: bool) -> None:
         """Change a built-in flag, and raise its signals only if a rule, the tracer or the runtime may hear them."""
         state = self.state
-        if flag.heard or state.tracer is not None or self._is_watched(flag) or flag.index in state.policy.guarded:
+        if flag.heard or state.tracer is not None or self._is_watched(flag) or flag.guarded:
             self._change(flag, value, (), None)
         else:
             state.values[flag.index] = value
@@ -68,7 +68,7 @@ class Slots:
                 matching.birth(signal, value, parents, group, run)
         elif len(parents) > 1:
             matching.group_of(parents)  # the parents' groups merge (L11), although no rule hears the slot
-        if slot.index in state.policy.guarded:
+        if slot.guarded:
             self._regate(slot)
 
     def _change_item(self, slot: SlotPlan, key: str, item: Any, run: Activation | None) -> None:
@@ -104,7 +104,7 @@ class Slots:
             if signal.keep_latest:
                 matching.holdings.withdraw(signal, "superseded")
             matching.birth(signal, entry, parents, group, run)
-        if slot.index in state.policy.guarded:
+        if slot.guarded:
             self._regate(slot)
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:

@@ -21,12 +21,12 @@ class Spike:
         rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
         before: The number of the last activation that is older than the spike.
         lineage: In an instant with many runs: the rules that led to the spike (L23).
-        holder: The first activation that has taken the spike, while it holds the spike. Most spikes never have a second one,
-            and need no table.
+        holder: The first activation that has taken the spike, while it holds the spike. Most spikes never have a second
+            holder, and need no table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         entries: How many halves hold the spike without an activation (``halves.py``).
-        parted: The numbers of the clauses in these halves that do not hold the spike: they gave it up, or have an
-            activation with it.
+        parted: The numbers of the clauses for which these halves do not hold the spike: a clause gave the spike up, or
+            has an activation with it.
         refused: The numbers of the rules that gave the spike up for good.
     """
 
@@ -98,12 +98,13 @@ class Spike:
         elif holder is not self.holder:
             self._others = {holder: None}
 
-    def release(self, holder: Activation) -> None:
-        """Note that one of the holders gives the spike up."""
+    def release(self, holder: Activation) -> bool:
+        """Note that one of the holders gives the spike up; return whether another activation holds it."""
         if holder is self.holder:
             self.holder = None
-        else:
-            del self._others[holder]
+            return bool(self._others)
+        del self._others[holder]
+        return self.is_held
 
     def refuse(self, rule: int) -> None:
         """Note that a rule gives the spike up for good."""

@@ -17,7 +17,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
 
     Args:
         consent: The part of the engine that asks for consent.
-        refused: The activations that were refused since the last search. Every new stalemate has one of them.
+        refused: The activations that were refused since the last search. Each new stalemate has at least one of these.
         known: The activations that earlier searches found.
     """
     waiting = consent.state.waiting.keys()
@@ -29,7 +29,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             if one in seen or not _hangs(one):
                 continue
             if any([waiting.isdisjoint(roots) for roots in _firm(one)]):
-                continue  # none of the roots waits, so this wait will end
+                continue  # none of these activations waits, so this wait will end
             seen.add(one)
             for roots in _firm(one):
                 reached += roots
@@ -48,14 +48,14 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             if not moved:
                 break
             stuck -= {one for one, _ in moved}
-            for _, refusal in moved:  # search these too: they may wait for the first ones
+            for _, refusal in moved:  # search these activations too: they may wait for the first ones
                 reached += [root for roots in refusal.firm for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck
 
 
 def _firm(activation: Activation) -> list[tuple[Activation, ...]]:
-    """Return, for each rival that live activations will make ready or rule out, these activations (`Refusal.firm`)."""
+    """Return an activation's `Refusal.firm`: for each rival, the activations that will make it ready or rule it out."""
     return [] if activation.refusal is None else activation.refusal.firm
 
 

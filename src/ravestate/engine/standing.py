@@ -1,4 +1,4 @@
-"""Standing: which of two clauses goes first, now and in time (L9, L15).
+"""Standing: the order of clauses by effective utility, now and later (L9, L15).
 
 The effective utility of a clause is its utility x weight x recovery. Recovery climbs linearly over the rule's cooldown.
 Two clauses that are both worth 0 compare by weight x recovery. Equals compare by declaration.
@@ -12,10 +12,13 @@ from math import inf
 from ravestate.policy.model import Clause
 
 SAME = 1e-9
-"""Worths whose relative difference is at most this count as equal: two lines that cross do so at a rounded time."""
+"""Worths whose relative difference is at most this count as equal, because the times of crossings are rounded."""
 
 DIGITS = 9
 """Digits of a second to which the time of a crossing is rounded, so that it meets other events of the same moment."""
+
+INSTANT = 0.5e-9
+"""Seconds within which moments are the same: half of the last of these digits."""
 
 
 class Standing:
@@ -32,7 +35,7 @@ class Standing:
         rule = clause.rule
         if rule.cooldown:
             ran = self.ran.get(rule.index)
-            if ran is not None and self.now - ran < rule.cooldown:
+            if ran is not None and self.now - ran < rule.cooldown - INSTANT:
                 return (self.now - ran) / rule.cooldown, 1.0 / rule.cooldown
         return 1.0, 0.0
 
@@ -41,20 +44,20 @@ class Standing:
         return clause.base * self.recovery(clause)[0] if clause.rule.cooldown else clause.base
 
     def is_ahead(self, one: Clause, other: Clause) -> bool:
-        """Return whether a clause goes before another, both now and in the moment after: then it refuses the other."""
+        """Return whether `one` is ahead of `other`, both now and in the next moment. If so, `other` waits for `one`."""
         if not (one.rule.cooldown or other.rule.cooldown):
             return one.base > other.base or (one.base == other.base and one.index < other.index)
         now, soon = self._leads(one, other)
         return now and soon
 
     def overtakes(self, one: Clause, other: Clause) -> bool:
-        """Return whether a clause goes before another in the moment after: the other clause waits for it (L16)."""
+        """Return whether `one` is ahead of `other` in the next moment. If so, `other` waits for `one` by then (L16)."""
         if not (one.rule.cooldown or other.rule.cooldown):
             return self.is_ahead(one, other)
         return self._leads(one, other)[1]
 
     def _leads(self, one: Clause, other: Clause) -> tuple[bool, bool]:
-        """Return whether a clause goes before another now, and whether it does in the moment after."""
+        """Return whether `one` is ahead of `other` now, and whether it is in the next moment."""
         (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
         worth = (one.utility * one.rule.weight, other.utility * other.rule.weight)
         weight = (one.rule.weight, other.rule.weight)
@@ -73,7 +76,7 @@ class Standing:
     def crossing(self, one: Clause, other: Clause) -> float:
         """Return when recovery next changes the order of two clauses (seconds); `inf` if it never does.
 
-        The time is counted from the last run, so it is the same to the last digit for all that wait for it.
+        The time is counted from the last run. So all activations that wait for it get the same time, to the last digit.
         """
         (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
         closing = one.base * fast - other.base * their_fast

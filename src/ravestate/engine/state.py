@@ -15,7 +15,8 @@ The other parts of the engine share one state. Beside `State.adopt`, these files
 - `running`, `ran`, `watches`: ``runs.py``; `watched_by`: also ``holdings.py``; `retired`: ``parts.py``
 - `values`: ``slots.py``; a first read also adds the default
 
-Any part may add to the work that is still to be done: `asking`, `free`, `dirty`, `stirred`, `errors`, `out`.
+Any part may add to the work that is still to be done: `asking`, `dirty`, `stirred`, `free`, `errors`, `out`. The first
+three are emptied by `Waits.wake`, `free` by ``agenda.py``, `errors` and `out` by ``parts.py``.
 """
 
 from __future__ import annotations
@@ -57,6 +58,7 @@ class State(Memory):
         "active",
         "activity",
         "acts",
+        "added",
         "alternatives",
         "asking",
         "benches",
@@ -65,6 +67,7 @@ class State(Memory):
         "deadlines",
         "dirty",
         "errors",
+        "faults",
         "free",
         "gated",
         "halves",
@@ -111,10 +114,10 @@ class State(Memory):
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but none for this need."""
         self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING
-        """Half → the spikes that it holds without an activation, oldest first, each with the activation number just
-        before theirs (``halves.py``)."""
+        """Half → the spikes that it holds without an activation, oldest first (``halves.py``), each with the number just
+        before those of its activations."""
         self.rows: dict[Half, Row] = NOTHING
-        """Half that holds many spikes for some of its clauses only → these spikes in a row (``row.py``)."""
+        """Half that holds many spikes, each for only some of its clauses → these spikes in a row (``row.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
         """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
         self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
@@ -124,7 +127,7 @@ class State(Memory):
         self.headless: dict[Spike, None] = NOTHING
         """The counterparts of benches whose heads may have gone."""
         self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
-        """Spike → half that holds it under pressure → how many of its best clauses, and until when (seconds; L16)."""
+        """Spike → half that holds it → pairs: how many of its best clauses are pressed, and until when (seconds; L16)."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.free = Free()
@@ -132,7 +135,7 @@ class State(Memory):
         self.asking: dict[Activation, None] = {}
         """The ready or waiting activations that are about to ask for consent."""
         self.reordered = False
-        """Whether the order of those that ask has changed: groups have merged, or a rule must recover."""
+        """Whether the order of the asking activations has changed: groups have merged, or a rule must recover."""
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
@@ -140,7 +143,8 @@ class State(Memory):
         self.stuck: Idle | None = None
         """The activations found in a stalemate since they were refused; made on first use."""
         self.dirty: dict[Group, None] = {}
-        """The groups in which something ended: the activations that wait there ask again."""
+        """The groups in which a run or a patience has ended, or a member has come, changed or gone. The activations that
+        wait there ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
         """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
@@ -149,12 +153,12 @@ class State(Memory):
         """The keys of `hoping` that have changed."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
         """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
-        them have had an activation; the activation number just before theirs."""
+        the clauses have had an activation; the number just before those of the activations."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.standing = Standing(self.ran)
         self.watches: dict[Clause, dict[Activation, Watch]] = NOTHING
-        """Clause of an `until` condition → its runs, and how far each has met the clause."""
+        """Clause of an `until` condition → run → the `Watch` for that clause and run."""
         self.watched_by: dict[Spike, dict[Watch, None]] = NOTHING
         """Spike → the watches that hold it."""
         self.out: list[Effect] = []
@@ -163,9 +167,13 @@ class State(Memory):
         """Whether one of these effects starts or cancels a run."""
         self.errors: tuple[tuple[RuleFailure, Lineage | None], ...] = ()
         """Failures that ``core:error`` has not reported yet, each with the rules that led to it."""
+        self.faults: dict[int, tuple[Clause, Any, Exception]] = NOTHING
+        """`id` of a predicate that has raised and is not reported yet → the first declared clause, it, and the exception."""
         self.loops = Loops(self)
         self.busy = 0
         """How many activations count for ``core:activity``."""
+        self.added = 0
+        """The number of the newest spike when a rule was last added; older spikes may still be live."""
 
     def begin(self, memory: Memory) -> None:
         """Take over the memory of an engine that begins to work."""
@@ -176,19 +184,21 @@ class State(Memory):
         """Give the memory back to an engine that comes to rest, and keep nothing of it."""
         memory.take(self)
         self.values = self.unseen = self.ran = self.dropped = self.watched = self.standing.ran = NOTHING
+        self.added = 0
 
     @property
     def at_rest(self) -> bool:
         """Whether nothing is live, no effect is to be taken, and nobody traces what happens."""
-        if self.live or self.active or self.out or self.errors or self.tracer is not None:
+        if self.live or self.active or self.out or self.errors or self.faults or self.tracer is not None:
             return False
         if self.values.get(self.activity.index) or self.values.get(self.pressure.index):
             return False  # a write from outside: the flags are still to be settled
         return self.deadlines.next() is None
 
     def adopt(self, policy: Policy) -> None:
-        """Replace the policy by one that begins with the same rules in the same order, and has more."""
+        """Replace the policy by a policy that begins with the same rules in the same order, and has more rules."""
         self.policy = policy
+        self.added = self.spikes
         self.signal_of = policy.signal_of
         self.slot_of = policy.slot_of
         self.causes = policy.causes
@@ -236,10 +246,7 @@ class State(Memory):
                 return False
             if need.clause.cyclic and spike.descends_from(rule.index):
                 return False
-        for predicate in need.predicates:
-            if not self.test(predicate, spike.payload, rule):
-                return False
-        return True
+        return not need.predicates or self.accepts(need, spike.payload)
 
     def halves_of(self, spike: Spike) -> Sequence[Half]:
         """Return the halves that hold a spike."""
@@ -282,7 +289,7 @@ class State(Memory):
         return activation
 
     def entry_patience(self, need: Need, spike: Spike) -> float | None:
-        """Return when the patience ends of a clause for which a half holds a spike (seconds); None without pressure."""
+        """Return when a clause's patience ends (seconds), if a half holds a spike for it; None without pressure."""
         half = need.half
         if half is None or spike not in self.pressed:
             return None
@@ -297,26 +304,47 @@ class State(Memory):
     def is_open(self, clause: Clause) -> bool:
         """Return whether the clause's predicates on slots are true. A predicate that raises is false, and is reported."""
         for slot, guard in clause.guards:
-            if not self.test(guard.predicate, self.read(slot.index), clause.rule):
+            if not self.test(guard.predicate, self.read(slot.index), clause):
                 return False
         return True
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
-        """Return whether a predicate on a slot is true. One that raises counts as false, but is not reported."""
+        """Return whether a predicate on a slot is true. A predicate that raises is false, but is not reported."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
         except Exception:  # the designer's predicate may raise anything
             return False
 
-    def test(self, predicate: Any, value: Any, rule: RulePlan) -> bool:
-        """Return the result of a rule's predicate. A predicate that raises is false, and is reported once."""
+    def test(self, predicate: Any, value: Any, clause: Clause) -> bool:
+        """Return the result of a clause's predicate. A predicate that raises is false, and is reported once."""
         try:
             return bool(predicate(value))
         except Exception as exception:  # a predicate is the designer's code: it may raise anything
             if id(predicate) not in self.blamed:
-                self.blamed |= {id(predicate)}
-                self.fail(rule, exception, signal=True)
+                self._note_fault(clause, predicate, exception)
             return False
+
+    def _note_fault(self, clause: Clause, predicate: Any, exception: Exception) -> None:
+        """Keep a predicate's fault for `report_faults`, with the first declared clause that has it."""
+        if self.faults is NOTHING:
+            self.faults = {}
+        known = self.faults.get(id(predicate))
+        if known is None or clause.index < known[0].index:
+            self.faults[id(predicate)] = clause, predicate, exception
+
+    def accepts(self, need: Need, payload: Any) -> bool:
+        """Return whether a need's predicates are true of a payload. The first that is false spares the others."""
+        for predicate in need.predicates:
+            if not self.test(predicate, payload, need.clause):
+                return False
+        return True
+
+    def report_faults(self) -> None:
+        """Report the predicates that have raised, in declaration order (L5), which is not the order of their calls."""
+        faults, self.faults = self.faults, NOTHING
+        for clause, predicate, exception in sorted(faults.values(), key=_declared):
+            self.blamed |= {id(predicate)}
+            self.fail(clause.rule, exception, signal=True)
 
     def fail(self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None) -> None:
         """Report a failure of a rule to the runtime; with `signal`, ``core:error`` occurs next."""
@@ -334,3 +362,7 @@ class State(Memory):
     def order(self, activation: Activation) -> tuple[float, int, int]:
         """Return the sort key of a ready activation: greatest effective utility, then first declared, then oldest."""
         return (-self.effective(activation.clause), activation.clause.index, activation.id)
+
+
+def _declared(fault: tuple[Clause, Any, Exception]) -> int:
+    return fault[0].index

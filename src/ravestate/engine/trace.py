@@ -1,6 +1,7 @@
 """The trace (L25): a closed union of records for the debugger, the recorder and the tests.
 
-The engine makes a record only while it has a tracer.
+The engine makes a record only while it has a tracer. The trace gives a run the number of its activation. Events and effects
+number the runs by themselves, in the order of their `Started` records, so that they are the same without a tracer.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class Merged:
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """The run ``run``, or code outside the rules if that is 0, gave a slot a value."""
+    """A slot got a value; ``run`` is the number of the run that wrote it, or 0 if code outside the rules did."""
 
     time: float
     slot: str

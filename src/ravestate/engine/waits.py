@@ -1,8 +1,9 @@
-"""Waiting: what makes an activation that was refused consent ask again (L15, L16).
+"""Waiting: the changes after which an activation that was refused consent asks again (L15, L16).
 
-An activation waits for a reason: a `Refusal`. It asks again when a group changes on which the reason depends, or a thing
-outside its groups (a hope). Its recheck time, a change of the rules, a cooldown, or a write of a slot with predicates
-also makes it ask. While there are hopes, each change of an activation is compared with all of them (`Waits.stir_rule`).
+An activation waits for a reason: a `Refusal`. It asks again when a group of the refusal's `interests` changes, or
+a thing outside these groups, a *hope*. Its recheck time, a change of the rules, a cooldown, or a write of a slot with
+predicates also makes it ask. While there are hopes, each change of an activation is compared with all of them
+(`Waits.stir_rule`).
 """
 
 from __future__ import annotations
@@ -41,10 +42,12 @@ class Waits:
             group.concern(activation)
         if refusal.recheck < NEVER:
             state.deadlines.add(refusal.recheck, RECHECK, activation)
-        if state.tracer is not None and (before is None or [*before.names] != [*refusal.names]):
-            until = None if refusal.blockers else patience_of_rivals(state, activation)
-            rule = activation.clause.rule.name
-            state.tracer(trace.Waits(state.now, activation.id, rule, tuple(refusal.names), until))
+        if state.tracer is not None:
+            refusal.told = tuple(refusal.all_names)
+            if before is None or before.told != refusal.told:
+                until = None if refusal.blockers else patience_of_rivals(state, activation)
+                rule = activation.clause.rule.name
+                state.tracer(trace.Waits(state.now, activation.id, rule, refusal.told, until))
 
     def end(self, activation: Activation) -> None:
         """Make an activation stop waiting, so that changes elsewhere do not make it ask again."""
@@ -98,7 +101,7 @@ class Waits:
                 state.stirred[hope] = None
 
     def wake(self) -> dict[Activation, None]:
-        """Return the activations that ask for consent now: new ones, and those whose reason to wait has changed."""
+        """Return the activations that ask for consent now: new ones, and waiting ones whose refusal may be lifted."""
         state = self.state
         asking = state.asking
         state.asking = {}

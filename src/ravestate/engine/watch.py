@@ -8,7 +8,7 @@ from ravestate.policy.model import Clause
 
 
 class Watch:
-    """One clause of an `until` condition, and the spikes that meet it. All were born after the run began."""
+    """One clause of an `until` condition, and the spikes that meet it. All these spikes were born after the run began."""
 
     __slots__ = ("clause", "due", "run", "spikes")
 

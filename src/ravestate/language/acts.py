@@ -1,4 +1,4 @@
-"""The user's acts in an utterance: greeting, thanks, a wish for quiet... The classes are those of ``acts.yaml``."""
+"""Recognise the user's acts in an utterance: a greeting, thanks, a wish for quiet... ``acts.yaml`` lists the acts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .sentences import sentences as sentences_of
 from .shape import shape
 
 LONGEST = 2000
-"""The maximum number of characters that are read; the rest of an utterance is ignored."""
+"""The maximum number of characters that are read. Further characters of an utterance are ignored."""
 
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
 """Acts that often accompany other acts: "thanks, bye", "okay, hello"."""
@@ -22,7 +22,7 @@ FORMULAS = frozenset({"greeting", "farewell", *COURTESY})
 FORMULA_WORDS = 4
 """The maximum number of words of a formula."""
 ADDRESS_WORDS = 3
-"""The maximum number of other words in a mere greeting: "hello my dear robot"."""
+"""The maximum number of further words in an utterance that only greets: "hello my dear robot"."""
 
 WISHES = frozenset({"quiet", "stop", "forget_me", "farewell", "play"})
 """Acts that a negation cancels: "don't be quiet"."""
@@ -30,11 +30,11 @@ WISHES = frozenset({"quiet", "stop", "forget_me", "farewell", "play"})
 _NEGATION = re.compile(r"\b(?:do not|don['’]?t|did not|didn['’]?t|not|never)\s+(?:you |ever )?", re.IGNORECASE)
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
 _ASKED = re.compile(r"(?:will|can|could|would|should|do|did|are) (?:i|you|we|they)\b", re.IGNORECASE)
-"""The beginning of a question: "will you be here tomorrow" is not a farewell."""
+"""The beginning of a question. The question "will you be here tomorrow" is not a farewell."""
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
-"""Words after a formula that make it part of a sentence, and so no act: "thanks to the rain", "hello is a song"."""
+"""Words that make the formula before them part of a sentence, and no act: "thanks to the rain", "hello is a song"."""
 
 
 def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
@@ -92,7 +92,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation cancels a wish. "Don't talk" stays a wish: there, the negation is the wish."""
+    """Return whether a negation cancels a wish. "Don't talk" stays a wish, because the negation is part of it."""
     if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
         return False
     asserted = _NEGATION.sub("", found.text, count=1)

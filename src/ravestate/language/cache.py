@@ -7,6 +7,7 @@ import json
 import os
 import tempfile
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
@@ -15,17 +16,17 @@ from ravestate.folders import user_folder
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FILES = 100
-"""The maximum number of files in the cache. Beyond it, the oldest files are removed."""
+BYTES = 50_000_000
+"""The maximum size of the cache. Beyond it, the oldest files are removed. Many small files push out no large one."""
 
 
 def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:
     """Return the arrays of `compute`; read them from a file if an earlier call with the same key wrote it.
 
-    If a file is missing or broken, or the folder cannot be written, the arrays are only computed again.
+    If the file is missing or broken, or the folder cannot be written, the function computes the arrays again.
 
     Args:
-        key: Everything that the arrays depend on; a value that JSON can write.
+        key: All inputs that the arrays depend on, as a value that JSON can write.
         compute: The function that returns the arrays, each with a name.
     """
     import numpy as np
@@ -45,8 +46,20 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
         with os.fdopen(handle, "wb") as out:
             np.savez(out, allow_pickle=False, **arrays)
         os.replace(name, file)
-        for old in sorted(file.parent.glob("*.np[yz]"), key=lambda old: old.stat().st_mtime, reverse=True)[FILES:]:
-            old.unlink(missing_ok=True)
+        _limit(file.parent)
     except OSError:
         pass  # without a file, the next start computes the arrays again
     return arrays
+
+
+def _limit(folder: Path) -> None:
+    """Remove the oldest files of the cache, down to its size."""
+    found = [
+        (about.st_mtime_ns, about.st_size, entry.path) for entry in os.scandir(folder) for about in (entry.stat(),)
+    ]
+    size = sum(one for _, one, _ in found)
+    for _, one, path in sorted(found):
+        if size <= BYTES:
+            return
+        size -= one
+        Path(path).unlink(missing_ok=True)

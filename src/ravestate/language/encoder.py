@@ -49,7 +49,7 @@ class Encoder:
         self._running: dict[str, threading.Event] = {}
 
     def load(self) -> None:
-        """Load the model now, not at the first use of another method. That use would raise the same errors.
+        """Load the model now. Otherwise, the first use of another method loads it, and raises the same errors.
 
         Raises:
             PlatformError: A package or the model is missing or broken. The message says how to mend that.

@@ -14,6 +14,6 @@ class Entity:
     label: str
     """Its label in the pipeline's scheme: ``PERSON``, ``GPE`` (a country, a town), ``DATE``, ``CARDINAL``..."""
     start: int
-    """Its first position, in characters of the text."""
+    """The position of its first character in the text."""
     end: int
-    """The position after it, in characters of the text: ``text[start:end]``."""
+    """The position after its last character: ``text[start:end]`` is the entity."""

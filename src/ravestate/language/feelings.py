@@ -1,4 +1,4 @@
-"""Feelings in an utterance: joy, grief, a compliment for the agent... The classes are those of ``feelings.yaml``."""
+"""Recognise feelings in an utterance: joy, grief, a compliment for the agent... ``feelings.yaml`` lists them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ from .normal import plain
 from .shape import shape
 
 SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "failure", "anger"})
-"""Feelings of the user during which the agent says nothing cheerful, and does not speak out of boredom."""
+"""The user's sorrows. While a sorrow lasts, the agent says nothing cheerful, and does not speak out of boredom."""
 SORROW_LASTS = 12
-"""The number of the user's utterances for which a sorrow counts, including the utterance that shows it."""
+"""A sorrow lasts for this number of the user's utterances, including the utterance that shows it."""
 SURE = 0.8
 """The least confidence with which a question shows surprise: "how do you know that?"."""
 SHORTEST = 3
-"""The minimum number of words in a clause that shows a feeling by itself: "brilliant, it is broken" is not praise."""
+"""The minimum number of words in a clause that shows a feeling by itself.
+
+The clause "brilliant" in "brilliant, it is broken" is shorter, so it is not praise.
+"""
 
 _CLAUSE_END = re.compile(
     r"[,;:()–—…]+|\s-+\s|\b(?:but|although|though|however|because|while|yet|and (?=(?:i|you|we|he|she|it|they|my|your|our)\b))",
@@ -65,5 +68,5 @@ def _clauses(sentence: str, alone: bool) -> list[str]:
 
 
 def _asks(sentence: str) -> bool:
-    """Return whether a sentence is a yes/no question. For other questions, the examples decide."""
+    """Return whether a sentence is a yes/no question. The examples decide whether other questions show a feeling."""
     return "?" in sentence and shape(plain(sentence))[3] < 2

@@ -21,15 +21,29 @@ from .contractions import word_set
 FREQUENT = 5000
 """The minimum count of a word in the subtitles (1.6 billion words) before it may replace an unknown word."""
 COMMON = 15_000
-"""The minimum count, in lower case, at which a word that may be a name counts as an ordinary word."""
+"""A word that may be a name counts as an ordinary word if its count in lower case is at least this."""
 RARE = 50
-"""The maximum count at which a word that the dictionary lacks counts as a name."""
+"""A word that is not in the dictionary counts as a name if its count is at most this."""
 DOUBLED = 20
 """The factor by which swapped and doubled letters are more frequent than other typing errors."""
 SHORTEST = 4
 """The minimum length, in letters, of a word that may be a typing error."""
 
-_BRITISH = [pair.split("/") for pair in ["our/or", "tre/ter", "ll/l", "is/iz", "ys/yz", "gue/g", "ce/se", "que/ck"]]
+_BRITISH = [
+    pair.split("/")
+    for pair in [
+        "our/or",
+        "tre/ter",
+        "lled/led",
+        "lling/ling",
+        "ller/ler",
+        "is/iz",
+        "ys/yz",
+        "gue/g",
+        "ce/se",
+        "que/ck",
+    ]
+]
 """British and American spellings. British spelling is not a typing error."""
 _BRITISH_WORDS = word_set("maths programme programmes dreamt")
 """Words of British English that are missing in both packages."""
@@ -52,7 +66,7 @@ def load_lexicon() -> Lexicon | None:
             try:
                 _loaded.append(Lexicon())
             except ImportError as error:
-                _log.info("slips of the pen stay as they are: pip install 'ravestate[nlp]' (%s)", error)
+                _log.info("typing errors are not corrected: pip install 'ravestate[nlp]' (%s)", error)
                 _loaded.append(None)
     return loaded_lexicon()
 
@@ -109,11 +123,13 @@ class Lexicon:
         return max(shapes, key=self.count) if any(map(self.count, shapes)) else word
 
     def _correction(self, word: str) -> str:
-        """Return the frequent word that the user probably meant by an unknown `word`; if there is none, `word`.
+        """Return the frequent word that the user probably meant by an unknown `word`. If there is none, return `word`.
 
         Short words resemble many others. In them, only swapped, doubled and missing letters are mended.
         """
         if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or self.known(word):
+            return word
+        if not all(map(self.rare, _american(word))):
             return word
         near = [other for other in self._speller.known(self._speller.edit_distance_1(word)) if self._slip(word, other)]
         letters = set(word)
@@ -125,13 +141,16 @@ class Lexicon:
         """Return whether `word` is a likely typing error for `other`. A short word must have no wrong letter."""
         if other[0] != word[0] and sorted(other) != sorted(word):
             return False
-        if any(word.replace(british, american, 1) == other for british, american in _BRITISH):
-            return False
         if len(word) == len(other):
             return len(word) > SHORTEST or sorted(word) == sorted(other)
         if len(word) > len(other):  # a letter too many: in a short word, this must be a doubled letter
             return len(word) > SHORTEST + 1 or any(a == b for a, b in pairwise(word))
         return True
+
+
+def _american(word: str) -> set[str]:
+    """Return the spellings of a word that differ in a British and an American ending: *apologize* for *apologise*."""
+    return {word.replace(british, american, 1) for british, american in _BRITISH} - {word}
 
 
 def _dictionary() -> tuple[frozenset[str], dict[str, str], dict[str, str]]:

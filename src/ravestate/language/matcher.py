@@ -2,7 +2,7 @@
 
 It is a kernel ridge regression over example sentences. The kernel is a sum of two similarities: a Gaussian of the
 distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). Different
-shapes, such as *my* instead of *your*, lower both. In this project, only matchers recognise a sentence by its meaning.
+shapes, such as *my* instead of *your*, lower both similarities.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Match:
     example: str
     """The example that resembles the sentence most."""
     margin: float
-    """The score of the regression minus that of the next best class; about 1 for an example."""
+    """The score of the class in the regression, minus the score of the next best class; about 1 for an example."""
     entities: tuple[Entity, ...] = ()
     """The named entities of the utterance, if the match comes from ``nlp``."""
     name: str = ""
@@ -94,8 +94,8 @@ class Matcher:
             none: Sentences that belong to no class.
             least: The confidence below which a sentence belongs to no class.
             shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
-            centre: The margin that has the confidence 0.5; by default learnt, by matching each example with the others.
-                A class of three examples loses too much without one of them, so pass 0 for such classes.
+            centre: The margin that has the confidence 0.5. By default, the matcher learns it by matching each example
+                against the others. Pass 0 for classes of about three examples: two examples do not represent the class.
             encoder: The encoder; by default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]

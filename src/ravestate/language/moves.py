@@ -1,4 +1,4 @@
-"""The move that a good listener makes next: rejoice, console, advise... The classes are those of ``moves.yaml``.
+"""Choose the move that a good listener makes next: rejoice, console, advise... ``moves.yaml`` lists the moves.
 
 The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a sum of three
 similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question, length).
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SPREAD, FORM = 0.05, 1.0
-"""The similarity of form: how fast it falls with the distance, and its weight in the kernel."""
+"""The similarity of form: its decay with the distance, and its weight in the kernel."""
 COMMON = 0.1
-"""The similarity of any two utterances."""
+"""A constant that the kernel adds for any two utterances."""
 RIDGE, RIDGE_BORROWED = 0.5, 2.0
-"""The ridge penalties of own and of borrowed examples. Borrowed ones are sentences of other files, and count less."""
+"""The ridge penalties of own and borrowed examples. Borrowed examples come from other files, and count less."""
 BORROWED = 25
 """The maximum number of examples that are borrowed from one class of another file."""
 UNLIKELY = 0.15
@@ -85,7 +85,7 @@ class Move:
 
     @property
     def listens(self) -> bool:
-        """Whether the user surely wants to be heard and asks nothing. Modules should then not look for facts."""
+        """Whether the user surely wants a listener, and asks nothing. If so, modules should not look for facts."""
         return self.sure and self.name in LISTENING
 
 

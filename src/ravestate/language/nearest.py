@@ -39,10 +39,18 @@ class Near:
 class Nearest:
     """An index of example sentences. Thread-safe. Until `load` is called, it finds only examples word for word."""
 
-    def __init__(self, examples: Sequence[str], encoder: Encoder | None = None) -> None:
-        """Take the examples, and load nothing yet. `encoder`: by default the shared one."""
+    def __init__(self, examples: Sequence[str], encoder: Encoder | None = None, *, searched: int | None = None) -> None:
+        """Take the examples; load nothing yet.
+
+        Args:
+            examples: The sentences.
+            encoder: By default the shared encoder.
+            searched: The number of examples that `nearest` searches, from the first; by default all. The others are
+                compared only on request. Their vectors need no memory.
+        """
         self._examples = [plain(text) for text in examples]
-        self._exact = {text: place for place, text in reversed([*enumerate(self._examples)])}
+        self._searched = len(examples) if searched is None else searched
+        self._exact = {text: place for place, text in reversed([*enumerate(self._examples[: self._searched])])}
         self._encoder = encoder or shared_encoder()
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
@@ -56,19 +64,26 @@ class Nearest:
         with self._lock:
             if self._learnt is None:
                 self._encoder.load()
-                self._learnt = _Learnt(self._examples, self._encoder)
+                self._learnt = _Learnt(self._examples, self._encoder, self._searched)
 
     @property
     def loaded(self) -> bool:
-        """Whether `load` was called with success."""
+        """Whether `load` has succeeded."""
         return self._learnt is not None
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
         """Return the cosine similarity of a text to the examples at some places. Until `load`, that is 0.0."""
         return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
 
+    def compared(self, sentences: Sequence[str], places: Sequence[int]) -> list[float]:
+        """Return for the examples at some places the similarity to the most similar of some sentences, as `Near.score`."""
+        texts = {plain(sentence): sentence for sentence in sentences}
+        if self._learnt is None:
+            return [float(self._examples[place] in texts) for place in places]
+        return self._learnt.compared(texts, places) if texts and places else [0.0] * len(places)
+
     def nearest(self, sentences: Sequence[str], most: int = 5) -> list[Near]:
-        """Return the `most` examples that resemble one of the sentences, the most similar first."""
+        """Return up to `most` examples that resemble one of the sentences; the most similar example comes first."""
         texts = {plain(sentence): sentence for sentence in sentences}
         if self._learnt is None:
             return [Near(1.0, self._exact[text], texts[text]) for text in texts if text in self._exact][:most]
@@ -78,30 +93,50 @@ class Nearest:
 class _Learnt:
     """The vectors and shapes of the examples."""
 
-    def __init__(self, examples: Sequence[str], encoder: Encoder) -> None:
-        import numpy as np
-
+    def __init__(self, examples: Sequence[str], encoder: Encoder, searched: int) -> None:
         self._encoder = encoder
-        self._meanings = encoder.encode_lasting(examples)
-        self._shapes = np.array([shape(text) for text in examples], dtype=np.int8).reshape(-1, 4)
-        self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
+        self._examples = examples
+        self._known = _Group(examples[:searched], encoder)
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
-        """Return the cosine similarities of a plain text to examples."""
-        return [float(one) for one in self._meanings[list(places)] @ self._encoder.encode([text])[0]]
+        """Return the cosine similarities of a plain text to searched examples."""
+        return [float(one) for one in self._known.meanings[list(places)] @ self._encoder.encode([text])[0]]
+
+    def compared(self, texts: dict[str, str], places: Sequence[int]) -> list[float]:
+        """Return the greatest score of each of some examples."""
+        group = _Group([self._examples[place] for place in places], self._encoder)
+        return group.scores(texts).max(axis=0).tolist()
 
     def nearest(self, texts: dict[str, str], most: int) -> list[Near]:
         """Return the nearest examples of plain texts, each with its sentence as it was written."""
         import numpy as np
 
+        found: list[Near] = []
+        for text, row in zip(texts.values(), self._known.scores(texts), strict=True):
+            order = np.argsort(-row, kind="stable")[:most]
+            found += [Near(float(row[place]), int(place), text) for place in order]
+        return sorted(found, key=lambda near: -near.score)[:most]
+
+
+class _Group:
+    """The vectors and shapes of some examples."""
+
+    def __init__(self, examples: Sequence[str], encoder: Encoder) -> None:
+        import numpy as np
+
+        self._encoder = encoder
+        self.meanings = encoder.encode_lasting(examples)
+        self._shapes = np.array([shape(text) for text in examples], dtype=np.int8).reshape(-1, 4)
+        self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
+
+    def scores(self, texts: dict[str, str]) -> NDArray[Any]:
+        """Return the scores of plain texts (rows), given with the sentences as written, and the examples (columns)."""
+        import numpy as np
+
         plains = list(texts)
         shapes = np.array([shape(text) for text in plains], dtype=np.int8)
-        scores: NDArray[Any] = self._encoder.encode(plains) @ self._meanings.T
+        scores: NDArray[Any] = self._encoder.encode(plains) @ self.meanings.T
         scores *= 1 + SHAPE * (likeness(shapes, self._shapes) - 1)
         asks = np.array([texts[text].rstrip().endswith("?") or opens_question(text) for text in plains])
         scores *= 1 - ASKING * (asks[:, None] != self._asks[None, :])
-        found: list[Near] = []
-        for text, row in zip(plains, scores, strict=True):
-            order = np.argsort(-row, kind="stable")[:most]
-            found += [Near(float(row[place]), int(place), texts[text]) for place in order]
-        return sorted(found, key=lambda near: -near.score)[:most]
+        return scores

@@ -41,7 +41,7 @@ class Normal:
 
     @property
     def typed(self) -> str:
-        """The normal form, but words that differ from the typed ones only in capitals stay as typed."""
+        """The normal form with the user's capitals: a word that differs only in capitals stays as the user typed it."""
         if self.text == self.original:
             return self.text
         parts: list[str] = []
@@ -103,7 +103,7 @@ _GOVERNING = _AUX | word_set(
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
 _INTRODUCING = ("name is", "name's", "this is")
-"""Words before a name: an unknown word after one of them is probably a name and no typing error."""
+"""Words before a name. An unknown word after them is probably a name, not a typing error."""
 _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
 """First words of place names: *New York*."""
 _AT = word_set("at by until till before after from since around about is and")
@@ -256,7 +256,7 @@ def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lex
     """Return the form of a word in `WRITTEN`; None if the word is not there, or means something else here."""
     word, low = piece.text, piece.low
     opens = piece.first or last in _OPENING
-    asks = any("?" in other.gap for other in following)
+    asks = low in ("its", "ur") and any("?" in other.gap for other in following)
     if low == "its":
         verb = any(other.low in _AUX for other in following[:4])
         return "it's" if piece.first and len(following) > 0 and not (asks or verb or word.isupper()) else None
@@ -327,11 +327,13 @@ def _end(sentence: Sequence[_Piece], following: _Piece, mark: str = "") -> None:
 
 def _asks_anew(sentence: Sequence[_Piece], following: str) -> bool:
     """Return whether a question begins after a statement, with no mark between them."""
+    asks = _ASKS_ANEW.match(following)
+    if not asks and not _ASKS_YOU.match(following):  # as nearly always: the rest would take long in a long text
+        return False
     before = [piece.low for piece in sentence]
     if len(before) < 2 or before[-1] in _GOVERNING or before[0] in _AUX - _BE or not _WH.isdisjoint(before):
         return False
-    stated = not _STATING.isdisjoint(before)
-    return bool(_ASKS_ANEW.match(following) or (stated and _ASKS_YOU.match(following)))
+    return bool(asks) or not _STATING.isdisjoint(before)
 
 
 def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
@@ -361,5 +363,5 @@ def _aligned(written: str, typed: str, start: int) -> list[int]:
 
 
 def _same(one: str, other: str) -> int:
-    """Return how many letters at the beginning are the same."""
+    """Return the number of equal letters at the beginning of two words."""
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False)))

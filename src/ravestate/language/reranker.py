@@ -18,8 +18,8 @@ BUNDLED = "reranker_en"
 class Reranker:
     """A cross-encoder: it scores how well a passage answers a question.
 
-    Making a reranker takes no time. Its first use loads the shared model. Any thread may use it. It raises the errors of
-    `Encoder`.
+    Making a reranker takes no time. Its first use loads the shared model, and raises the same errors as `Encoder`. Any
+    thread may use it.
 
     Example:
         ::

@@ -70,7 +70,7 @@ class Spelling:
 
 @lru_cache(maxsize=REMEMBERED)
 def _groups(text: str) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
-    """Return the buckets of a text, and how many of its groups are in each."""
+    """Return the buckets of a text, and the number of its groups in each bucket."""
     import numpy as np
 
     [counts] = _counts([text])

@@ -42,11 +42,15 @@ def built_in(texts: Sequence[str], size: int) -> dict[str, NDArray[np.float32]]:
 
 @cache
 def _table() -> dict[str, NDArray[Any]]:
-    """Return ``keys`` of shape (n,) in ascending order, ``rows`` of shape (n, d) as small integers, and ``size``."""
+    """Return ``keys`` of shape (n,) in ascending order, ``rows`` of shape (n, d) as small integers, and ``size``.
+
+    The file has ``columns`` of shape (d, n) instead of ``rows``: that is easier to compress.
+    """
     import numpy as np
 
     try:
         with (files("ravestate.language") / FILE).open("rb") as file, np.load(file, allow_pickle=False) as found:
-            return {name: found[name] for name in found.files}
+            rows = np.ascontiguousarray(found["columns"].T)
+            return {"keys": found["keys"], "rows": rows, "size": found["size"]}
     except FileNotFoundError:  # ``tools/vectors.py`` has not made the file yet
         return {"keys": np.zeros(0, np.uint64), "rows": np.zeros((0, 1), np.int8), "size": np.array(0)}

@@ -1,4 +1,4 @@
-"""Functions that read YAML as nodes with line numbers, for messages. They build no values, so no code can run."""
+"""Functions that read YAML as nodes with line numbers, for messages. They build no objects, so no code can run."""
 
 from __future__ import annotations
 

@@ -223,7 +223,7 @@ class Causes:
     def contested(self) -> frozenset[int]:
         """The slots that a chain of effects must remember, because no rule of the chain may write a slot again (L19).
 
-        A chain within one group is the shorter without a rule that occurs twice. So a slot that only one rule writes
+        Within one group, a chain in which a rule occurs twice can be shortened. So a slot that only one rule writes
         matters only if the rule is on a cycle with a clause that joins groups.
         """
         if self._contested is None:
@@ -251,7 +251,7 @@ class Causes:
         )
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """Return the signals that may ever occur if those in `given` occur: a least fixed point over all rules."""
+        """Return the signals that may ever occur if the signals in `given` occur: a least fixed point over all rules."""
         reached = set(given)
         lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}

@@ -14,7 +14,7 @@ from ravestate.declare.wording import few
 from ravestate.errors import DeclarationError, DeclarationErrors
 from ravestate.policy.causes import Causes
 from ravestate.policy.completion import UNIT, Completion
-from ravestate.policy.connect import connect, find_conflict_sets, find_halves, find_kin
+from ravestate.policy.connect import connect, find_conflict_sets, find_halves, find_kin, find_unrivalled
 from ravestate.policy.least import Least
 from ravestate.policy.model import Clause, RulePlan, SignalPlan
 from ravestate.policy.names import Names
@@ -74,6 +74,7 @@ def build(
         raise DeclarationErrors([DeclarationError(fault) for fault in found])
     find_kin(numbered.plans, causes)
     completion = _assign_utilities(names.signals, numbered.plans, causes)
+    find_unrivalled(numbered.plans)
     find_conflict_sets(names.signals, causes)
     find_halves(names.signals, causes)
     return Policy(

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Components:
-    """The strongly connected components of a graph: the members of each, and the number of each node's component.
+    """The strongly connected components of a graph: the members of each component, and each node's component number.
 
-    If one component leads to another, the other comes first.
+    If edges lead from one component to another, the other component comes first.
     """
 
     members: list[list[int]]

@@ -10,11 +10,14 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan, SignalPlan, Slo
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Set the listeners and watchers of each signal, and mark the signals that are inputs (L8)."""
+    """Set the listeners and watchers of each signal; mark the signals that are inputs (L8), and the slots with guards."""
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]
     watchers: list[list[Need]] = [[] for _ in signals]
     for rule in rules:
+        for clause in (*rule.clauses, *rule.until):
+            for slot, _ in clause.guards:
+                slot.guarded = True
         for clause in rule.clauses:
             for need in clause.needs:
                 listeners[need.signal.index].append(need)
@@ -57,6 +60,23 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
             clause.apart = len(families) == 1
 
 
+def find_unrivalled(rules: Iterable[RulePlan]) -> None:
+    """Mark the clauses that go before all other writers of their slots. With a cooldown, the order may change."""
+    best: dict[int, Clause] = {}
+    changing: set[int] = set()
+    for rule in rules:
+        for slot in rule.slots:
+            if rule.cooldown:
+                changing.add(slot)
+            for clause in rule.clauses:
+                other = best.setdefault(slot, clause)
+                if (-clause.base, clause.index) < (-other.base, other.index):
+                    best[slot] = clause
+    for clause in best.values():
+        slots = clause.rule.slots
+        clause.unrivalled = changing.isdisjoint(slots) and all(best[slot] is clause for slot in slots)
+
+
 def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the conflict sets of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
@@ -81,7 +101,7 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the halves of each signal, and the listeners in no conflict set and no half.
 
-    A first spike changes nothing for such a clause but what it lacks, so a table of spikes is enough
+    A first spike only changes which need such a clause lacks, so a table of spikes is enough
     (``engine/halves.py``). As for a conflict set, none of the rule's effects may help a rule that writes a slot.
     """
     helpful = causes.helpful
@@ -100,7 +120,7 @@ def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
 
 def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
-    """Return the best clause that writes a slot in the causal groups of a part of the policy (`Causes.parts`)."""
+    """Return a map: (slot, part of the policy) → the part's best clause that writes the slot (`Causes.parts`)."""
     best: dict[tuple[int, int], Clause] = {}
     for rule in causes.rules:
         for clause in rule.clauses if rule.slots else ():

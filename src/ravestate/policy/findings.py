@@ -179,7 +179,7 @@ def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
 
 
 def _winner(winners: dict[tuple[int, int], list[Clause]], loser: Clause) -> Clause | None:
-    """Return a clause that is ready whenever `loser` is, and goes before it; None if there is no such clause."""
+    """Return a clause that is ahead of `loser`, and ready whenever `loser` is; None if there is no such clause."""
     for slot in loser.rule.slots:
         for need in loser.needs:
             for winner in winners.get((slot, need.signal.index), ()):

@@ -82,6 +82,8 @@ class SlotPlan:
     keep_latest: bool = field(init=False)
     heard: bool = False
     """Whether any rule hears one of the slot's signals."""
+    guarded: bool = False
+    """Whether any rule has a predicate on the slot."""
 
     def __post_init__(self) -> None:
         self.name = self.slot.name
@@ -149,6 +151,8 @@ class Clause:
     """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
     reflexive: bool = False
     """Whether the clause hears a built-in flag. If so, its activations change no built-in flag (L22)."""
+    unrivalled: bool = False
+    """Whether the clause always goes before all other clauses that write one of its slots."""
     cyclic: bool = False
     """Whether the clause's rule may raise, without detachment, a signal that leads to one of the clause's needs."""
 
@@ -176,7 +180,10 @@ class RulePlan:
     slotset: frozenset[int] = frozenset()
     readable: frozenset[int] = frozenset()
     """The numbers of the slots that the rule reads or writes."""
+    views: tuple[SlotPlan, ...] = ()
+    """The same slots, in the same order."""
     emits: frozenset[int] = frozenset()
+    """The numbers of the signals that the rule declares in ``emits``."""
     raises: tuple[int, ...] = ()
     """The numbers of the signals that the rule emits, and of the signals of the slots that it writes (L7)."""
     clauses: tuple[Clause, ...] = ()
@@ -194,14 +201,14 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """Needs for one signal in clauses of two needs. For a first spike, the engine makes no activation of the clauses.
+    """Needs for one signal in clauses that have two needs. A first spike gets no activation.
 
     All needs that the engine would treat alike share one record.
 
     Attributes:
         needs: The needs, in declaration order.
         best: The same needs; the need of the best clause comes first.
-        ranks: The order of the clauses in `best`: for each, its utility (negative) and its number.
+        ranks: For each clause in `best`: its base utility (negative) and its number.
         rank: Number of a clause → its place in `best`.
         patience: The patience of the rules in seconds, or None for the context's (L16).
         kin: Whether both spikes of a clause must belong to one causal group (L12).

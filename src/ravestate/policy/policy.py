@@ -50,7 +50,6 @@ class Policy:
         """Parts of engines (``engine/parts.py``) that serve no engine at present."""
         clauses = [clause for rule in self.rule_plans for clause in (*rule.clauses, *rule.until)]
         self.clause_plans = {clause.index: clause for clause in clauses}
-        self.guarded = frozenset(slot.index for clause in clauses for slot, _ in clause.guards)
         self.plan_of = {plan.name: plan for plan in self.rule_plans}
         self.signal_of = {plan.name: plan for plan in self.signal_plans}
         self.slot_of = {plan.name: plan for plan in self.slot_plans}

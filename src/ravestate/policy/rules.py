@@ -54,6 +54,8 @@ class Rules:
         plan.slots = tuple(slot.index for slot in written if slot)
         plan.slotset = frozenset(plan.slots)
         plan.readable = frozenset((*plan.slots, *(slot.index for slot in read if slot)))
+        views = {slot.index: slot for slot in (*written, *read) if slot}
+        plan.views = tuple(views[slot] for slot in plan.readable)
         plan.emits = frozenset(signal.index for signal in emitted if signal)
         plan.raises = tuple(
             dict.fromkeys(

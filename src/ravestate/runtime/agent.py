@@ -1,4 +1,4 @@
-"""An agent apart from its conversations. Each conversation gets its own context."""
+"""An agent that may hold many conversations. Each conversation gets its own context."""
 
 from __future__ import annotations
 

@@ -46,9 +46,9 @@ class AsyncRules:
     def start(self, ctx: RuleContext) -> None:
         """Run a function up to its first ``await`` that suspends it. A task continues from there.
 
-        No task may be current on the loop. `rest` follows when no function is to start for now.
+        No task may be current on the loop. The caller calls `rest` when no function is to start for now.
         """
-        task, self._spare = self._spare, None  # the function may start others
+        task, self._spare = self._spare, None  # the function may start other functions
         if task is None:
             assert self._spares is not None  # no function starts after `close`
             task = self._spares.take(self._variables)

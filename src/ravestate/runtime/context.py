@@ -247,8 +247,8 @@ class Context:
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """Wait for the next spike of a signal, and return its payload.
 
-        The call first performs the effects that are due. If the spike comes from these, other tasks get no turn meanwhile.
-        After 64 such calls the event loop gets its turn.
+        The call first performs the effects that are due. If these raise the spike, the call returns without a turn for
+        other tasks. After 64 such calls the event loop gets its turn.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.

@@ -29,7 +29,7 @@ def drive() -> Generator[Any, Any, Any]:
     """Run the functions of rule contexts, one after another.
 
     Each context comes by `send`. The generator yields all that the function's coroutine yields, and then `Done`. Thus the
-    end of a coroutine needs no exception, which would cost more than many a rule.
+    end of a coroutine needs no exception. An exception would take longer than a short rule.
     """
     ctx: Any = yield
     while True:
@@ -38,7 +38,7 @@ def drive() -> Generator[Any, Any, Any]:
 
 
 async def main(host: Generator[Any, Any, Any]) -> Any:
-    """Run a `host`; a task needs a coroutine, and the host must be free to yield anything."""
+    """Run a `host` as a coroutine: a task accepts only a coroutine, and a host must be free to yield anything."""
     return await host  # type: ignore[misc]  # it is decorated with types.coroutine
 
 

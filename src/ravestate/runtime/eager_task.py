@@ -1,6 +1,6 @@
 """A task for a coroutine that may end before it needs a task.
 
-Making a task and switching to it takes more time than most rules take. So the first step of a coroutine runs outside
+To make a task and switch to it takes longer than most rules. So the first step of a coroutine runs outside
 of any task, while a spare task counts as the current task. Thus `asyncio.current_task`, `asyncio.timeout` and context
 variables work as usual. If the coroutine ends in its first step, the spare task is kept for the next coroutine. If the
 coroutine suspends, the spare task adopts it.
@@ -28,7 +28,7 @@ KIND: Final = Done
 class EagerTask:
     """A spare task. Once it has adopted the coroutine of a rule, it is the rule's task; the timer measures each step.
 
-    The coroutine has the context variables `variables`, and its own changes.
+    The coroutine starts with the context variables `variables`. Its changes of these stay its own.
 
     Attributes:
         task: The task.
@@ -77,8 +77,8 @@ class EagerTask:
         """Run a rule's function to its end or to its first suspension; no task may be current on the loop.
 
         Returns:
-            The end of the function; the spare task is free for another function, unless it is `spoilt`. Or None: the
-            function's coroutine is suspended, and the task has adopted it.
+            The end of the function. The spare task is then free for another function, unless it is `spoilt`. None if
+            the function's coroutine is suspended: then the task has adopted the coroutine.
 
         Raises:
             BaseException: The function has failed with this exception. The spare task is free, as above.

@@ -12,7 +12,7 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. A replay must do so at the same points: the engine decides only then."""
+    """The runner took the engine's effects. A replay must take them at the same points, where the engine decides."""
 
 
 @dataclass(frozen=True, slots=True)

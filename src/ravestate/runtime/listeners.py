@@ -11,7 +11,7 @@ from ravestate.engine.effects import Ended, Spiked
 
 
 class Waiter:
-    """A task that waits for the spike of a signal; the future wakes it, if the spike does not come at once."""
+    """A task that waits for the next spike of a signal. `future` wakes the task if the spike does not come at once."""
 
     __slots__ = ("done", "error", "future", "payload")
 
@@ -41,7 +41,7 @@ class Listeners:
         watched.update(dict.fromkeys(functions, 1))
 
     async def next(self, signal: str, settle: Callable[[], None] = lambda: None) -> Any:
-        """Wait for the next spike of a signal, and return its payload. First call `settle`: the spike may come at once."""
+        """Wait for the next spike of a signal, and return its payload. First call `settle`, which may raise it."""
         waiter = Waiter()
         self._waiters.setdefault(signal, []).append(waiter)
         self._watched[signal] = 1
@@ -65,19 +65,23 @@ class Listeners:
 
     def tell(self, spiked: Spiked) -> None:
         """Call the function of a spike's signal, and wake the tasks that wait for the signal."""
-        function = self._functions.get(spiked.signal)
-        if function is None:
-            self._watched.pop(spiked.signal, None)
-        else:
-            function(spiked.payload)
-        for waiter in self._waiters.pop(spiked.signal, ()):
+        signal = spiked.signal
+        if signal in self._functions:
+            self._functions[signal](spiked.payload)
+        elif signal in self._watched:
+            del self._watched[signal]
+        if signal not in self._waiters:
+            return
+        waiters = self._waiters[signal]
+        del self._waiters[signal]
+        for waiter in waiters:
             waiter.done = True
             waiter.payload = spiked.payload
             if waiter.future is not None and not waiter.future.done():
                 waiter.future.set_result(None)
 
     def fail(self, error: Callable[[str], BaseException]) -> None:
-        """Wake all waiting tasks with an error; the function `error` makes it from the name of the task's signal."""
+        """Wake all waiting tasks with an exception. The function `error` makes it from the name of a task's signal."""
         for signal, waiters in self._waiters.items():
             for waiter in waiters:
                 waiter.error = error(signal)
@@ -93,8 +97,8 @@ class Hooks:
     Attributes:
         on_ended: Called with the outcome of each run that has ended.
         on_failed: Called with the name of each rule that fails, and with its exception.
-        on_endless: Called with the rule that ran last, if an instant of virtual time does not end. If this function is
-            given, the context's time is virtual. Plain functions then run one by one, so that threads do not race.
+        on_endless: Called with the name of the last rule that ran, if an instant of virtual time does not end. With this
+            function, the context's time is virtual, and plain functions run one by one, so that threads do not race.
         listeners: Signal's name → a function that is called with the payload of every spike of the signal.
     """
 
@@ -105,4 +109,4 @@ class Hooks:
 
 
 NO_HOOKS: Final = Hooks()
-"""Hooks without a function. All contexts share it."""
+"""Hooks without functions, shared by all contexts that nothing observes."""

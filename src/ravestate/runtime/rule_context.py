@@ -59,9 +59,9 @@ class RuleContext:
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
         self.cancelled = ""
-        """Why the function was cancelled; empty if it was not. The function may still write while it cleans up."""
+        """The reason for which the function was cancelled, or empty. While it cleans up, it may still write."""
         self.ended = ""
-        """Why the run is over; empty if it is not. The function may still be running: a thread cannot be stopped."""
+        """The reason for which the run is over, or empty. The function may still run: a thread cannot be stopped."""
 
     @overload
     def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
@@ -170,8 +170,8 @@ class RuleContext:
     def drive_clock(self, time: float) -> None:
         """Set the context's clock forward to `time` (seconds since the context's start), as a simulation's clock says.
 
-        From the first call on, the clock moves by these calls alone: time passes as fast as the simulation's, and halts
-        with it. A time in the past changes nothing.
+        From the first call on, only these calls move the clock. So the context's time passes, and halts, with the
+        simulation's time. A time in the past changes nothing.
         """
         self._alive()
         self._host.drive(time)

@@ -38,7 +38,7 @@ BATCH: Final = 512
 TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""How often a task may wait for a signal without a turn of the loop (`Runner.settle`), until the loop gets a turn."""
+"""The number of waits for a signal that may end without a turn of the loop, before it gets one (`Runner.settle`)."""
 
 ENDED = "the context has ended"
 
@@ -93,7 +93,7 @@ class Runner:
         self._todo: list[Effect] | None = None  # the effects that are still to be performed, the next one last
         self._due = False  # whether the engine may have effects
         self._scheduled = False  # whether the loop will call `_turn`
-        self._settled = 0  # how often `settle` has spared the loop a turn since the last one
+        self._settled = 0  # how often `settle` has performed effects since the loop's last turn
         self._pumping = False
         self._closing = False
         self._instant = -1.0
@@ -145,7 +145,7 @@ class Runner:
             self.receive(Write(slot, value, run))
 
     def _short_way(self) -> Parts | None:
-        """Return the parts of the engine, for an event without a record; or None if the event must go to `receive`."""
+        """Return the engine's parts for an event that nothing records, or None if the event must go to `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
@@ -209,10 +209,10 @@ class Runner:
             self.pump()
 
     def settle(self) -> None:
-        """Perform the effects at once that the loop's next turn would perform; a task is about to wait for them.
+        """Perform now the effects that the loop's next turn would perform, because a task is about to wait for a spike.
 
-        Other tasks get no turn meanwhile, so after `SETTLES` calls it is the loop's turn. In virtual time, and inside a
-        rule, it always is.
+        Other tasks get no turn meanwhile. So after `SETTLES` calls the effects wait for the loop's next turn. In virtual
+        time, and inside a rule, they always do.
         """
         if self._due and self._settled < SETTLES and not (self._pumping or self._is_virtual):
             self._settled += 1
@@ -229,11 +229,11 @@ class Runner:
             self._waits.check()
 
     def _is_busy(self) -> bool:
-        """Whether some effects have not been performed yet."""
+        """Return whether some effects have not been performed yet."""
         return bool(self._due or self._pumping or self._todo or self._async.cleaning)
 
     def _held(self) -> bool:
-        """Whether effects must wait: for a plain function in virtual time, or for rules that were just cancelled."""
+        """Return whether effects must wait, for a plain function in virtual time or for just cancelled rules."""
         if self._is_virtual and self._plain is not None and self._plain.runs:
             return True
         return bool(self._async.cleaning) and not self.clock.halted
@@ -280,7 +280,7 @@ class Runner:
                     break
             else:
                 self._schedule()
-        except BaseException:  # such as KeyboardInterrupt from a rule; other rules continue while the loop runs
+        except BaseException:  # e.g. a rule raised KeyboardInterrupt; other rules continue while the loop runs
             self._schedule()
             raise
         finally:

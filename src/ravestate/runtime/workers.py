@@ -151,7 +151,7 @@ class JobQueue:
         return job
 
     def abandon(self, job: Job) -> None:
-        """Give a job's place in the pool to the next job: nothing waits for the old job any more, and it may hang."""
+        """Give a job's place in the pool to the next job. Nothing waits for the abandoned job, which may hang."""
         with self._pool.change:
             if job in self._waiting:
                 self._waiting.remove(job)

@@ -25,7 +25,7 @@ PATIENCE = 60.0
 USERS = ("ada", "bob", "cleo", "dora", "emil")
 
 LAST = "the last message"
-"""The message with which each check ends, so that a doubled answer before it is seen."""
+"""The last message of each check. If the agent answers an earlier message twice, the extra answer arrives first."""
 
 echo = rs.Module("echo", requires=(rawio,))
 """The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""
@@ -35,7 +35,7 @@ _count = echo.slot("count", 0)
 
 @echo.rule(when=rawio.input.changed, writes=(rawio.output, _count))
 async def repeat(ctx: rs.RuleContext) -> None:
-    """Repeat the user's words, or say how many messages came in this context."""
+    """Repeat the user's words, or say the number of messages in this context."""
     text = ctx.payload(rawio.input.changed)
     ctx[_count] = ctx[_count] + 1
     ctx[rawio.output] = str(ctx[_count]) if text == "count" else text
@@ -148,11 +148,11 @@ async def _read(driver: Driver, user: str, count: int) -> list[str]:
 
 
 async def _end(driver: Driver, user: str, wanted: list[str]) -> None:
-    """Check that a user has received these messages and no others: the answer to one more message comes next."""
+    """Check that a user has received only these messages: send one more, and check that its answer comes next."""
     await driver.say(user, LAST)
     _agree(await _read(driver, user, len(wanted) + 1), [*wanted, LAST])
 
 
 def _agree(found: list[str], wanted: list[str]) -> None:
     if found != wanted:
-        raise AssertionError(f"the user should have received {wanted}, and has received {found}")
+        raise AssertionError(f"the user should have received {wanted}, but has received {found}")

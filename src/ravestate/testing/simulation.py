@@ -89,11 +89,11 @@ class Simulation:
     ) -> Simulation:
         """Return a simulation of the agent in an agent file, as ``ravestate run -f`` reads it.
 
-        The built-in platforms (`conio`, `webio`) and their settings are left out: a test speaks through `say`.
+        The simulation leaves out the built-in platforms (`conio`, `webio`) and their settings; a test uses `say`.
 
         Args:
             path: The agent file. Paths of modules in it are relative to its folder.
-            settings: Module's name → key → value. They override those of the environment and of the file.
+            settings: Module's name → key → value. They override the environment and the file.
             seed: The seed of random choices; by default that of the file, or else 0.
             patience: As for `Context` (seconds); by default that of the file.
             trace: Whether to keep a record of every decision.
@@ -173,7 +173,7 @@ class Simulation:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let `seconds` of virtual time pass; before and after, do everything that is due."""
+        """Let `seconds` of virtual time pass. Before and after that, do everything that is due."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
         loop = self._running()
@@ -181,7 +181,7 @@ class Simulation:
         loop.run_to(loop.time() + seconds)
 
     def settle(self) -> None:
-        """Do everything that can be done without time passing."""
+        """Do everything that is due now; no virtual time passes."""
         loop = self._running()
         loop.run_to(loop.time())
 

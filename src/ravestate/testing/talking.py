@@ -1,4 +1,4 @@
-"""Spoken conversations in virtual time: a recording is the user's microphone."""
+"""Spoken conversations in virtual time: a recording replaces the user's microphone."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ def talk(
 ) -> list[Said]:
     """Hold a conversation between a recording and an agent, as fast as the machine can; return what was said.
 
-    Time is virtual: recognition, synthesis and plain functions take none of it. So the same recording gives the same
-    conversation on any machine.
+    Time is virtual. Recognition, synthesis and plain functions take no virtual time, so the same recording gives the
+    same conversation on any machine.
 
     Args:
         recording: The sound of the user's microphone, in any usual format.
@@ -60,11 +60,12 @@ def talk(
         modules: The agent's modules; `voiceio` is added.
         settings: Module's name → its settings, as for `Context`.
         seed: The seed of random choices.
-        show: Called with each utterance as soon as it is over.
-        record: Called with each record of the trace.
+        show: A function that gets each utterance as soon as the utterance is over.
+        record: A function that gets each record of the trace.
 
     Raises:
-        PlatformError: The recording cannot be read, the output is no WAV file or cannot be written, or a model or a program is missing.
+        PlatformError: The recording cannot be read; the output is no WAV file, or cannot be written; or a model or a
+            program is missing.
         EngineError: An event loop runs in this thread already.
     """
     from ravestate.modules import voiceio
@@ -97,7 +98,7 @@ def talk(
             loop.busy = context.plain_functions
             await context.until_stopped()
 
-    with asyncio.Runner(loop_factory=VirtualLoop) as runner:  # at Ctrl-C, it lets the agent end in order
+    with asyncio.Runner(loop_factory=VirtualLoop) as runner:  # at Ctrl-C, the runner lets the agent shut down
         runner.run(hold())
     return said
 
@@ -111,7 +112,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
     waiting: list[Said] = []
 
     def show_waiting() -> None:
-        """Note the user's utterances, after the agent's utterance that they interrupted."""
+        """Note the user's waiting utterances, unless an utterance of the agent is not over yet."""
         if not any(one.start and not one.over for one in begun):
             for one in waiting:
                 note(one)
@@ -144,7 +145,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=shutdown)
     async def end(ctx: RuleContext) -> None:
-        """Note the rest."""
+        """Note the remaining utterances."""
         begun.clear()
         show_waiting()
 

@@ -13,8 +13,8 @@ from typing import Any
 from ravestate.errors import EngineError
 
 REAL_LIMIT = 30.0  # the maximum number of real seconds for which plain functions may hold up virtual time
-WORKING = 0.1  # the share of a processor above which they are computing, not waiting, and may take longer:
-WORK_FACTOR = 10  # that many times as long, because a slow machine must not change the result
+WORKING = 0.1  # plain functions that use at least this share of a processor are computing, and get more time
+WORK_FACTOR = 10  # computing functions get this many times as long, so that a slow machine gives the same result
 
 
 class _Timer(asyncio.TimerHandle):
@@ -37,7 +37,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     """
 
     is_virtual = True
-    """Read by modules that connect to the world: in virtual time, they do not."""
+    """Modules that connect to the world read this attribute. In virtual time, they make no connections."""
 
     def __init__(self) -> None:
         self._virtual = 0.0
@@ -62,7 +62,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return future
 
     async def shutdown_default_executor(self, *args: Any, **named: Any) -> None:
-        """Wait for the threads of the pool, as any loop does when its runner closes it. They end in real time."""
+        """Wait for the threads of the pool, as any loop does when its runner closes it. Threads end in real time."""
         closing = self.create_future()
         self._functions[closing] = "the shutdown of the thread pool"
         try:
@@ -88,11 +88,11 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         timer = _Timer(when, callback, args, self, context)
         timer.number = self._timers
         heapq.heappush(vars(self)["_scheduled"], timer)
-        timer._scheduled = True  # pyright: ignore[reportAttributeAccessIssue]  # BaseEventLoop marks its timers so
+        timer._scheduled = True  # pyright: ignore[reportAttributeAccessIssue]  # as BaseEventLoop does
         return timer
 
     def give_up(self, rule: str) -> None:
-        """Stop the loop because an instant is endless; `run_to` then raises an error that names the rule."""
+        """Stop the loop, because rules run without end at one instant. `run_to` then raises an error with the rule."""
         self._endless = rule
         self.stop()
 

@@ -1,1 +1,1 @@
-"""Processes beside the agent that hold models. Modules name a program of theirs as the backend."""
+"""Processes beside the agent that hold models. Each module names one of its own programs as the backend."""

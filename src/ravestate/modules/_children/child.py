@@ -1,4 +1,4 @@
-"""A process beside the agent: start it, end it, and get the last line of its errors."""
+"""A process beside the agent, with functions to start it, to end it, and to get the last line of its errors."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import tempfile
 from collections.abc import Mapping, Sequence
 
 ENDING = 2.0
-"""The time that a process has to end by itself after its pipe is closed (seconds)."""
+"""The maximum time between the closing of a process's pipe and the process's own end (seconds)."""
 
 
 class Child:
-    """A running process, in a session of its own, so that Ctrl-C does not reach it.
+    """A running process, in a separate session, so that Ctrl-C does not reach it.
 
     Args:
         command: The program and its arguments.
@@ -79,10 +79,10 @@ class Child:
             self._process.wait(seconds)
 
     def end(self, patience: float = 0.0) -> str:
-        """Make sure that the process is gone; return how it ended, with the last line of its errors.
+        """Make sure that the process is gone. Return the manner of its end, with the last line of its errors.
 
         Args:
-            patience: The seconds that it has to end by itself, before it is killed.
+            patience: The maximum time to wait for the process to end by itself, before it is killed (seconds).
         """
         self.wait(patience)
         hung = self._process.poll() is None

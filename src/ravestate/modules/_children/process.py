@@ -1,7 +1,7 @@
-"""Models in processes of their own, which all contexts of this process share.
+"""Models in separate processes, which all contexts of this process share.
 
-A model that hangs or crashes ends its process alone: the next request gets a fresh one. In a thread, a model would also
-hold Python's lock while it loads, and stop every event loop.
+A model that hangs or crashes ends only its own process, and the next request gets a fresh process. In a thread, a model
+would also hold Python's lock while it loads, and stop every event loop.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LOADING = 120.0
 """The longest time (seconds) that a model may take to load."""
 
 LINGER = 60.0
-"""The seconds for which an unused process stays loaded, if its last user asks for it."""
+"""The seconds for which an unused process stays loaded, if its last user wants the process to stay."""
 
 SERVER = Path(__file__).with_name("serve.py")
 
@@ -39,14 +39,14 @@ def _no_mend(_: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """A program for a process, and its names in messages.
+    """A program for a process, and the names for messages.
 
     Attributes:
         program: A file, or a folder with ``__init__.py``. Its function ``load`` takes the configuration, and returns the
-            function that handles a request. It imports nothing from Ravestate.
-        owner: The module that uses it.
+            function that handles a request. The program imports nothing from Ravestate.
+        owner: The module that uses the program.
         name: The backend's name in messages.
-        mend: Return the remedy for a reason for which the backend cannot be loaded, to be added to the message.
+        mend: A function that takes the reason of a failed load, and returns the remedy for the end of the message.
     """
 
     program: Path
@@ -59,7 +59,7 @@ class ModelProcess:
     """The process of one model. All methods block and are thread-safe; requests are answered one after another."""
 
     def __init__(self, backend: Backend, config: Mapping[str, Any], python: str = sys.executable) -> None:
-        """Nothing is started yet.
+        """Make the object, without starting a process.
 
         Args:
             backend: The program.
@@ -109,12 +109,12 @@ class ModelProcess:
         Args:
             header, data: The request.
             seconds: The longest time that the answer may take, once the model has begun.
-            unwanted: Set in another thread if the answer is of no use any more. If the request still waits for earlier
-                ones, it is then dropped.
+            unwanted: An event that another thread sets if nobody needs the answer any more. If the request still waits
+                for earlier requests, it is then dropped.
 
         Raises:
             PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within
-                `seconds`. In the last two cases, the next request starts a fresh process. Or the request was dropped.
+                `seconds`; or the request was dropped. After a crash or time-out, the next request starts a new process.
         """
         with self._turn:
             if unwanted is not None and unwanted.is_set():
@@ -146,7 +146,7 @@ class ModelProcess:
             self.restarts += 1
             self._end()
         try:
-            # -P: the files beside the program must not be imported in place of packages with their names.
+            # -P: a file beside the program must not take the place of a package with the same name.
             self._process = Child([self._python, "-P", str(SERVER), str(self._backend.program)], piped=True)
         except OSError as error:
             raise PlatformError(
@@ -222,7 +222,9 @@ _unshared = itertools.count()
 def take(
     backend: Backend, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True
 ) -> ModelProcess:
-    """Return the process for this backend and configuration, started or not, with one more user. Pair it with `drop`.
+    """Add a user to the process for a backend and a configuration, and return the process. Pair each call with `drop`.
+
+    The process may not have started yet.
 
     Args:
         backend, config, python: As for `ModelProcess`.
@@ -248,11 +250,11 @@ def is_shared(process: ModelProcess) -> bool:
 
 
 def drop(process: ModelProcess, *, linger: bool = False) -> None:
-    """Remove one user of `process`; without users it ends.
+    """Remove one user of `process`. A process without users ends.
 
     Args:
         process: The process.
-        linger: Whether it ends only after `LINGER` seconds without a user, because a user is likely to come back.
+        linger: Whether the process ends only after `LINGER` seconds without a user, because one is likely to return.
     """
     with _sharing:
         key = next((key for key, known in _processes.items() if known is process), None)

@@ -1,8 +1,10 @@
 """The process of one model: it answers requests on standard input, one after another.
 
-`process` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. It is a file, or a
-folder with ``__init__.py`` and files that it imports (``from . import ...``). The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by
-as many bytes as the line's ``size`` says. The process ends when standard input ends, so it also ends when its parent does.
+`process` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. The program is a
+file, or a folder with ``__init__.py`` and files that it imports (``from . import ...``).
+
+The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by as many
+bytes as the line's ``size`` says. The process ends when standard input ends, so it also ends when its parent ends.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ def main() -> None:
     """Load the backend, and answer requests until standard input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then closes this process
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # the prints of libraries are no answers
+    os.dup2(2, 1)  # libraries print to the errors, so that standard output has only answers
     requests = os.fdopen(os.dup(0), "rb")
     config, _ = _read(requests)
     try:

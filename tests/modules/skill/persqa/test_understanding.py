@@ -57,32 +57,6 @@ def test_a_question_never_swallows_an_unrelated_sentence(topic: str, text: str) 
     assert not understand(seen(text), talk_about(topic), {}, 1.0, 90.0).facts
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "i used to live in Lyon",
-        "if i lived in Rome i would be happy",
-        "my brother says that i live in Rome",
-        "i want to move to Oslo",
-        "i will move to Oslo next year",
-        "maybe i live in the Matrix",
-        "do i live in Oslo?",
-        "i wish i lived in Oslo",
-    ],
-)
-def test_only_what_is_so_now_is_a_fact(text: str) -> None:
-    assert understand(seen(text), Talk(), {}, 1.0, 90.0).kind in ("nothing", "asked")
-
-
-@pytest.mark.parametrize("text", ["we've been married for nine years", "I have to be at work at six"])
-def test_a_duration_is_no_age_and_a_time_is_no_employer(text: str) -> None:
-    assert not understand(seen(text), Talk(), {}, 1.0, 90.0).facts
-
-
-def test_an_offer_asks_for_no_fact() -> None:
-    assert understand(seen("do you want to be my friend"), Talk(), {}, 1.0, 90.0).kind == "nothing"
-
-
 def test_a_question_about_a_whole_kind_asks_for_no_memory() -> None:
     told = understand(seen("our baby has been crying for three hours"), Talk(), {}, 1.0, 90.0).said
     talk = replace(Talk(), said=told)
@@ -110,31 +84,6 @@ def test_the_answer_that_confirms_a_name(text: str, values: tuple[str, ...]) -> 
     assert tuple(value for fact in meaning.facts for value in fact.values) == values
 
 
-@pytest.mark.parametrize(
-    ("topic", "text"),
-    [
-        ("hobby", "y tho"),
-        ("hobby", "haha nice one"),
-        ("hobby", "nine parcels left in forty minutes"),
-        ("university", "its maize porridge with greens, very simple but it tastes of home"),
-        ("university", "Tomorrow I go to the union."),
-        ("occupation", "My brother Ruben doesn't want to talk about it."),
-    ],
-)
-def test_only_words_of_the_kind_that_was_asked_for_answer_a_question(topic: str, text: str) -> None:
-    meaning = understand(seen(text), talk_about(topic), {}, 1.0, 90.0)
-    assert not [fact for fact in meaning.facts if fact.topic == topic] and meaning.kind not in ("declined", "which")
-
-
-@pytest.mark.parametrize("topic", ["", "hobby", "occupation"])
-@pytest.mark.parametrize(
-    "text", ["Good evening. I am Anneke.", "My name is Anneke. That is not a thing, it is a name."]
-)
-def test_a_name_is_a_name_whatever_was_asked(topic: str, text: str) -> None:
-    meaning = understand(seen(text), talk_about(topic) if topic else Talk(), {}, 1.0, 90.0)
-    assert meaning.kind == "told" and [fact.values for fact in meaning.facts] == [("Anneke",)]
-
-
 def test_a_name_before_a_question_is_heard() -> None:
     meaning = understand(seen("hey! i'm thabo, how are you?"), Talk(), {}, 1.0, 90.0)
     assert [fact.values for fact in meaning.facts] == [("Thabo",)] and not meaning.aloud
@@ -145,47 +94,6 @@ def test_his_name_is_that_of_the_relative_mentioned_before() -> None:
     talk = Talk().listening(1.0, leave=False, person=father.person)
     told = understand(seen("His name was Joost."), talk, {}, 2.0, 90.0)
     assert [(fact.topic, fact.values) for fact in told.facts] == [("father", ("Joost",))]
-
-
-@pytest.mark.parametrize(
-    ("text", "topic", "value"),
-    [
-        ("I live in Ulm, not in Bonn", "home", "Ulm"),
-        ("I don't live in Rome, but in Naples", "home", "Naples"),
-        ("my name isn't Paul, it's Pawel", "name", "Pawel"),
-        ("I'm a doctor, not a nurse", "occupation", "doctor"),
-        ("I no longer live in Graz but in Wien", "home", "Wien"),
-    ],
-)
-def test_a_denial_covers_only_its_own_words(text: str, topic: str, value: str) -> None:
-    facts = understand(seen(text), Talk(), {}, 1.0, 90.0).facts
-    assert [fact.values for fact in facts if fact.topic == topic and not fact.gone] == [(value,)]
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "I used to have a dog called Sam",
-        "I had a girlfriend called Anna",
-        "my ex-wife is called Laura",
-        "I plan to get a dog named Bo",
-        "my imaginary friend is called Zorp",
-        "I go to the gym",
-        "I joined the queue",
-        "I come from work",
-        "I work with children",
-        "i live in paris. i don't live in paris.",
-    ],
-)
-def test_what_is_over_planned_or_of_another_kind_is_no_fact(text: str) -> None:
-    assert not understand(seen(text), Talk(), {}, 1.0, 90.0).facts
-
-
-@pytest.mark.parametrize(
-    "text", ["me? a penguin with a hat, of course", "ok forget it. what is 2 plus 2", "forget it, hand me a joke"]
-)
-def test_idioms_and_echoes_are_not_about_the_user(text: str) -> None:
-    assert understand(seen(text), Talk(), {"name": ("Ada",)}, 1.0, 90.0).kind == "nothing"
 
 
 def test_a_refusal_beside_a_sum_is_silent() -> None:

@@ -29,6 +29,11 @@ async def forecast(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = "Sunny. Do you like the sun?"
 
 
+@other.rule(when=rawio.input.changed.where(lambda text: text == "yes"), writes=rawio.output, weight=1.6)
+async def confirm(ctx: rs.RuleContext) -> None:
+    ctx[rawio.output] = "It is done."
+
+
 class Scripted:
     """A model that writes prepared answers, and keeps the prompts."""
 
@@ -97,7 +102,14 @@ def test_a_yes_to_another_modules_question_is_no_answer_to_its_own(sim: Simulati
     sim.say("my mother is ill")
     sim.say("how is the weather")
     sim.say("yes")
-    assert "her" not in sim.said[-1].split()
+    assert sim.said[-1] == "It is done."
+
+
+def test_a_clear_follow_up_comes_before_other_modules(sim: Simulation) -> None:
+    sim.say("my train was cancelled again")
+    sim.say("yes")
+    assert sim.said[-1] != "It is done."
+    assert sim.said[-1] != sim.said[-2]
 
 
 def test_it_hears_the_tone_of_what_others_answer(sim: Simulation) -> None:

@@ -1,4 +1,4 @@
-"""Awkward pauses: silence, and slow answers."""
+"""Notice awkward pauses: silence, and slow answers."""
 
 from __future__ import annotations
 

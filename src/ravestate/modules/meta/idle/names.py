@@ -18,7 +18,7 @@ class Settings(rs.Settings):
     bored_after: Seconds = 15.0
     """Seconds without activity after which the agent is bored."""
     answer_time: Seconds = 25.0
-    """Seconds without activity after which the agent is bored if it has asked a question; at least ``bored_after``."""
+    """Seconds without activity after which the agent is bored while its question is open; at least ``bored_after``."""
     writing_time: Seconds = 20.0
     """Seconds since the last key press after which the agent is bored, if the user has typed a line but not sent it."""
     remarks: Annotated[int, Field(ge=0)] = 2
@@ -56,4 +56,4 @@ dismissed = module.flag("dismissed")
 """Whether the user's last words ask for quiet or say goodbye."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances of the user during which their last words of sorrow still count."""
+"""The number of further utterances for which the user's last words of sorrow still count."""

@@ -13,7 +13,7 @@ from ravestate.modules import rawio
 from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
-"""The number of characters at the end of the agent's words in which the rule looks for a question."""
+"""The rule looks for a question in this number of characters at the end of the agent's words."""
 
 
 @module.rule(
@@ -84,7 +84,7 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet, says goodbye or is sad. If the user asks for quiet, emit `hushed`.
 
-    The encoder may take a few milliseconds, so it runs in a thread. This run is activity: the silence begins after it.
+    The encoder may take a few milliseconds, so it runs in a thread. The silence begins after this rule has ended.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})

@@ -52,9 +52,9 @@ ADVICE = frozenset(
         "permit",
     )
 )
-"""Classes of ``asks.yaml`` that want advice or an opinion, and no fact."""
+"""Classes of ``asks.yaml`` for questions that want advice or an opinion, not a fact."""
 ADVISED = 0.6
-"""The least confidence in such a class."""
+"""The least confidence at which such a class counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,10 +81,10 @@ class Analysis:
     """Class in ``feelings.yaml`` → the best match of a sentence for this feeling."""
 
     asks: Mapping[str, Match] = field(default_factory=dict[str, Match])
-    """Class in ``asks.yaml``: a kind of question or request → the best match of a sentence for this kind."""
+    """Class in ``asks.yaml`` (a kind of question or request) → the best match of a sentence for this kind."""
 
     move: Move | None = None
-    """The move: what a good listener does next, such as rejoice, console, advise..."""
+    """The move that a good listener makes next: rejoice, console, advise..."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""
@@ -118,7 +118,7 @@ def analyse(
     Args:
         text: Any text; the analysis covers only the beginning of a long text.
         pipeline: The pipeline; the first call loads it in about a second.
-        agent_names: The agent's names. A text with one of them is about the agent. Case is ignored.
+        agent_names: The agent's names. A text with one of these names is about the agent. Case is ignored.
         users: The names of the users present. In the normal form, these names and the agent's names have capitals.
         designed: The matcher of the designer's intents. The first call waits until the matcher has learnt its examples.
 
@@ -126,7 +126,7 @@ def analyse(
         PlatformError: spaCy or the pipeline is missing.
     """
     if designed is not None:
-        with contextlib.suppress(PlatformError):  # without the sentence model, it recognises only its examples verbatim
+        with contextlib.suppress(PlatformError):  # without the model, the matcher recognises only exact examples
             designed.load()
     names = tuple(agent_names)
     normal = pipeline.normalise(text, (*names, *users))

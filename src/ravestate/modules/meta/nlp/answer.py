@@ -18,7 +18,7 @@ from ravestate.language.shape import shape
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
-    """The meaning of a text as an answer. All three are None for a text that is not an answer.
+    """The meaning of a text as an answer. If the text is not an answer, all fields are None.
 
     Example:
         >>> yesno_of("probably not")
@@ -26,9 +26,9 @@ class YesNo:
     """
 
     yes: int | None = None
-    """Whether the text says yes: 0 (it does not), 1 (weakly) or 2 (surely)."""
+    """The strength of the *yes* in the text: 0 (none), 1 (weak) or 2 (sure)."""
     no: int | None = None
-    """Whether the text says no: 0 (it does not), 1 (weakly) or 2 (surely)."""
+    """The strength of the *no* in the text: 0 (none), 1 (weak) or 2 (sure)."""
     unsure: bool | None = None
     """Whether the speaker does not know."""
 
@@ -115,7 +115,7 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _score_of_part(part: str, asks: bool) -> int | None:
-    """Return the score of a part. A question has a score only if it resembles a weak answer or an example that asks."""
+    """Return the score of a part. A question has a score only if it resembles a weak answer, or an example question."""
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:

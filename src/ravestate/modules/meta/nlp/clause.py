@@ -25,7 +25,7 @@ from .verbs import (
     with_particles,
 )
 
-_DIRECT = ("dobj", "attr", "acomp", "oprd", "pobj", "punct")  # the parser sometimes labels an object as the last two
+_DIRECT = ("dobj", "attr", "acomp", "oprd", "pobj", "punct")  # the parser gives some objects one of the last two labels
 _ADVERBIAL = (QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.REASON, QuestionWord.FORM)
 _RELATIVE = ("who", "that", "which", "whom")
 _FEELINGS = word_set(
@@ -33,7 +33,7 @@ _FEELINGS = word_set(
     "annoyed satisfied",
 )
 _PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
-"""Subjects before a gerund that names them: *my hobby is reading*."""
+"""Subjects that a gerund may name: *my hobby is reading*."""
 _SENSES = word_set("be feel look seem sound taste smell")
 _STATES = word_set("better worse well fine good bad great ok okay awful hard alone")
 """Adjectives that the tagger mistakes for adverbs."""
@@ -70,7 +70,7 @@ class Clause:
         self.chain = chain_of(tree, verb)
         """The verb with the verbs that it governs: *want to become*."""
         self.verbs = list(dict.fromkeys([*self.chain[::-1], verb]))
-        """All verbs of the clause, the last one first."""
+        """All verbs of the clause; the last verb comes first."""
         self._clauses = clauses
         """All clauses of the tree by the index of each of their verbs."""
 
@@ -237,7 +237,7 @@ class Clause:
     # ------------------------------------------------------------------------------ subjects, objects
 
     def _parts(self) -> tuple[list[Part], list[tuple[Part, bool]]]:
-        """Return the subjects and the objects. With each object comes whether a *not* denies this object alone."""
+        """Return the subjects and the objects. The flag of an object says whether a *not* denies this object alone."""
         unknown, objects = self.unknown, self._objects()
         if self._names_pursuit:
             gerunds = conjuncts(self.tree, self.verb, self._clauses.keys() - {self.verb.index})
@@ -421,7 +421,7 @@ class Clause:
     # --------------------------------------------------------------------------------------- writing
 
     def _written(self, heads: Iterable[Word], verb: Word | None = None) -> list[tuple[Part, bool]]:
-        """Return the phrases of `heads` and their conjuncts. With each comes whether a *not* denies it alone."""
+        """Return the phrases of `heads` and their conjuncts. A phrase's flag says whether a *not* denies it alone."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._clauses):

@@ -22,11 +22,11 @@ _TELLING = word_set("tell say explain show remind describe ask")
 _KNOWING = word_set("know remember guess wonder see find hear understand recall")
 """Verbs before an indirect question. Verbs of telling are not listed: a person follows them, as in *tell me where*."""
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight that again to not")
-"""Words for things to perform, such as jokes: a request for one is not a question."""
+"""Words for things to perform, such as jokes. A request for a performance is not a question."""
 _ANY = word_set("any ever anyone anybody anything")
 """Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
 _BEFORE_TAG = word_set("here there me you him her them us")
-"""Words after which a *right* without a comma is a question tag, as it is after nouns and adjectives."""
+"""After one of these words, as after a noun or an adjective, *right* is a question tag even without a comma."""
 _SUBJECTS = word_set("i he she we they it")
 _TAGS = word_set("right correct huh eh yes no ok okay")
 

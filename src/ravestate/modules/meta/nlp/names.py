@@ -44,7 +44,7 @@ normal: rs.Slot[str] = module.slot("normal", "", always=True)
 """The last utterance as written English: its normal form."""
 
 lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
-"""Analysis takes one utterance at a time: a later one may correct an earlier one (*no, Bremen*)."""
+"""The lock lets rules analyse one utterance at a time, because a later utterance may correct an earlier one."""
 
 tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
 """The words and punctuation of the last utterance, as written."""
@@ -68,7 +68,8 @@ question: rs.Slot[QuestionWord | None] = module.slot("question", None, always=Tr
 """The kind of the first question; None if nothing is asked."""
 
 analysis: rs.Slot[Analysis | None] = module.slot("analysis", None, always=True)
-"""The whole analysis as one record, with acts, feelings and statements. Rules read it instead of analysing the text."""
+"""The whole analysis as one record, with acts, feelings and statements. Rules read this record
+instead of analysing the text."""
 
 yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
 """The meaning of the utterance as an answer: yes or no. This slot is written last."""

@@ -58,7 +58,7 @@ _NUMBERS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 
 
 def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase:
-    """Return the phrase of `words` around `head`; of its noun phrase by default."""
+    """Return the phrase that `words` form around `head`. By default, `words` is the noun phrase of `head`."""
     noun = None if head.pos in ("PRON", "DET") else head
     if head.pos == "PROPN":  # as in "my friend Anna": the head is "friend"
         noun = next((word for word in tree.children(head, "compound", "nmod") if word.pos == "NOUN"), None)
@@ -84,8 +84,8 @@ def person_of(word: Word) -> Person:
 def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
     """Return the words of the noun phrase around `head`, with its conjuncts if it is `joined`.
 
-    It keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other prepositions and
-    relative clauses. A gerund (*playing chess*) keeps everything except determiners.
+    The phrase keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other
+    prepositions and relative clauses. A gerund (*playing chess*) keeps everything except determiners.
     """
     if head.pos in ("VERB", "AUX") and head.dep not in ("ROOT", "conj", "amod"):
         return gerund_phrase(tree, head)
@@ -100,7 +100,7 @@ def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
 def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
     """Return a predicate adjective with its measure (*20 years old*) and the prepositional phrase directly after it.
 
-    The parser attaches the prepositional phrase to the adjective or to the verb.
+    The prepositional phrase counts whether the parser attaches it to the adjective or to the verb.
     """
     kept = [head]
     for child in tree.children(head, "npadvmod", "compound"):

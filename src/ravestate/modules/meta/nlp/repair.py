@@ -16,7 +16,7 @@ _INVERTING = word_set("do does did can could will would should")
 
 
 def repaired(tree: Tree) -> Tree:
-    """Return a tree of the same words. Relations that cannot be right are replaced."""
+    """Return a tree of the same words, and replace relations that cannot be right."""
     words = list(tree.words)
     for word in tree.words:
         if word.low in AUXILIARIES:

@@ -34,7 +34,7 @@ class Triple(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """One triple of a clause, its phrases, and whether the speaker asserts it.
+    """One triple of a clause, with its phrases, and with flags that say whether the speaker asserts it.
 
     Example:
         *my sister Rosa lives in Antwerp* has the triple (my sister Rosa, live, Antwerp); ``subject.head`` is ``sister``,
@@ -54,7 +54,7 @@ class Statement:
     """The lemma of the last verb of the predicate: ``live``, also for *used to live* and *want to live*."""
     phrases: tuple[Phrase, ...] = ()
     """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*. A name that
-    somebody is given is also here, without a preposition: *Rex*, in *we named our dog Rex*."""
+    the clause gives to somebody is also here, without a preposition: *Rex*, in *we named our dog Rex*."""
     when: str = ""
     """The time that the clause names: ``two years ago``, ``since 2010``, ``next month``."""
     negated: bool = False
@@ -69,7 +69,7 @@ class Statement:
     conditional: bool = False
     """The statement is imagined: *if I lived in Rome*, *I would be happy*, *I wish I were rich*, *maybe he is ill*."""
     plan: bool = False
-    """The action is wanted, or lies ahead: *I want to move to Rome*, *I am going to visit him*, *I will call you*."""
+    """The action is wanted or in the future: *I want to move to Rome*, *I am going to visit him*, *I will call you*."""
     question: bool = False
     """The statement is a question: *do you live here*, *where do you live*."""
     request: bool = False

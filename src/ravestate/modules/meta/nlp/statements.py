@@ -17,7 +17,7 @@ from .tree import SUBJECTS, Tree
 from .verbs import lemma_of, makes_future
 
 MOST = 64
-"""The maximum number of triples from one text, because enumerations multiply."""
+"""The maximum number of triples from one text. A limit is needed, because enumerations multiply the triples."""
 
 _HABITS = word_set("go play train run attend sing dance paint cook swim ride eat teach stay drink")
 """Verbs of habits. With a time, they tell a single event: *I painted a dragon yesterday*."""
@@ -25,7 +25,7 @@ _LASTING = _HABITS | word_set(
     "be live work study have own like love hate enjoy prefer want need know believe speak belong smoke keep collect date share "
     "feel hope think"
 )
-"""Verbs of states and habits. In the past tense, their statements no longer hold; with other verbs, they still do."""
+"""Verbs of states and habits. In the past tense, a statement with such a verb no longer holds; others still hold."""
 _KNOWN_AS_TRUE = word_set(
     "know remember see notice forget realise realize find learn discover understand mean show prove"
 )
@@ -116,7 +116,7 @@ class _Assertion:
 
     @cached_property
     def _hearsay(self) -> bool:
-        """Whether the statement is what somebody else says."""
+        """Whether the statement reports the words of somebody else."""
         if self._above is None or self._low & _REPORTS:
             return bool(self._low & _REPORTS)
         said = self._above._clause
@@ -149,7 +149,7 @@ class _Assertion:
 
     @cached_property
     def _plan(self) -> bool:
-        """Whether the action is wanted, or lies ahead."""
+        """Whether the action is wanted, or in the future."""
         chain = self._clause.chain
         if any(word.low in ("will", "'ll", "shall", "wo") and word.dep == "aux" for word in self._clause.own):
             return True
@@ -204,7 +204,7 @@ class _Assertion:
 
     @cached_property
     def _denied_above(self) -> bool:
-        """Whether the clause above denies this one: *I don't think that I am shy*, *it is not true that I am shy*."""
+        """Whether the clause above denies this clause: *I don't think that I am shy*, *it isn't true that I am shy*."""
         if self._above is None or self._clause.verb.dep not in ("ccomp", "csubj"):
             return False
         said = self._above._clause

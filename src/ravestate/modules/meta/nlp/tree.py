@@ -28,7 +28,7 @@ class Word:
     head: int
     """The index of its head; a root is its own head."""
     start: int
-    """Its first position, in characters of the text."""
+    """The position of its first character in the text."""
 
     @property
     def low(self) -> str:
@@ -37,7 +37,7 @@ class Word:
 
     @property
     def end(self) -> int:
-        """The position after the word, in characters of the text."""
+        """The position after the word's last character in the text."""
         return self.start + len(self.text)
 
 

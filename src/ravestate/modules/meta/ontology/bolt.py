@@ -30,7 +30,7 @@ LIVELY = 5.0
 class BoltStore:
     """A database on a server, accessed through Neo4j's official driver.
 
-    The store has its own thread. It still uses the asynchronous driver, because a wait for that driver can be
+    The store has its own thread. Even so, it uses the asynchronous driver, because a wait for that driver can be
     cancelled. So a server that stalls delays the thread for at most `timeout` seconds.
     """
 
@@ -45,7 +45,7 @@ class BoltStore:
             timeout: The seconds to wait for each answer.
 
         Raises:
-            PlatformError: The package is missing, or the server is absent, stalls or refuses.
+            PlatformError: The package is missing, or the server is absent, stalls or refuses the connection.
         """
         try:
             with LOADING:
@@ -92,7 +92,7 @@ class BoltStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """Commit all statements in the ``with`` block together, or none."""
+        """Run the ``with`` block as one transaction: commit all of its statements, or none."""
         if self._transaction is not None:
             yield
             return

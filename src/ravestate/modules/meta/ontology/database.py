@@ -58,7 +58,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
 
 
 def survives(path: Path, *, whole_log: bool = True) -> bool:
-    """Return whether a separate process survives opening the file and reading all of it. An exception is no crash."""
+    """Return whether a separate process can open and read the whole file without a crash; exceptions do not count."""
     command = [sys.executable, "-P", __file__, str(path), "whole" if whole_log else "part"]
     try:
         return subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode >= 0

@@ -47,14 +47,14 @@ class EmbeddedStore:
 
     Committed writes are in the write-ahead log, on disk. If a write to that log fails, ladybug hangs in the next write,
     and ends the process when it closes the file. So the store checks the free space before each write. If a write still
-    fails, its incomplete record is cut off. Then nothing is written or closed until the disk has room again.
+    fails, its incomplete record is cut off. The store then writes and closes nothing until the disk has room again.
     """
 
     def __init__(self, path: Path) -> None:
         """Open a database file, or make a new one.
 
         Args:
-            path: The file. A missing folder is created, such that only the user can read it.
+            path: The file. A missing folder is created; only the user can read it.
 
         Raises:
             PlatformError: The package is missing; or the file is in use, damaged, of a newer version, or not writable.
@@ -100,7 +100,7 @@ class EmbeddedStore:
 
     @contextmanager
     def transaction(self) -> Generator[None]:
-        """Commit all statements in the ``with`` block together, or none."""
+        """Run the ``with`` block as one transaction: commit all of its statements, or none."""
         if self._within:
             yield
             return
@@ -186,7 +186,7 @@ class EmbeddedStore:
         return ""
 
     def _open_in_part(self) -> str:
-        """Open the file although a power failure has cut off its log; return the error, or "" if there is none.
+        """Open a file with a log that a power failure has cut off. Return the error, or "" if there is none.
 
         The log is read up to the damage, or not at all if that is not possible. A copy of the log is kept.
         """
@@ -231,7 +231,7 @@ class EmbeddedStore:
     def purge(self) -> None:
         """Rewrite the file without the deleted data, because ladybug leaves the bytes of deleted data in the file.
 
-        If that fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
+        If this fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
         """
         if self._within:
             self._purge_due = True  # the purge follows the transaction

@@ -31,7 +31,7 @@ def is_foreign_log(said: str) -> bool:
 
 
 def is_about_log(said: str) -> bool:
-    """Return whether a damaged log may be the reason why ladybug, with this message, cannot open the file."""
+    """Return whether a message of ladybug about a file that cannot be opened may mean a damaged log."""
     return _NO_DAMAGE.search(said) is None
 
 
@@ -63,7 +63,7 @@ def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
 
 
 def why_not_opened(path: Path, said: str, files: Iterable[Path]) -> str:
-    """Return the message for users about a file that cannot be opened: the reason, and what to do."""
+    """Return the message for users about a file that cannot be opened, with the reason and the remedy."""
     first = said.strip().splitlines()[0] if said.strip() else "no reason given"
     if "set lock" in said:
         held = re.search(r"PID (\d+)", said)

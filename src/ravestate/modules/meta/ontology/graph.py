@@ -15,7 +15,7 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of people and robots. Forgetting a node keeps those related people and robots that have more than a name."""
+"""The type of people and robots. If a node is forgotten, a related agent stays if memory has more than their name."""
 
 
 class Graph:
@@ -37,7 +37,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ nodes
 
     def save(self, node: Node, /, *, of: str | None = None) -> Node:
-        """Set a node's properties in memory, and remove properties that are None. Its other properties in memory stay.
+        """Set a node's properties in memory, and remove properties that are None. Other properties in memory stay.
 
         Args:
             node: The node to write.
@@ -51,7 +51,7 @@ class Graph:
         return self._write(_known(node), self._types.stored(node.type, node.properties))
 
     def ensure(self, type: str, properties: Mapping[str, Value]) -> Node:
-        """Return the oldest node with this type and these properties, or a new one."""
+        """Return the oldest node of this type with these properties. If there is none, create one."""
         found = self.find(type, properties)
         return found[0] if found else self.save(Node(type, properties))
 
@@ -101,7 +101,7 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        A person or robot of whom memory has more than a name also stays.
+        A person or robot also stays if memory has more than their name.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
@@ -113,13 +113,13 @@ class Graph:
                 self.forget(other)
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> list[Node]:
-        """Return the targets of a relation from `node`; with `back`, the sources of one to `node`. Oldest first."""
+        """Return the targets of a relation from `node`; with `back`, its sources. The oldest node comes first."""
         self._types.check_end(node.type, relation, back=back)
         pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
         return self._nodes(f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id})
 
     def relations(self, node: Node, /) -> list[Relation]:
-        """Return all relations of a node: first those from the node, then those to the node."""
+        """Return all relations of a node: first the relations from the node, then the relations to the node."""
         found = [Relation(node, name, other, values) for name, values, other in self._ends(node, back=False)]
         found += [
             Relation(other, name, node, values)
@@ -145,7 +145,7 @@ class Graph:
         return sorted(found, key=lambda end: (end[0], _age(end[2])))
 
     def _edges(self, node: Node, *, back: bool) -> list[tuple[Raw, Raw]]:
-        self._types.properties(node.type)  # raises if there is no such type
+        self._types.properties(node.type)  # this raises an error if there is no such type
         pattern = "<-[r]-" if back else "-[r]->"
         rows = self._store.read(
             f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN r, b", {"id": _known(node).id}
@@ -180,7 +180,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Copy a relation to another pair of nodes. If the pair has such a relation, keep its own properties."""
+        """Copy a relation to another pair of nodes. If the pair has the relation already, its properties stay."""
         ends = self._ends(source, back=False)
         present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))
@@ -205,8 +205,8 @@ class Graph:
     def forget(self, node: Node, /) -> list[Node]:
         """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
 
-        A node needs its relations' targets, and their targets in turn. These targets stay if a node that stays is
-        related to them. A person or robot of whom memory has more than a name also stays.
+        A node needs the targets of its relations, and in turn their targets. A target stays if a node that stays is
+        related to it. A person or robot also stays if memory has more than their name.
 
         Returns:
             The removed nodes, `node` first; an empty list if memory does not have `node`.
@@ -220,7 +220,7 @@ class Graph:
         return going
 
     def _has_own_life(self, other: Node, start: Node) -> bool:
-        """Return whether `other` is a person or robot of whom memory has more than a name and a relation to `start`."""
+        """Return whether `other` is a person or robot with more in memory than a name and a relation to `start`."""
         if AGENT not in self._types or not self._types.is_a(other.type, AGENT):
             return False
         return bool(other.properties.keys() - {"name"}) or any(
@@ -318,7 +318,7 @@ def _age(node: Node) -> tuple[str, str]:
 
 
 def _setting(variable: str, values: Mapping[str, Any]) -> str:
-    """Return the Cypher clause that sets properties. The prefix ``p_`` keeps its parameters apart from those of ids."""
+    """Return the Cypher clause that sets properties. Its parameters have the prefix ``p_``, unlike those of ids."""
     settings = ", ".join(f"{variable}.`{key}` = $p_{key}" for key in values)
     return f" SET {settings}" if settings else ""
 

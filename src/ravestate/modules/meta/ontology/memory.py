@@ -33,11 +33,11 @@ def _operation(method: Callable[Concatenate[Graph, P], T]) -> Callable[Concatena
 class Memory:
     """The open graph of an agent's knowledge.
 
-    Every operation returns a `Reply` at once: ``await`` it in an async rule, or call ``.result()`` on it in a plain
-    function. Operations run one after the other, in the order of the calls, in memory's thread. Once a reply has its
-    result, the write is on disk or with the server.
+    Every operation returns a `Reply` at once. In an async rule, ``await`` the reply; in a plain function, call its
+    method ``result()``. Operations run one at a time, in the order of the calls, in memory's thread. When the reply to
+    a write has its result, the data is on the disk or on the server.
 
-    The reply of each operation may raise:
+    Each reply may raise:
 
     - RuleError: an undeclared type, property or relation, or a value of a wrong type;
     - PlatformError: memory failed: a full disk, a server that does not answer, a file in use.
@@ -101,13 +101,16 @@ class Memory:
     save = _operation(Graph.save)
 
     def find(self, type: str, /, **properties: Value) -> Reply[list[Node]]:
-        """Return all nodes of a type or its subtypes with these properties, oldest first. None stands for no value."""
+        """Return all nodes of a type or its subtypes with these properties, oldest first.
+
+        If you pass None for a property, the nodes that have no value for this property match.
+        """
         return self.submit("find", lambda graph: graph.find(type, properties))
 
     get = _operation(Graph.get)
 
     def update(self, node: Node, /, **properties: Value) -> Reply[Node]:
-        """Set properties of a node that memory has, and remove those that are None."""
+        """Set properties of a node that memory has, and remove the properties for which you pass None."""
         return self.submit("update", lambda graph: graph.update(node, properties))
 
     def relate(self, node: Node, relation: str, other: Node, /, **properties: Value) -> Reply[None]:
@@ -135,11 +138,13 @@ class Memory:
     tidy = _operation(Graph.tidy)
 
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
-        """Run several operations as one: all take effect, or none. In a file, no other operation comes in between.
+        """Run several operations as one transaction: either all operations take effect, or none.
+
+        If memory is a file, no other operation runs between them. A server may run operations of other programs.
 
         Args:
-            operations: A function of the graph, called in memory's thread. The graph has the operations of this class.
-                There, the operations return plain results, and take properties as mappings. Do not keep the graph.
+            operations: A function of the graph, called in memory's thread. The graph has the operations of this class,
+                but its operations return plain results, and take properties as mappings. Do not use the graph later.
 
         Returns:
             The result of the function. If it raises an exception, all of its operations are rolled back.

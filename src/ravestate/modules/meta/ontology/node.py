@@ -21,7 +21,7 @@ _last = 0
 
 def _next_id(type: str) -> str:
     """Return an id that is greater than earlier ones, so that sorting by id sorts nodes by age."""
-    global _last  # ids grow over the whole process, whichever thread or context makes the node
+    global _last  # all threads and contexts of the process share one series of ids
     with _lock:
         _last = max(_last + 1, time.time_ns() // 1000)
         return f"{type}:{_last:014x}{secrets.token_hex(4)}"
@@ -55,7 +55,7 @@ class Node:
             object.__setattr__(self, "id", _next_id(self.type))
 
     def with_properties(self, **properties: Value) -> Node:
-        """Return a copy of the node with new values for some properties. Saving the copy removes a None property."""
+        """Return a copy of the node with new values for some properties. To remove a property, pass None, and save."""
         return Node(self.type, {**self.properties, **properties}, self.id)
 
     def get(self, name: str, default: Any = None) -> Any:

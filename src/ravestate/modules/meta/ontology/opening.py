@@ -21,7 +21,7 @@ def default_path(agent: str) -> Path:
 
 
 def types_of(settings: Settings) -> Types:
-    """Return the built-in types together with those in the files that the settings name; see `types_in`."""
+    """Return the built-in types and the types in the files that the settings name; see `types_in`."""
     return types_in(settings.types)
 
 

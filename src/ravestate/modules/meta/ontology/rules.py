@@ -13,7 +13,10 @@ from .opening import open_memory
 
 @module.rule(when=rs.startup.detached(), writes=memory, detached=True, background=True)
 async def open_up(ctx: rs.RuleContext) -> None:
-    """Open memory at the place that the settings name. The slot holds the memory object at once; operations wait until the memory is open."""
+    """Open memory at the place that the settings name.
+
+    The slot holds the memory object at once; operations wait until the memory is open.
+    """
     opening = open_memory(ctx.settings)
     ctx[memory] = opening
 

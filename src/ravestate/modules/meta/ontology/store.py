@@ -44,7 +44,10 @@ class Store(Protocol):
         ...
 
     def transaction(self) -> AbstractContextManager[None]:
-        """Commit all statements in the ``with`` block together, or none. An inner transaction is part of the outer one."""
+        """Run the ``with`` block as one transaction: commit all of its statements, or none.
+
+        An inner transaction is part of the outer transaction.
+        """
         ...
 
     def purge(self) -> None:

@@ -99,7 +99,7 @@ class Types:
         )
 
     def stored(self, owner: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return properties of a type or relation as memory stores them: dates and times are texts that sort by time."""
+        """Return properties of a type or relation as memory stores them: dates and times become sortable texts."""
         kinds = self._kinds(owner)
         for name in values:
             if name not in kinds:

@@ -14,12 +14,12 @@ T = TypeVar("T")
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
-"""Key of a store that is closing → a future of the end of the closing. The next opening of the store waits for it."""
+"""Key of a store that is closing → a future that is done when the store is closed. The next opening waits for it."""
 _lock = threading.Lock()
 
 
 class StoreWorker:
-    """A thread that runs jobs on a store, one after the other.
+    """A thread that runs jobs on a store, one at a time.
 
     A process opens a file once for all contexts: a second opening would succeed and ruin the file. The thread is a
     daemon, so a server that hangs cannot keep the process alive.
@@ -30,7 +30,7 @@ class StoreWorker:
 
         Args:
             place: The path or address of the store, for messages.
-            make: A function that opens the store. If it raises an exception, every job raises the same one.
+            make: A function that opens the store. If it raises an exception, every job raises the same exception.
         """
         self.place = place
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
@@ -42,7 +42,7 @@ class StoreWorker:
 
     @classmethod
     def shared(cls, key: str, make: Callable[[], Store]) -> StoreWorker:
-        """Return the process's worker for the store at `key`, or start one; each call needs a `release`."""
+        """Return the process's worker for the store at `key`, or start a worker. Each call needs its own `release`."""
         with _lock:
             worker = _shared.get(key)
             if worker is not None:

@@ -1,4 +1,4 @@
-"""An intent: a meaning that the agent wants to say, without words."""
+"""An intent: a meaning that the agent wants to express, without its words."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class Intent:
-    """A meaning that the agent wants to say; a `PhraseBook` has the words.
+    """A meaning that the agent wants to express; a `PhraseBook` has the words.
 
     Example:
         >>> Intent("greet", {"name": "Ada"})

@@ -11,8 +11,8 @@ greet:
 farewell: Goodbye!           # without a language: the default language
 ```
 
-Several files make one phrase book. The phrases of a later file *replace* those of earlier files for the same intent and
-language. With ``!add`` they are added:
+Several files make one phrase book. For the same intent and language, the phrases of a later file *replace* the phrases
+of earlier files. With ``!add``, they are added:
 
 ```yaml
 greet:
@@ -86,7 +86,7 @@ class PhraseBook:
 
     @classmethod
     def load(cls, sources: Iterable[Source], language: str = "en", *, default_language: str = "en") -> PhraseBook:
-        """Return a book of the phrases in YAML files, read in the given order. This module's docstring has the format.
+        """Return a book of the phrases in YAML files, read in the given order. The module's docstring shows the format.
 
         Phrases without a language in the files are in the default language.
 

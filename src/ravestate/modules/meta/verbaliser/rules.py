@@ -19,7 +19,7 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Say a phrase for the intent. If there are several phrases, do not repeat the last one."""
+    """Say a phrase for the intent. If there are several phrases, do not repeat the last phrase."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:
@@ -34,7 +34,7 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return an `Intent` for the slot's value, which is an `Intent` or the name of one."""
+    """Return an `Intent` for the slot's value, which is an `Intent` or an intent's name."""
     if isinstance(value, Intent):
         return value
     if isinstance(value, str) and value:
@@ -47,7 +47,7 @@ def as_intent(value: object) -> Intent:
 
 @lru_cache(maxsize=256)
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
-    """Return a book of the built-in phrases, those of `package`, and those in the user's files `own` (absolute paths).
+    """Return a book of the built-in phrases, the phrases of `package`, and the user's files `own` (absolute paths).
 
     Later phrases replace earlier ones. A process reads each file once; all its contexts share the book.
     """

@@ -1,4 +1,4 @@
-"""Numbers that describe a normalised movement, and do not depend on its tempo or on the moment at which it begins."""
+"""Numbers that describe a normalised movement, independently of the movement's tempo and first moment."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 LEFT_WRIST, RIGHT_WRIST = 3, 4
 TRACKS = 12
-"""The number of coordinates whose joint movement is described: wrists, knees' height and depth, torso, rise."""
+"""The number of coordinates whose common movement counts: wrists, height and depth of the knees, torso, rise."""
 
 
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
-    """Return the features; NaN where the joints that they need are not visible.
+    """Return the features. A feature is NaN if the joints that it needs are not visible.
 
-    The features are the mean place of each joint, the size of its movement, and the common movement of pairs of coordinates.
-    Rotations of the wrists and their distances from the face follow. All are statistics over time, so tempo and phase drop
-    out.
+    The features are the mean place of each joint, the size of its movement, and the common movement of pairs of
+    coordinates. Rotations of the wrists and their distances from the face follow. All features are statistics over
+    time, so tempo and phase do not matter.
     """
     import numpy as np
 

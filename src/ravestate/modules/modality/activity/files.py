@@ -1,7 +1,8 @@
 """Movements in files: the landmarks of a body over time, and the folder of taught activities.
 
-A file of landmarks is a numpy archive (``.npz``) with ``times`` (T,) in seconds and ``points`` (T, 33, 4), see `Pose`; an
-optional ``name`` is the activity. The folder of taught activities has one such file for each demonstration. It has no pictures.
+A file of landmarks is a numpy archive (``.npz``) with ``times`` (T,) in seconds and ``points`` (T, 33, 4), see `Pose`.
+An optional ``name`` is the activity. The folder of taught activities has one such file for each demonstration, and no
+pictures.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ LONGEST = 100
 
 
 def folder_of(folder: Path | None) -> Path:
-    """Return the folder of taught activities: the one in the settings, or else one in the user's data folder."""
+    """Return the folder of taught activities: the folder in the settings, or else one in the user's data folder."""
     return user_folder("data") / "activities" if folder is None else folder.expanduser()
 
 
@@ -31,7 +32,7 @@ def read(file: Path) -> tuple[str, tuple[Pose, ...]]:
     """Return the name (may be empty) and the poses in a file of landmarks.
 
     Raises:
-        PlatformError: The file cannot be read, or is no such file.
+        PlatformError: The file cannot be read, or is not a file of landmarks.
     """
     np = numpy()
     try:
@@ -94,7 +95,7 @@ def files_of(folder: Path) -> dict[str, list[Path]]:
 
 
 def keep(folder: Path, name: str, poses: Sequence[Pose]) -> Path:
-    """Keep a demonstration of an activity in a new file of the folder; return the file.
+    """Write a demonstration of an activity to a new file in the folder. Return the file.
 
     Raises:
         PlatformError: The file cannot be written.
@@ -108,5 +109,5 @@ def keep(folder: Path, name: str, poses: Sequence[Pose]) -> Path:
 
 
 def clean(name: str) -> str:
-    """Return the name of an activity as it is spoken: ``Playing_Guitar`` becomes ``playing guitar``."""
+    """Return the spoken form of an activity's name: ``Playing_Guitar`` becomes ``playing guitar``."""
     return " ".join(name.replace("_", " ").split()).lower()[:LONGEST]

@@ -21,7 +21,7 @@ class Activity:
     """An activity that somebody performed before the camera."""
 
     name: str
-    """The name, as spoken: ``waving``, ``playing the guitar``."""
+    """The spoken name, such as ``waving`` or ``playing the guitar``."""
     confidence: float
     """0 to 1."""
     start: float
@@ -42,10 +42,10 @@ class Lesson:
 
 
 class Settings(rs.Settings):
-    """The recogniser's pace, and the place of the movements that it was taught."""
+    """The settings of activity: the recogniser's pace, and the folder of taught movements."""
 
     window: Annotated[float, Field(ge=1.0, le=10.0)] = 3.0
-    """The length of the movement that one recognition looks at, in seconds."""
+    """The length of the movement for one recognition, in seconds."""
     step: Annotated[float, Field(gt=0)] = 0.5
     """Seconds from one recognition to the next."""
     folder: Path | None = None

@@ -1,10 +1,11 @@
-"""The recogniser: it compares the features of a movement with those of the activities that it knows.
+"""The recogniser: it compares the features of a movement with the features of known activities.
 
-Each activity is a Gaussian: a mean and a deviation of its own for each feature, and one correlation of features for all.
-A movement belongs to the activity under which it is most probable. It is unknown if it is too far from that activity's mean, or
-if one of the starter set's *other* movements is more probable. Both sides of the body are tried.
+Each activity is a Gaussian with its own mean and deviation for each feature. All activities share one correlation of
+features. A movement belongs to the activity that makes it most probable. The movement is unknown if it is too far from
+that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser tries both
+sides of the body.
 
-A new activity needs few demonstrations, because only its mean is new: its deviations are those of an average activity.
+A new activity needs few demonstrations, because only its mean is new. It has the deviations of an average activity.
 """
 
 from __future__ import annotations
@@ -25,21 +26,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OWN = 0.9
-"""The share of an activity's own variance in its deviations; the rest is that of an average activity."""
+"""The share of an activity's own variance in its deviations. The rest is the variance of an average activity."""
 RIDGE = 0.05
-"""A variance that every feature has in addition, and the share of the correlations that is given up."""
+"""A variance to add to every feature, and the share by which all correlations shrink."""
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""How much more probable a taught activity is beforehand: twice the log likelihood, per feature."""
+"""The advantage of a taught activity in prior probability: twice the log likelihood, per feature."""
 LIMIT = 4.0
-"""The greatest distance from a taught activity, in the same unit."""
+"""The greatest distance from a taught activity: the mean squared deviation of the features."""
 REMEMBERED = 64
-"""The number of inverse matrices that are kept: one for each set of visible features."""
+"""The number of inverse matrices to keep. Each set of visible features needs one matrix."""
 SECOND = 3
 """The maximum number of next best names."""
 FAR = 3.0
-"""The greatest distance of a next best activity, in limits: it may be improbable, but the movement resembles it."""
+"""The greatest distance of a next best activity, as a multiple of the limit. Within it, the movement looks similar."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +54,9 @@ class Recognition:
     others: tuple[tuple[str, float], ...] = ()
     """The next best names, with their confidence."""
     nearest: str = ""
-    """The most probable activity, even if the movement is too far from it."""
+    """The most probable activity, even if the movement is too far from this activity."""
     distance: float = float("inf")
-    """The distance from the nearest activity: the mean squared deviation of a feature; 1 is the limit."""
+    """The distance from the nearest activity (mean squared deviation of the features), as a multiple of the limit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,20 +66,20 @@ class Starter:
     names: tuple[str, ...]
     """A name for each Gaussian; empty for a movement that is none of the activities."""
     means: NDArray[Any]
-    """(activities, features), of normalised features."""
+    """(activities, features): the means of normalised features."""
     deviations: NDArray[Any]
     centre: NDArray[Any]
-    """(features,): what is subtracted from a feature to normalise it."""
+    """(features,): the values to subtract from features, to normalise them."""
     size: NDArray[Any]
-    """(features,): what it is then divided by."""
+    """(features,): the values by which to divide the features after that."""
     usual: NDArray[Any]
     """(features,): the deviations of an average activity."""
     correlation: NDArray[Any]
-    """(features, features)"""
+    """(features, features): the correlation of features."""
     limit: float
     """The greatest distance from a known activity."""
     heat: float
-    """The divisor of log likelihoods that makes the confidence honest."""
+    """The divisor of log likelihoods that calibrates the confidence."""
 
     @classmethod
     def load(cls) -> Starter:
@@ -153,10 +154,10 @@ class Recogniser:
         return frozenset(self._taught)
 
     def teach(self, name: str, poses: Sequence[Pose]) -> bool:
-        """Learn an activity from a demonstration; return False if too little of the body is visible in it.
+        """Learn an activity from a demonstration. Return False if it shows too little of the body.
 
         Args:
-            name: A new name, or that of a known activity.
+            name: A new name, or the name of a known activity.
             poses: The demonstration, of about three seconds.
         """
         skeleton = skeleton_of(poses)
@@ -166,9 +167,9 @@ class Recogniser:
         return True
 
     def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
-        """Learn an activity from the features of a demonstration, and those of its mirror image.
+        """Learn an activity from the features of a demonstration, and the features of its mirror image.
 
-        Demonstrations with the left and with the right hand count as one: the side that is nearer to the others is taken.
+        Demonstrations may use the left or the right hand: the recogniser takes the side that is nearer to the others.
         """
         np, group = self._np, self._taught.setdefault(name, [])
         both = [(side - self.starter.centre) / self.starter.size for side in sides]
@@ -180,7 +181,7 @@ class Recogniser:
         self._arrange()
 
     def recognise(self, poses: Sequence[Pose]) -> Recognition:
-        """Return the activity that a movement shows.
+        """Return the activity in a movement.
 
         Args:
             poses: The poses of one body, of about three seconds.
@@ -191,10 +192,10 @@ class Recogniser:
         return self.recognise_features((features_of(skeleton), features_of(skeleton.mirrored())))
 
     def recognise_features(self, sides: Sequence[NDArray[Any]]) -> Recognition:
-        """Return the activity that features show.
+        """Return the activity for the features of a movement.
 
         Args:
-            sides: The features of a movement, and those of its mirror image.
+            sides: The features of a movement, and the features of its mirror image.
         """
         np = self._np
         pairs = [self._compared((side - self.starter.centre) / self.starter.size) for side in sides]
@@ -219,7 +220,7 @@ class Recogniser:
         return Recognition(name, probability[name], tuple(others), name, away)
 
     def _arrange(self) -> None:
-        """Put the taught activities beside those of the starter set."""
+        """Join the taught activities and the activities of the starter set."""
         np, starter = self._np, self.starter
         taught = {name: np.array(group) for name, group in self._taught.items()}
         self._names = (*starter.names, *taught)
@@ -232,7 +233,10 @@ class Recogniser:
         self._limits = np.array([starter.limit] * len(starter.names) + [LIMIT] * len(taught))
 
     def _compared(self, features: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], int]:
-        """Return the distance from each activity, twice the negative log likelihood per feature, and the features' number."""
+        """Return the distance from each activity, a cost for each activity, and the number of visible features.
+
+        The cost is twice the negative log likelihood per feature.
+        """
         np = self._np
         there = ~np.isnan(features)
         key = there.tobytes()
@@ -258,7 +262,7 @@ def numpy() -> Any:
     """Return numpy.
 
     Raises:
-        PlatformError: It is missing.
+        PlatformError: numpy is missing.
     """
     try:
         return import_module("numpy")

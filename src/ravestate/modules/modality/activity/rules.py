@@ -24,9 +24,9 @@ from .names import (
 from .recogniser import Recogniser
 
 GONE = 2.0
-"""Seconds without a pose after which nobody is in view."""
+"""The seconds without a pose after which nobody counts as in view."""
 BEGINNING = 0.6
-"""The share of a window that must be there for the first recognition."""
+"""The share of a window that is enough for the first recognition."""
 
 
 @module.rule(when=rs.startup, writes=(model, known), background=True)
@@ -90,7 +90,7 @@ def recognise(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=label.max_age(None).detached(), emits=recognised, detached=True, background=True)
 async def take_over(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Take the label of an external recogniser over."""
+    """Take over the label of an external recogniser."""
     name = clean(ctx.payload(label))
     if not name:
         return rs.Resign("the label is empty")
@@ -117,5 +117,5 @@ def learn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         ctx.log.info("learnt %s: %s", name, keep(folder_of(ctx.settings.folder), name, poses))
     except PlatformError as error:
-        ctx.log.error("%s", error)  # it is known until the agent ends
+        ctx.log.error("%s", error)  # without a file, the agent knows the movement until it ends
     return None

@@ -15,28 +15,28 @@ if TYPE_CHECKING:
 RATE = 20.0
 """The frames per second of a normalised movement."""
 VISIBLE = 0.5
-"""The least visibility of a landmark that counts."""
+"""The minimum visibility of a landmark, below which the landmark counts as invisible."""
 PRESENT = 0.5
-"""The least share of the frames in which a joint must be visible."""
+"""The minimum share of frames in which a joint must be visible."""
 FEWEST = 8
-"""The least number of poses in a movement."""
+"""The minimum number of poses in a movement."""
 SHORTEST = 1.0
-"""The least length of a movement, in seconds."""
+"""The minimum length of a movement, in seconds."""
 
 NOSE, SHOULDERS, HIPS = 0, (11, 12), (23, 24)
 USED = (0, 11, 12, 13, 14, 15, 16, 23, 24, 25, 26, 27, 28)
 """The landmarks that count."""
 JOINTS = (0, 13, 14, 15, 16, 25, 26, 27, 28)
-"""The landmarks of the joints that move: head, elbows, wrists, knees, ankles; the left one first."""
+"""The landmarks of the joints that move: head, elbows, wrists, knees, ankles; the left joint of a pair first."""
 ARMS = 5
-"""The first joints are relative to the shoulders, the others to the hips."""
+"""The number of joints, at the start of `JOINTS`, relative to the shoulders. The others are relative to the hips."""
 WIDTH = 0.72
 """The usual distance between the shoulders, in torso lengths: the scale if the hips are not visible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skeleton:
-    """A normalised movement of T frames. The unit is the torso; x points to the performer's left, y up, z to the front."""
+    """A normalised movement of T frames. The torso has length 1; x points to the performer's left, y up, z forward."""
 
     joints: NDArray[np.float64]
     """(T, 9, 3): `JOINTS`, relative to the middle of the shoulders, or of the hips for the legs."""
@@ -61,8 +61,9 @@ class Skeleton:
 def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
     """Return the normalised movement of some poses; None if they are too few, or the shoulders are not visible.
 
-    Distance, side and direction of the camera drop out. The origin moves with the body, and the unit is the torso. The body is
-    turned about the vertical until its shoulders, on average, are parallel to the picture.
+    The result does not depend on the camera's distance, side and direction: the origin moves with the body, and the
+    unit is the torso. The function turns the body about the vertical until its shoulders are, on average, parallel to the
+    picture.
 
     Args:
         poses: The poses of one body, in the order of their times.
@@ -108,7 +109,7 @@ def _resampled(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the places (T, 33, 3) at `RATE`, and the share of the time for which each landmark is visible (33,).
 
-    A gap in which a landmark is invisible is bridged by a straight line.
+    While a landmark is invisible, its place moves in a straight line.
     """
     import numpy as np
 

@@ -12,7 +12,7 @@ from .files import SUFFIX, read
 from .pose import Pose, pose_of
 
 RATE = 12.0
-"""The pictures of a video that are looked at, for each second."""
+"""The number of pictures to look at in a second of video."""
 
 
 def poses_in(file: Path, python: Path | None = None, progress: Callable[[float], None] = lambda _: None) -> list[Pose]:
@@ -21,7 +21,7 @@ def poses_in(file: Path, python: Path | None = None, progress: Callable[[float],
     Args:
         file: The file.
         python: The interpreter of the vision worker, for a video; by default, `visionio` finds it.
-        progress: Called with the time (seconds) in the video before each look.
+        progress: A function to call before each look, with the time in the video (seconds).
 
     Raises:
         PlatformError: The file cannot be read, or the vision worker is missing.

@@ -20,7 +20,7 @@ def by_chance(sentences: Sequence[str], likely: Mapping[Feeling, float], rng: ra
     Args:
         sentences: The user's words, in the normal form.
         likely: The probability of each feeling on its occasion. The occasions are, in this order: a goodbye, a greeting
-            or thanks, words about the agent, a question. If an utterance has several of them, the first one counts.
+            or thanks, words about the agent, a question. If an utterance has several occasions, the first counts.
         rng: The source of chance.
 
     Example:

@@ -40,13 +40,13 @@ surprised = module.signal("surprised")
 """The agent is surprised."""
 
 happy = module.signal("happy")
-"""The agent is happy: spontaneously, or because the user is."""
+"""The agent is happy, spontaneously or because the user is happy."""
 
 affectionate = module.signal("affectionate")
 """The agent likes its user."""
 
 sad = module.signal("sad")
-"""The agent is sad: because the user is, or because of an insult."""
+"""The agent is sad, because the user is sad or has insulted it."""
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
 """The agent's last feeling; None before the first."""

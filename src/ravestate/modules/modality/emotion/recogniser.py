@@ -1,4 +1,4 @@
-"""Recognise the feeling that fits the user's words."""
+"""A function that recognises the agent's feeling that fits the user's words."""
 
 from __future__ import annotations
 

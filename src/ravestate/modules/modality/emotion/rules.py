@@ -41,8 +41,9 @@ def learn(ctx: rs.RuleContext) -> None:
 def be_moved(ctx: rs.RuleContext) -> None:
     """Raise the feeling that fits the user's words, or a spontaneous feeling.
 
-    For some utterances after words of sorrow, raise no cheerful and no spontaneous feeling. The encoder takes a few milliseconds, so this
-    rule runs in a thread. Without the encoder, only sentences that equal an example raise a feeling.
+    For some utterances after words of sorrow, raise no cheerful and no spontaneous feeling. The encoder takes a few
+    milliseconds, so this rule runs in a thread. Without the encoder, only sentences that equal an example raise a
+    feeling.
     """
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)
@@ -62,7 +63,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
 
 
 def note(feeling: Feeling) -> None:
-    """Declare the rule that notes a feeling, whichever rule raised it."""
+    """Declare the rule that notes a feeling when any rule has raised it."""
 
     @module.rule(
         when=SIGNALS[feeling].max_age(None).detached(),

@@ -32,7 +32,7 @@ users: rs.Collection[Any] = module.collection("users", input=True)
 `Recognised` is the name of a user whom a platform has recognised."""
 
 recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
-"""A platform has found out who a user is who was present before. The payload is their entry in `users`."""
+"""A platform has recognised a user who was already present. The payload is their entry in `users`."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """Topic, such as ``home`` or ``sister`` → known facts about the user. A module that learns facts writes them."""

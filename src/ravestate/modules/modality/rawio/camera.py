@@ -21,7 +21,7 @@ class Face:
 
 
 class Camera(Protocol):
-    """The camera of a user. Each picture is asked for, so the agent gets no more pictures than it can look at.
+    """The camera of a user. The agent asks for each picture, so it gets no more pictures than it can look at.
 
     A platform with a camera, such as a web page, puts one into `rawio.camera`. A module that sees takes its pictures.
     """

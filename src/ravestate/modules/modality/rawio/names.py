@@ -31,7 +31,7 @@ reaction: rs.Signal[str] = module.signal("reaction", payload=str, input=True)
 """The user has reacted to the agent's words with an emoji, as messengers allow."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
-"""The picture that the user showed last: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
+"""The last picture that the user showed: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
 
 sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
 """The line to the user's microphone and loudspeaker, from a platform that carries sound; None without one."""

@@ -1,4 +1,4 @@
-"""The agent's eyes: faces, the people to whom they belong, and people who come and go."""
+"""The agent's eyes: they see faces, recognise people, and notice people who come and go."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rules of consent: asking whether the agent may remember a face, keeping it after a yes, and forgetting it."""
+"""The rules of consent: they ask whether the agent may remember a face, keep it after a yes, and forget it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .wishes import wish_of
 POLITE = 3.0
 """The pause between a person's name and the question whether the agent may remember their face (seconds)."""
 ANSWERED = 60.0
-"""Seconds for which that question waits for its answer."""
+"""The seconds for which this question waits for an answer."""
 
 
 @module.rule(
@@ -56,17 +56,17 @@ async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _open(ctx: rs.RuleContext) -> Question | None:
-    """Return the question that waits for its answer."""
+    """Return the question that still waits for an answer; None if there is none."""
     question = ctx[asking]
     return question if question is not None and ctx.now - question.time <= ANSWERED else None
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=asking, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Let the question lapse when the agent has said something else, because a yes may be the answer to that."""
+    """Drop the question when the agent says something else, because a yes may then answer those later words."""
     question = ctx[asking]
     if question is None or not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
-        return rs.Resign("there is no question, or these are no words")
+        return rs.Resign("there is no question, or the output has no words")
     ctx[asking] = None if question.said else replace(question, said=True)
     return None
 
@@ -78,7 +78,7 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     emits=(agreed, refused, withdrawn),
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Notice the answer to the question, and the wish that the agent remember or forget a face."""
+    """Notice an answer to the question, or a wish that the agent remember or forget a face."""
     text, question = ctx.payload(rawio.input.changed), _open(ctx)
     wish = await asyncio.to_thread(wish_of, text)
     answer = yesno_of(text)
@@ -95,12 +95,12 @@ async def listen(ctx: rs.RuleContext) -> None:
 REPLIES = (verbaliser.intent, rawio.output, visitors)
 """The slots that a reply writes. The output is one of them, so that no other rule answers the same words."""
 PRIORITY = 20.0
-"""The weight of the reply to a yes: above small talk, which has an answer to any yes. A no outranks it; to forget, both."""
+"""The weight of the reply to a yes, above small talk. The reply to a no has more weight, and forgetting the most."""
 
 
 @module.rule(when=agreed, reads=ontology.memory, writes=REPLIES, detached=True, weight=PRIORITY)
 async def store(ctx: rs.RuleContext) -> None:
-    """File the vectors of a person who agrees."""
+    """Store the vectors of a person who agrees."""
     settings: Settings = ctx.settings
     one, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
     meant, name = "no_memory", one.name if one else None
@@ -170,7 +170,7 @@ async def forget_person(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=left.max_age(None).detached(), reads=ontology.memory, background=True)
 async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a visit, file a vector of a person who has agreed before, because people change."""
+    """After a visit, store a new vector of a person who agreed earlier, because faces change."""
     settings: Settings = ctx.settings
     one, memory = ctx.payload(left), ctx[ontology.memory]
     vectors = one.good(max(0.7, settings.quality))[:1]

@@ -1,4 +1,4 @@
-"""The agent's end of the vision worker: it opens a camera there, and asks what is seen."""
+"""The agent's end of the vision worker: it makes the worker open a camera and look at pictures."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Eye:
     """One stream of pictures in the vision worker, which all agents of this process share.
 
     Args:
-        python: The interpreter of the worker; by default the one that has the packages.
+        python: The interpreter of the worker; by default an interpreter that has the packages.
 
     Raises:
         PlatformError: No interpreter has the packages.
@@ -43,9 +43,9 @@ class Eye:
         self.ended = False
         """Whether a video or a folder has come to its end."""
         self.skipped = 0
-        """The number of the camera's pictures that were skipped, because newer ones had come."""
+        """The number of the camera's pictures that were skipped, because newer pictures had come."""
         self.waited = 0.0
-        """The part of the last look (seconds) that was spent waiting for the camera."""
+        """The time for which the last look waited for the camera (seconds)."""
         self._process: ModelProcess = process.take(WORKER, {"want": ["faces"]}, eyes_python(python))
         self._stream = str(next(_numbers))
         self._source: tuple[str, bool] | None = None
@@ -57,10 +57,10 @@ class Eye:
         return self._process
 
     async def open(self, source: str, *, loop: bool = False) -> bool:
-        """Open a camera: a device, a video file, or a folder; return whether it is live.
+        """Open a camera: a device, a video file, or a folder. Return whether the camera is live.
 
         Raises:
-            PlatformError: It cannot be opened, or the worker cannot be started.
+            PlatformError: The camera cannot be opened, or the worker cannot be started.
         """
         self._source = source, loop
         return await asyncio.to_thread(self._open)
@@ -68,28 +68,28 @@ class Eye:
     async def look(
         self, want: Sequence[str], request: Mapping[str, Any], *, at: float = 0.0, frame: Frame | None = None
     ) -> dict[str, Any] | None:
-        """Look at a picture, or at the camera; return what is seen, or None if there is no new picture.
+        """Look at a picture, or at the camera. Return the worker's answer, or None if there is no new picture.
 
         Args:
             want: ``faces``, ``pose`` or both.
-            request: The known tracks, for the worker: see its docstring.
+            request: The known tracks; see the docstring of the worker.
             at: The time for a video or a folder (seconds since the beginning).
             frame: The picture; None to look at the open camera.
 
         Raises:
-            PlatformError: The picture or the camera fails, or the worker has died. The next look tries again.
+            PlatformError: The picture or the camera has a fault, or the worker has died. The next look tries again.
         """
         return await asyncio.to_thread(self.look_now, want, request, at=at, frame=frame)
 
     def look_now(
         self, want: Sequence[str], request: Mapping[str, Any], *, at: float = 0.0, frame: Frame | None = None
     ) -> dict[str, Any] | None:
-        """Look at a picture as `look` does, and block meanwhile."""
+        """Look at a picture as `look` does, but block the thread."""
         header: dict[str, Any] = {"do": "look", "stream": self._stream, "want": list(want), "at": at, **request}
         if frame is not None and frame.shape is not None:
             header |= {"shape": list(frame.shape), "encoding": frame.encoding, "step": frame.step}
         if frame is None and self._pid != self._process.pid:
-            self._open()  # the worker has died meanwhile
+            self._open()  # a new worker has replaced the old one
         data = b"" if frame is None else frame.data
         if frame is not None and not data:
             raise PlatformError("visionio: the picture is empty")
@@ -102,12 +102,12 @@ class Eye:
         return answer if "picture" in answer else None
 
     def reopen(self) -> None:
-        """Open the camera anew at the next look."""
+        """Open the camera again at the next look."""
         self._pid = None
 
     def close(self) -> None:
         """Close the camera. The worker ends with its last user."""
-        if self._process.busy:  # with a look of this stream or of another one: the loop does not wait for its end
+        if self._process.busy:  # with a look for this stream or another stream, so do not make the loop wait
             threading.Thread(target=self._close, name="visionio-close", daemon=True).start()
         else:
             self._close()

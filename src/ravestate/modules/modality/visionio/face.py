@@ -1,4 +1,4 @@
-"""The records of what the agent sees: faces, poses, and each look at a picture."""
+"""The records of the agent's sight: faces, poses, and looks at pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Box = tuple[int, int, int, int]
 """x, y, width and height (pixels of the picture), from the picture's upper left corner."""
 
 Vector = tuple[float, ...]
-"""A face as 128 numbers. The Euclidean distance of two vectors tells whether they are the same person's."""
+"""A face as 128 numbers. The Euclidean distance of two vectors shows whether they belong to the same person."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,13 +18,13 @@ class FaceVec:
     """A face in a picture.
 
     Attributes:
-        vector: 128 numbers, the newest of this track.
+        vector: The newest vector of this track.
         box: x, y, width and height (pixels).
         track: The number of the track: the same face from picture to picture.
-        person: The person in memory whose stored face is close enough; None if there is none.
+        person: The person in memory whose stored face is close enough; None if no person is close enough.
         distance: The Euclidean distance to that person's nearest stored vector; None without a person.
-        quality: How well the face could be seen when the vector was computed (0 to 1).
-        fresh: Whether the vector was computed from this picture, rather than from an earlier one.
+        quality: The visibility of the face in the picture of the vector (0 to 1).
+        fresh: Whether the vector comes from this picture, and not from an earlier picture.
         time: The time of the picture (seconds on the context's clock); None for now.
     """
 
@@ -64,10 +64,10 @@ class Look:
 
     Attributes:
         time: The time of the picture (seconds on the context's clock).
-        size: Its width and height (pixels).
-        tracks: The numbers of the faces in it.
-        dark: Whether it is black.
-        dropped: The number of pictures so far that were skipped, because newer ones had come.
+        size: The picture's width and height (pixels).
+        tracks: The numbers of the faces in the picture.
+        dark: Whether the picture is black.
+        dropped: The number of pictures so far that were skipped, because newer pictures had come.
     """
 
     time: float

@@ -1,4 +1,4 @@
-"""The camera of a platform: the place for its newest picture."""
+"""The camera of a platform, which holds the platform's newest picture."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Frame:
     Attributes:
         data: An encoded picture (JPEG, PNG), or raw pixels, row after row.
         shape: The height and the width of raw pixels; None for an encoded picture.
-        encoding: The bytes of a raw pixel, by ROS's names: one of `ENCODINGS`.
+        encoding: The kind of raw pixels, by ROS's names: one of `ENCODINGS`.
         step: The bytes of a row of raw pixels; 0 if no bytes follow the last pixel of a row.
     """
 
@@ -34,7 +34,7 @@ class Frame:
 
 
 class Frames:
-    """The pictures of a platform's camera: a web page, a robot. Only the newest is kept.
+    """The pictures of a platform's camera, such as a web page or a robot. It keeps only the newest picture.
 
     Example:
         ::
@@ -47,7 +47,7 @@ class Frames:
 
     def __init__(self) -> None:
         self.dropped = 0
-        """The number of pictures that were dropped, because newer ones had come."""
+        """The number of pictures that were dropped, because newer pictures had come."""
         self.closed = False
         """Whether no more pictures come."""
         self._newest: Frame | None = None
@@ -67,7 +67,7 @@ class Frames:
         """Take a picture of ROS: a message with the fields of ``sensor_msgs/Image`` or ``CompressedImage``. Thread-safe.
 
         Raises:
-            PlatformError: The message has another encoding than `ENCODINGS`.
+            PlatformError: The message's encoding is not in `ENCODINGS`.
         """
         encoding = getattr(message, "encoding", None)
         if encoding is None:
@@ -89,13 +89,13 @@ class Frames:
             self._wake()
 
     def close(self) -> None:
-        """Note that no more pictures come, so that the people leave whom the agent sees. Thread-safe."""
+        """Note that no more pictures come. All people whom the agent sees then leave. Thread-safe."""
         with self._lock:
             self.closed = True
             self._wake()
 
     async def next(self) -> Frame | None:
-        """Wait for the newest picture that has not been taken; None once the camera is closed."""
+        """Wait for a new picture, and take it. Return None once the camera is closed."""
         while True:
             with self._lock:
                 frame, self._newest = self._newest, None
@@ -107,7 +107,7 @@ class Frames:
             await event.wait()
 
     async def taken(self) -> None:
-        """Wait until the newest picture has been taken, so that it is time for another one."""
+        """Wait until the newest picture has been taken, so that it is time for another picture."""
         while True:
             with self._lock:
                 if self._newest is None or self.closed:

@@ -22,34 +22,35 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(rs.Settings):
-    """The camera, and how sure the agent must be of a face."""
+    """The settings of visionio: the camera, and the limits for recognising faces."""
 
     source: str = "default"
     """The camera: ``default``, a device (``/dev/video0``), a video file, a folder of pictures; empty for none. A platform's
-    camera in ``visionio.camera`` comes first."""
+    camera in ``visionio.camera`` takes priority."""
     loop: bool = False
     """Whether a video file or a folder begins again at its end."""
     python: Path | None = None
-    """The Python interpreter that has the packages of the eyes, by default that of ``make eyes`` or this one."""
+    """The Python interpreter with the packages of the eyes, by default that of ``make eyes`` or this interpreter."""
     fps: Annotated[float, Field(gt=0, le=60)] = 10.0
-    """The greatest number of pictures a second that the agent looks at."""
+    """The maximum number of pictures that the agent looks at in a second."""
     load: Annotated[float, Field(gt=0, le=1)] = 0.6
-    """The share of the time that looking may take: on a slow machine, the agent looks at fewer pictures."""
+    """The maximum share of the time for looking. On a slow machine, the agent looks at fewer pictures."""
 
     threshold: Annotated[float, Field(gt=0, le=2)] = 0.55
-    """The Euclidean distance of two vectors up to which they are the same person's."""
+    """The maximum Euclidean distance of two vectors of the same person."""
     sure: Annotated[int, Field(ge=1, le=20)] = 3
     """The number of vectors in a row that must agree before the agent decides whom it sees."""
     quality: Share = 0.3
-    """How well a face must be seen (0 to 1) for its vector to count."""
+    """The minimum visibility of a face (0 to 1) for its vector to count."""
     gone_after: Seconds = 4.0
-    """Seconds without a person's face after which the person has left."""
+    """The seconds without a person's face after which the person counts as gone."""
     history: Annotated[int, Field(ge=10)] = 100
     """The number of faces that ``visionio.history`` keeps."""
     most: Annotated[int, Field(ge=1)] = 8
     """The number of vectors that memory keeps for each person."""
     ask: bool = True
-    """Whether the agent asks people who tell their names if it may remember their faces. Without a yes it keeps none."""
+    """Whether the agent asks people who tell their names if it may remember their faces. It keeps a face only after a
+    yes."""
 
 
 module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle, activity], settings=Settings)
@@ -58,7 +59,7 @@ facevec: rs.Signal[FaceVec] = module.signal("facevec", payload=FaceVec, input=Tr
 """A face in a picture, with its vector. The signal is raised for each face in each picture."""
 
 sighted: rs.Signal[Sighting] = module.signal("sighted", payload=Sighting, limit=100)
-"""There is a new picture. The faces in it do not have their people yet."""
+"""There is a new picture. The agent does not know yet to whom the faces belong."""
 
 looked: rs.Signal[Look] = module.signal("looked", payload=Look, input=True, keep="latest")
 """The agent has looked at a picture, with or without faces."""
@@ -67,7 +68,7 @@ pose: rs.Signal[Pose] = module.signal("pose", payload=Pose, input=True, limit=10
 """The body in a picture. The signal is raised for each picture, if a rule of the agent listens to it."""
 
 camera: rs.Slot[Frames | None] = module.slot("camera", None, type=cast("type[Frames]", object), input=True)
-"""The camera of a platform, such as a web page or a robot, which puts pictures in; None without one."""
+"""The camera into which a platform, such as a web page or a robot, puts pictures; None without a camera."""
 
 history: rs.Slot[tuple[FaceVec, ...]] = module.slot("history", ())
 """A ring buffer of the last faces with new vectors, oldest first."""
@@ -76,16 +77,16 @@ visitors: rs.Collection[Visitor] = module.collection("visitors")
 """The people whom the agent sees: a key of `interloc.users` → the person's node, tracks and vectors."""
 
 met: rs.Slot[frozenset[str]] = module.slot("met", frozenset())
-"""The keys of the users, added by a platform, whose faces the agent has seen in this conversation."""
+"""The keys of users from a platform whose faces the agent has seen in this conversation."""
 
 left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
-"""A person has left. The payload is the visitor, as the agent saw them last."""
+"""A person has left. The payload is the visitor's last record."""
 
 named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
-"""A person whom the agent sees has told their name. The payload is their node, which memory keeps from now on."""
+"""A person whom the agent sees has told their name. The payload is their node, which memory now keeps."""
 
 asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Question]", object))
-"""The question whether the agent may remember a face, while it waits for its answer."""
+"""The question whether the agent may remember a face, until there is an answer."""
 
 agreed: rs.Signal[str] = module.signal("agreed", payload=str)
 """A visitor agrees that the agent remembers their face. The payload is their key."""

@@ -1,4 +1,4 @@
-"""Faces in memory: vectors of the people who agreed, the nearest person, and forgetting. Functions of the graph."""
+"""Faces in memory: functions that store, find and forget faces in the graph. Only people who agreed have faces."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ RELATION = "has_face"
 """The relation from a person to their faces."""
 NUMBERS = 128
 MERGE = 0.45
-"""The distance up to which two faces are surely one person's: two people of one name are then one."""
+"""The distance up to which two faces surely belong to one person. Two people of the same name are then one person."""
 MARGIN = 0.05
-"""The least advantage of the nearest person over the next one; within it, nobody is recognised."""
+"""The minimum lead (distance) of the nearest person over the next person. With less, nobody is recognised."""
 
 
 @dataclass(frozen=True, slots=True)
 class Nearest:
-    """The person whose stored face is nearest, and the Euclidean distance."""
+    """The person with the nearest stored face, and the Euclidean distance."""
 
     person: Node
     distance: float
 
 
 def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest | None:
-    """Return the person whose stored vector is nearest; None if it is farther than `threshold`, or another is as near."""
+    """Return the person with the nearest stored vector; None beyond `threshold`, or if another person is as near."""
     faces = stored(graph)
     ranked = sorted((dist(vector, known), number) for number, (_, known) in enumerate(faces))
     if not ranked or ranked[0][0] > threshold:
@@ -54,14 +54,14 @@ def least(graph: Graph, vector: Sequence[float]) -> float | None:
 
 
 def stored(graph: Graph) -> list[tuple[Node, Vector]]:
-    """Return all faces in memory with their vectors, oldest first. Damaged ones are left out."""
+    """Return all faces in memory with their vectors, oldest first, without damaged faces."""
     return [
         (node, vector) for node in graph.find("Face", {}) if (vector := unpacked(node.get("vector", ""))) is not None
     ]
 
 
 def owner(graph: Graph, face: Node) -> Node | None:
-    """Return the person who has a face."""
+    """Return the person to whom a face belongs."""
     return next(iter(graph.related(face, RELATION, back=True)), None)
 
 
@@ -76,16 +76,16 @@ def has_faces(graph: Graph, person: Node) -> bool:
 
 
 def keep(graph: Graph, person: Node, vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[Node, int]:
-    """File a person's vectors in memory, and merge other people of the same name and face into this person.
+    """Store a person's vectors in memory, and merge other people of the same name and face into this person.
 
     Args:
         graph: The memory.
-        person: The person; memory saves their node if it does not have it.
-        vectors: Vectors with their qualities. One that tells nothing new is left out.
-        most: The number of vectors to keep; the oldest ones go.
+        person: The person. If memory lacks their node, it saves the node.
+        vectors: Vectors with their qualities. The function leaves out vectors that are almost the same as stored ones.
+        most: The maximum number of vectors to keep. The oldest vectors are removed.
 
     Returns:
-        The person's node, and the number of the vectors that were filed.
+        The person's node, and the number of vectors that were stored.
     """
     vectors = list(vectors)
     person = graph.save(person)
@@ -121,7 +121,7 @@ def doubles(graph: Graph, person: Node, vectors: Sequence[Vector]) -> list[Node]
 
 
 def forget_faces(graph: Graph, person: Node) -> int:
-    """Remove a person's faces from memory; return their number. The file keeps none of their bytes."""
+    """Remove a person's faces from memory; return the number of faces. The file keeps none of their bytes."""
     faces = faces_of(graph, person) if graph.get(person.id) is not None else []
     for face in faces:
         graph.forget(face)
@@ -129,12 +129,12 @@ def forget_faces(graph: Graph, person: Node) -> int:
 
 
 def take_away(graph: Graph, person: Node, vectors: Sequence[Vector]) -> int:
-    """Remove the faces of a person that are surely those of somebody else; return their number.
+    """Remove a person's faces that surely belong to somebody else; return the number of these faces.
 
     Args:
         graph: The memory.
-        person: The person who has these faces wrongly.
-        vectors: The other person's face.
+        person: The person to whom memory wrongly gives these faces.
+        vectors: The vectors of the other person's face.
     """
     faces = faces_of(graph, person) if graph.get(person.id) is not None else []
     wrong = [

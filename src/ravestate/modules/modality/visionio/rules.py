@@ -1,4 +1,4 @@
-"""The rules: looking, following faces, and telling the other modules who comes, who leaves, and their names."""
+"""The rules that look and follow faces. They report people who come and leave, with names, to other modules."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .tracks import Sighting, Tracks
 from .visitors import Decision, Visitor, at, decide, gone, of_track, whose
 
 KEY = "visionio-"
-"""The beginning of the keys in ``interloc.users`` of people whom no platform has added."""
+"""The beginning of the keys in ``interloc.users`` for people whom no platform has added."""
 
 
 # ------------------------------------------------------------------------------------ looking
@@ -41,11 +41,11 @@ KEY = "visionio-"
     reads=camera,
     emits=(sighted, pose, activity.posed),
     until=camera.changed,
-    detached=True,  # each picture is a cause of its own
+    detached=True,  # each picture is a separate cause
     background=True,
 )
 async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Open the camera, and raise a signal for each of its pictures, as many as the machine can look at."""
+    """Open the camera, and raise a signal for each picture. Skip pictures if the machine is too slow."""
     from .watching import Watch
 
     settings: Settings = ctx.settings
@@ -53,7 +53,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     if frames is None and _is_served(ctx):
         return rs.Resign("a platform with many users brings their cameras in visionio.camera")
     if frames is not None and ctx.payload(camera.changed) is None:
-        return rs.Resign("another run of this rule looks at the camera that came at once")
+        return rs.Resign("a camera came at once, and another run of this rule looks at it")
     view = Watch(settings, frames, ctx.log)
     tracks = Tracks(settings.sure)
     want = ["faces", "pose"] if _is_heard(ctx, pose) or _is_heard(ctx, activity.recognised) else ["faces"]
@@ -86,7 +86,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context, so that the machine's camera is not for it."""
+    """Return whether a platform with many users runs this context. Then the machine's camera is not for the user."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 
@@ -103,7 +103,7 @@ def _is_heard(ctx: rs.RuleContext, signal: rs.Signal[Any]) -> bool:
     background=True,
 )
 async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look through the camera of the user's platform, and ask for each next picture when the last one is taken."""
+    """Look through the camera of the user's platform. Ask for the next picture when the last picture is taken."""
     user = ctx.payload(rawio.camera.changed)
     if user is None:
         return rs.Resign("the user has turned their camera off")
@@ -114,7 +114,7 @@ async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
             await frames.taken()
         user.refuse("the agent cannot see at the moment")
     finally:
-        frames.close()  # so that the people leave whom the agent sees
+        frames.close()  # so that all people whom the agent sees leave
     return None
 
 
@@ -145,7 +145,7 @@ async def mark_faces(ctx: rs.RuleContext) -> rs.Resign | None:
     when=sighted.max_age(None),
     reads=ontology.memory,
     emits=(facevec, looked),
-    detached=True,  # each face is a cause of its own, else `track` would take only one face of a picture
+    detached=True,  # each face is a separate cause, else `track` would take only one face of a picture
     background=True,
 )
 async def feed(ctx: rs.RuleContext) -> None:
@@ -164,14 +164,14 @@ async def feed(ctx: rs.RuleContext) -> None:
 
 
 async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None:
-    """Return the person in memory whose face is nearest."""
+    """Return the person in memory with the nearest face; None if nobody is near enough."""
     memory, threshold = ctx[ontology.memory], ctx.settings.threshold
     if memory is None:
         return None
     try:
         return await memory.together(lambda graph: people.nearest(graph, vector, threshold))
     except RavestateError as error:
-        ctx.log.debug("memory was not asked about a face: %s", error)
+        ctx.log.debug("memory could not look up a face: %s", error)
         return None
 
 
@@ -186,7 +186,7 @@ async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None
     background=True,
 )
 async def track(ctx: rs.RuleContext) -> None:
-    """Keep a history of faces with new vectors, and note who has come once enough of them agree."""
+    """Keep a history of faces with new vectors. Once enough vectors agree, note the person who has come."""
     settings: Settings = ctx.settings
     face = ctx.payload(facevec)
     if face.time is None:
@@ -211,7 +211,7 @@ async def track(ctx: rs.RuleContext) -> None:
 
 
 def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
-    """Return the visitor who has a track, after new vectors; None if the track is somebody else's by now."""
+    """Return the visitor of a track after new vectors; None if the track now belongs to somebody else."""
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == one.node.id or person.id in one.mistaken:
@@ -220,7 +220,7 @@ def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: De
         return _recognised(ctx, one, person)
     else:
         alike = False
-    # Memory may know this face under another name than the one that the visitor has told.
+    # Memory may know this face under another name than the visitor's.
     if alike or any(one.resembles(vector, settings.threshold) for vector in decision.vectors):
         return one
     ctx[visitors].add(one.key, replace(one, tracks=one.tracks - {face.track}))
@@ -228,7 +228,7 @@ def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: De
 
 
 async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
-    """Return a new visitor, and add them to the present users, unless they are the user whom a platform has added."""
+    """Return a new visitor. Add them to the present users, unless a platform has already added them."""
     users, here, now = ctx[interloc.users], ctx[visitors], ctx.now
     person = decision.person
     others = [key for key in users if not key.startswith(KEY)]
@@ -248,7 +248,7 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
             known = person is not None
             return Visitor(key, node, known, since=now, seen=now, linked=True, faces=known, moving=True)
         if person is not None and before is None and item not in (None, name):
-            key = None  # the platform says that its user is somebody else
+            key = None  # according to the platform, its user is somebody else
     node = person or ontology.Node("Person")
     if key is None:
         key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *here) if k.startswith(KEY)), default=0)}"
@@ -260,19 +260,19 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
 
 
 async def _is_new_face(ctx: rs.RuleContext, key: str, node: ontology.Node) -> bool:
-    """Return whether a user who has told their name shows their face for the first time: memory has none of theirs."""
+    """Return whether a user who has told their name shows their face for the first time, so that memory has none."""
     memory = ctx[ontology.memory]
     if key in ctx[met] or memory is None:
         return False
     try:
         return not await memory.together(lambda graph: people.has_faces(graph, node))
     except RavestateError as error:
-        ctx.log.debug("memory was not asked about a person: %s", error)
+        ctx.log.debug("memory could not look up a person: %s", error)
         return False
 
 
 def _recognised(ctx: rs.RuleContext, one: Visitor, person: ontology.Node) -> Visitor:
-    """Return a visitor as a person in memory, and tell the other modules."""
+    """Return a visitor as a person in memory, and report the person to the other modules."""
     one = replace(one, node=person, known=True, faces=True)
     if one.item is not None and not one.moving:
         ctx[interloc.users].add(one.key, one.item)
@@ -287,7 +287,7 @@ def _recognised(ctx: rs.RuleContext, one: Visitor, person: ontology.Node) -> Vis
     background=True,
 )
 async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Give a platform's user back, who is another person now. Until then, the other modules end with the person before."""
+    """Add a platform's user again as another person, after the other modules have finished with the previous person."""
     key = ctx.payload(interloc.users.removed).key
     one = ctx[visitors].get(key)
     if one is None or not one.moving:
@@ -299,7 +299,7 @@ async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=looked.max_age(None), writes=(visitors, history, interloc.users), emits=left, background=True)
 async def leave(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note who has left, and drop the vectors of the faces that have gone."""
+    """Note people who have left, and drop the vectors of their faces."""
     settings: Settings = ctx.settings
     now, here = ctx.payload(looked).time, dict(ctx[visitors])
     absent = gone(here, now, settings.gone_after)
@@ -337,7 +337,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
     if one is None:
         return rs.Resign("the agent does not see this user")
     if not item:
-        if one.known:  # they are not the person whom the agent took them for
+        if one.known:  # the visitor is not the person whom the agent recognised
             ctx[history] = ()
             mistaken = one.mistaken | {one.node.id}
             stranger = replace(one, node=ontology.Node("Person"), known=False, faces=False, mistaken=mistaken)
@@ -350,7 +350,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
     wrong = None
     if one.faces and one.known:
         strangers = [other for other in here.values() if not other.known]
-        if len(strangers) == 1:  # of two people, the one whom the agent does not know has told their name
+        if len(strangers) == 1:  # the name must be that of the only person whom the agent does not know
             one = strangers[0]
         else:
             wrong, one = one, replace(one, mistaken=one.mistaken | {one.node.id})
@@ -362,7 +362,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 async def _take_away(ctx: rs.RuleContext, one: Visitor) -> None:
-    """Remove a visitor's face from the person whom they deny to be, so that they are not taken for them again."""
+    """Remove a visitor's face from the person with whom the agent confused them, so that it does not happen again."""
     memory, vectors = ctx[ontology.memory], [vector for _, vector in one.vectors]
     if memory is None:
         return

@@ -1,4 +1,4 @@
-"""Tracks: the same face from picture to picture, and which faces need a new vector. Pure."""
+"""Tracks: each follows a face from picture to picture, and knows whether the face needs a new vector. Pure."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from .face import Box, Look, Vector
 LOST = 1.5
 """The seconds after which a face that is not found again gets a new track."""
 REFRESH = 3.0
-"""The seconds after which a face that is known gets a new vector, because two people may have changed places."""
+"""The seconds after which a known face gets a new vector, because two people may have changed places."""
 TRIES = 10
-"""The number of vectors after which a face that is badly seen gets only one each second."""
+"""The number of vectors after which a badly visible face gets only one vector each second."""
 THOROUGH = 1.0
 """The seconds between two thorough searches of the picture, which find small faces."""
 
 
 @dataclass(slots=True)
 class Track:
-    """A face that is followed.
+    """A face that the agent follows.
 
     Attributes:
-        number: Its number.
-        box: Its last place.
-        seen: The time at which it was seen last (seconds).
-        vector: Its newest vector; None before the first.
-        quality: How well the face was seen for this vector.
+        number: The track's number.
+        box: The last place of the face.
+        seen: The time at which the face was seen last (seconds).
+        vector: The newest vector; None before the first vector.
+        quality: The visibility of the face for this vector.
         encoded: The time of this vector.
-        tries: The number of its vectors.
+        tries: The number of vectors so far.
         person, distance: The nearest person in memory, and the distance; None if nobody is near enough.
         agreed: The number of good vectors in a row that agree about the person.
     """
@@ -56,11 +56,11 @@ class Track:
         return now - self.encoded < wait
 
     def recognise(self, person: Node | None, distance: float | None, quality: float) -> None:
-        """Note whose face the newest vector is.
+        """Note the person to whom the newest vector belongs.
 
         Args:
-            person, distance: The nearest person; None if nobody is near enough.
-            quality: The quality from which on a vector counts.
+            person, distance: The nearest person and the distance; None if nobody is near enough.
+            quality: The minimum quality of a vector that counts.
         """
         same = (self.person and self.person.id) == (person and person.id)
         if self.quality >= quality:
@@ -74,7 +74,7 @@ class Sighting:
 
     Attributes:
         look: The picture's time and size.
-        faces: The tracks of the faces, each with whether its vector is of this picture.
+        faces: The tracks of the faces. Each comes with True if its vector is from this picture.
     """
 
     look: Look
@@ -86,7 +86,7 @@ class Sighting:
 
 @dataclass(slots=True)
 class Tracks:
-    """The faces that are followed.
+    """The faces that the agent follows.
 
     Attributes:
         sure: The number of vectors in a row that must agree.
@@ -98,7 +98,7 @@ class Tracks:
     _thorough: float = float("-inf")
 
     def request(self, now: float) -> dict[str, Any]:
-        """Return what the vision worker must know for the next look. Lost faces get new tracks, after a pause as well."""
+        """Return the tracks for the vision worker's next look. Faces that were lost for too long get new tracks."""
         self._lose(now)
         known = [
             {"track": one.number, "box": list(one.box), "fresh": one.fresh(now, self.sure)}
@@ -107,7 +107,7 @@ class Tracks:
         return {"known": known, "thorough": int(now - self._thorough >= THOROUGH)}
 
     def update(self, faces: Iterable[Mapping[str, Any]], now: float) -> list[tuple[Track, bool]]:
-        """Take the faces of a picture; return their tracks, each with whether it has a new vector."""
+        """Take the faces of a picture. Return their tracks, each with True if it has a new vector."""
         if now - self._thorough >= THOROUGH:
             self._thorough = now
         found: list[tuple[Track, bool]] = []

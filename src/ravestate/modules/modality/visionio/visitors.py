@@ -1,4 +1,4 @@
-"""The people before the camera: from a history of faces to people who come, are recognised, and leave. Pure."""
+"""The people before the camera: functions that derive, from faces, people who come and leave. Pure."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ravestate.modules.modality.interloc import Recognised
 from .face import FaceVec, Vector
 
 WAIT = 2.5
-"""The seconds after which a face that is badly seen counts as a stranger's."""
+"""The seconds after which a badly visible face counts as a stranger's face."""
 KEPT = 8
-"""The number of vectors that are kept of a visit."""
+"""The number of vectors to keep from a visit."""
 ALIKE = 0.15
-"""The distance below which a second vector tells nothing new."""
+"""The distance below which a second vector adds nothing new."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +25,15 @@ class Visitor:
 
     Attributes:
         key: Their key in ``interloc.users``.
-        node: Their node: that of a known person, or a transient one, which memory does not have.
+        node: Their node: a known person's node, or a transient node, which memory does not have.
         known: Whether memory has the node.
         since, seen: The times at which they came, and were seen last (seconds on the context's clock).
         tracks: The numbers of their tracks.
         vectors: Their best vectors of this visit, each with its quality, best first.
         linked: Whether they are a user whom a platform has added.
-        faces: Whether memory has their face, or the user has been asked. Else the agent may ask.
-        mistaken: The ids of people who they are not, although their faces are alike.
-        moving: Whether they take the place of the user whom a platform has added, who has been removed for a moment.
+        faces: Whether memory has their face, or the agent has asked them. Otherwise the agent may ask.
+        mistaken: The ids of other people with a similar face, whom the agent must not take them for.
+        moving: Whether they take the place of a platform's user. The agent removes that user for a moment.
     """
 
     key: str
@@ -63,12 +63,12 @@ class Visitor:
         return Recognised(self.node["name"], self.node) if self.known and self.name else None
 
     def met(self, face: FaceVec, *, least: float, threshold: float) -> Visitor:
-        """Return the visitor, seen once more.
+        """Return the visitor after one more sight of their face.
 
         Args:
             face: Their face.
-            least: The quality from which on a second vector is kept.
-            threshold: The distance up to which two vectors are the same person's.
+            least: The minimum quality of a second vector.
+            threshold: The maximum distance of two vectors of the same person.
         """
         vectors = self.vectors
         if face.fresh and (not vectors or (face.quality >= least and self.resembles(face.vector, threshold))):
@@ -76,7 +76,7 @@ class Visitor:
         return replace(self, seen=at(face), tracks=self.tracks | {face.track}, vectors=vectors)
 
     def resembles(self, vector: Vector, threshold: float) -> bool:
-        """Return whether a vector is as close to those of this visit as one person's are."""
+        """Return whether a vector is close enough to this visit's vectors to belong to the same person."""
         return any(dist(vector, one) <= threshold for _, one in self.vectors)
 
     def __repr__(self) -> str:
@@ -90,7 +90,7 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said it. With the agent's next words, the question lapses: a yes may mean these.
+        said: Whether the agent has said the question. Its next words end the question, because a yes may answer them.
     """
 
     key: str
@@ -100,7 +100,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The owner of a track's face: a person in memory, or None for a stranger; and the vectors that say so."""
+    """The owner of a track's face (a person in memory, or None for a stranger), and the vectors that show this."""
 
     person: Node | None
     vectors: tuple[Vector, ...] = ()
@@ -112,7 +112,7 @@ def at(face: FaceVec) -> float:
 
 
 def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
-    """Return the vectors of the best quality. If two are nearly equal, the better one stays."""
+    """Return the vectors of the best quality. If two vectors are nearly equal, keep the better vector."""
     kept: list[tuple[float, Vector]] = []
     for quality, vector in sorted(vectors, key=lambda one: -one[0]):
         if all(dist(vector, other) > ALIKE for _, other in kept):
@@ -121,13 +121,13 @@ def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[floa
 
 
 def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: float) -> Decision | None:
-    """Return whose face a track is, once the last `sure` vectors of good quality agree; until then None.
+    """Return the owner of a track's face, once the last `sure` vectors of good quality agree. Until then, return None.
 
     Args:
         history: The last faces, oldest first, with `face` at the end.
         face: The newest face of the track.
         sure: The number of vectors that must agree.
-        quality: The quality from which on a vector counts.
+        quality: The minimum quality of a vector that counts.
     """
     track = [one for one in history if one.track == face.track]
     good = [one for one in track if one.fresh and one.quality >= quality][-sure:]
@@ -142,7 +142,7 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
 def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
     """Return the visitor to whom a new track belongs; None if somebody new has come.
 
-    A person whose face was lost for a moment gets a new track. They are the same visitor if memory or the vectors say so.
+    A person whose face was lost for a moment gets a new track. Memory or the vectors show that it is the same visitor.
     """
     for one in visitors.values():
         if decision.person is not None and one.node.id == decision.person.id:
@@ -158,7 +158,7 @@ def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
 
 
 def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
-    """Return the visitor to whom the agent talks: the one with the largest face lately; None if it sees nobody."""
+    """Return the visitor to whom the agent talks: the visitor with the largest face. If it sees nobody, return None."""
     sizes = {face.track: face.box[2] * face.box[3] for face in history}
     return max(
         visitors.values(), key=lambda one: max((sizes.get(track, 0) for track in one.tracks), default=0), default=None

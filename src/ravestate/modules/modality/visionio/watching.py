@@ -1,4 +1,4 @@
-"""Watching a camera: opening it, looking at its newest picture, and what to do when it fails."""
+"""Functions to watch a camera: open it, look at its newest picture, and handle its failures."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from .names import Settings
 from .places import default_camera
 
 AGAIN = 5.0
-"""Seconds after which a lost camera is tried again."""
+"""The seconds between two attempts to open a lost camera."""
 MADE_UP = 0.5
-"""The greatest delay (seconds) that faster looks make up for."""
+"""The greatest delay (seconds) for which later looks may come faster."""
 FAULTS = 5
-"""The number of failures in a row after which a video, a folder or a worker is given up."""
+"""The number of failures in a row after which the agent gives up a video, a folder or a worker."""
 
 Sleep = Callable[[float], Awaitable[None]]
 
 
 class Watch:
-    """A camera that is watched: one of the worker's, or a platform's.
+    """A camera that the agent watches: a camera of the worker, or of a platform.
 
     Args:
         settings: The settings of visionio.
@@ -52,13 +52,13 @@ class Watch:
 
     @property
     def skipped(self) -> int:
-        """The number of pictures that were skipped, because newer ones had come."""
+        """The number of pictures that were skipped, because newer pictures had come."""
         if self._frames is not None:
             return self._frames.dropped
         return self._eye.skipped if self._eye is not None else 0
 
     async def begin(self) -> bool:
-        """Start the worker and open the camera; return whether there is one. The log gets what is missing."""
+        """Start the worker and open the camera. Return whether there is a camera. The log names missing parts."""
         settings = self._settings
         source = settings.source
         if self._frames is None and source == "default":
@@ -99,7 +99,7 @@ class Watch:
     async def look(
         self, want: Sequence[str], request: Mapping[str, Any], at: float, frame: Frame | Literal[True]
     ) -> dict[str, Any] | None:
-        """Return what is seen; None if there is no new picture, or if it could not be looked at.
+        """Return the worker's answer; None if there is no new picture, or if the look failed.
 
         Args:
             want, request: As for `Eye.look`.
@@ -123,15 +123,15 @@ class Watch:
         return seen
 
     async def rest(self, began: float, now: float, sleep: Sleep) -> bool:
-        """Wait until the next look is due; return whether there is one.
+        """Wait until the next look is due. Return whether there is a next look.
 
-        A look is due one period after the last one was due. So a slow look, such as a thorough one, does not lower the rate.
-        The agent never exceeds its share of the time.
+        A look is due one period after the last look was due. So a slow look, such as a thorough look, does not lower
+        the rate. The agent never exceeds its share of the time.
 
         Args:
             began: The time at which this look began (seconds).
-            now: The time at which it ended.
-            sleep: Wait for seconds on the context's clock.
+            now: The time at which this look ended.
+            sleep: A function that waits for some seconds on the context's clock.
         """
         assert self._eye is not None
         settings = self._settings
@@ -148,7 +148,7 @@ class Watch:
         return True
 
     def close(self) -> None:
-        """Let go of the camera and the worker."""
+        """Release the camera and the worker."""
         if self._eye is not None:
             self._eye.close()
             self._eye = None

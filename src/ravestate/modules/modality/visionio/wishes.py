@@ -15,7 +15,7 @@ _ABOUT = re.compile(r"\b(?:faces?|looks?)\b", re.IGNORECASE)
 
 
 def wish_of(text: str) -> Literal["forget", "remember", ""]:
-    """Return the wish in an utterance: that the agent forget or remember the user's face; else an empty text.
+    """Return the wish in an utterance that the agent forget or remember the user's face. Without a wish, return "".
 
     Without the sentence model, only sentences that equal an example count.
 
@@ -26,7 +26,7 @@ def wish_of(text: str) -> Literal["forget", "remember", ""]:
     if not _ABOUT.search(text):
         return ""
     said = heard(text)
-    if bundled_matcher("acts").loaded:  # else, only words that equal an example are recognised
+    if bundled_matcher("acts").loaded:  # otherwise, only words that equal an example count
         _wishes().load()
     found = {match.name for match in _wishes().match_all(said) if match is not None}
     return "forget" if "forget" in found else "remember" if "remember" in found else ""

@@ -1,4 +1,4 @@
-"""The words for the agent in a message: its name, a mention of it, a command."""
+"""The words in a message that are for the agent, after its name or a mention, and the command."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from collections.abc import Iterable
 from .commands import COMMANDS
 
 COMMAND = re.compile(r"[/!](\w+)(?:@(\w+))?\s*$")
-"""A command: ``/stop``, in a group also ``/stop@robin_bot``. Some messengers keep ``/`` to themselves, so ``!`` counts."""
+"""A command: ``/stop``, in a group also ``/stop@robin_bot``. Some messengers reserve ``/``, so ``!`` counts, too."""
 
 
 def command_in(text: str) -> str | None:
-    """Return the name of the command that a message consists of; None if it is no command that the agent knows."""
+    """Return the command's name if the whole message is a command that the agent knows; else return None."""
     found = COMMAND.match(text)
     return found[1].casefold() if found and found[1].casefold() in COMMANDS else None
 
@@ -25,10 +25,10 @@ def addressed(
 
     Args:
         text: The message.
-        handles: The agent's handles on the messenger, such as ``@robin_bot``. They are no part of the words.
+        handles: The agent's handles on the messenger, such as ``@robin_bot``. The result leaves them out.
         names: The agent's names. In a group, a message with one of them is for the agent.
         group: Whether several people may be in the chat.
-        called: Whether the message is for the agent in another way, e.g. as a reply to it.
+        called: Whether the message is for the agent for another reason, e.g. because it replies to the agent.
 
     Example:
         >>> addressed("@robin_bot, how are you?", ["@robin_bot"], ["Robin"], group=True)
@@ -48,7 +48,7 @@ def addressed(
 
 
 def mentions(text: str, names: Iterable[str]) -> bool:
-    """Return whether one of the names is in a text, as a word of its own."""
+    """Return whether a text contains one of the names as a separate word."""
     return any(name and re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text, re.IGNORECASE) for name in names)
 
 

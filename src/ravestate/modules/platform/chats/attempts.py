@@ -7,19 +7,19 @@ import logging
 import random
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
-"""The seconds before the second attempt, and before the later ones at most. Each wait is twice the one before."""
+"""The shortest and the longest wait between two attempts (seconds). Each wait is twice the wait before it."""
 
 TOLD = 3
-"""The failures in a row that are not worth a warning."""
+"""The number of failures in a row before the log gets a warning."""
 
 
 def back_off(attempt: int) -> float:
-    """Return the seconds to wait after attempt number `attempt`, the first being 0; chance spreads the attempts."""
+    """Return the seconds to wait after the attempt with the number `attempt`, counted from 0, with a random part."""
     return min(LONGEST_WAIT, FIRST_WAIT * 2 ** min(attempt, 16)) * random.uniform(0.75, 1.0)
 
 
 class Attempts:
-    """Attempts at something. Each failure in a row waits twice as long as the one before.
+    """Counts the failures of an action in a row, and waits after each failure: each time twice as long.
 
     Args:
         log: The logger of the platform.
@@ -32,7 +32,7 @@ class Attempts:
         self._failures = 0
 
     async def fail(self, why: object, wait: float = 0.0) -> None:
-        """Log a failure, and wait before the next attempt: for `wait` seconds if the messenger has set them."""
+        """Log a failure, and wait before the next attempt. If the messenger has set a time, wait for `wait` seconds."""
         level = logging.WARNING if self._failures == TOLD else logging.INFO
         self._log.log(level, "%s: %s; trying again", self._what, why)
         seconds = wait or back_off(self._failures)

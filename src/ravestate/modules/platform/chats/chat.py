@@ -33,20 +33,21 @@ if TYPE_CHECKING:
     from .room import Room
 
 GRACE = 0.05
-"""The seconds for which an answer waits for the end of the agent's work, so that one transaction covers both."""
+"""The seconds for which an answer waits for the end of the agent's work, so that one transaction stores both."""
 
 TURN = 1.0
-"""The seconds for which a message waits for the answer to the message before it. Slow answers may be interrupted."""
+"""The seconds for which a message waits for the answer to the previous message. It may interrupt slow answers."""
 
 FAREWELL = 10.0
-"""The seconds that the agent has for a greeting and for a farewell."""
+"""The maximum number of seconds for a greeting, and for a farewell."""
 
 
 class Chat:
-    """A conversation, put to rest after a silence and taken up again with the next message.
+    """A conversation that rests after a silence, and goes on with the next message.
 
-    The chat hears its messages in order. A message is done once no rule can write an answer to it any more. Its answers
-    and its end are kept in one transaction, so that it is neither lost nor answered twice if the process dies.
+    The chat hears its messages in order. A message is done once no rule can write an answer to the message any more.
+    One transaction stores the answers, and marks the message as done. So if the process dies, no message is lost or
+    answered twice.
     """
 
     def __init__(self, room: Room, id: str) -> None:
@@ -61,7 +62,7 @@ class Chat:
         self._hearing: Entry | None = None  # the message that the agent is about to hear
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
-        self._repeated: Counter[str] = Counter()  # answers that the store has from before a crash
+        self._repeated: Counter[str] = Counter()  # answers that the store has kept since before a crash
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -85,18 +86,18 @@ class Chat:
     # ------------------------------------------------------------------------------------ from the messenger
 
     def take(self, entry: Entry) -> None:
-        """Take a message that the store has kept."""
+        """Take a message that the store has already kept."""
         self._waiting.append(entry)
         self._news.set()
 
     def rest(self) -> None:
-        """Put the chat to rest; a message that comes later takes it up again."""
+        """Put the chat to rest, until the next message comes."""
         if self._state == "open":
             self._state = "leaving"
             self._news.set()
 
     def close(self) -> None:
-        """End the chat for good: the agent is no longer in it. The room cancels `live`, and forgets the messages."""
+        """End the chat, because the agent is no longer in it. The room cancels `live`, and deletes the messages."""
         self._state = "gone"
         self._waiting.clear()
         self._hearing, self._open, self._said = None, [], []
@@ -116,7 +117,7 @@ class Chat:
 
     async def _converse(self) -> None:
         first = self._waiting[0]
-        # If the process dies, the next one hears the same message with the same random choices.
+        # If the process dies, the next process hears the same message with the same random choices.
         context = self._room.agent.context(seed=zlib.crc32(f"{self.id} {first.message.key}".encode()))
         async with context:
             self.context, self._mute = context, False
@@ -130,19 +131,19 @@ class Chat:
                 self._mute = True  # a chat is put to rest in silence
 
     async def _answered(self, seconds: float) -> bool:
-        """Wait until the agent has answered all that it has heard, for `seconds` at most; return whether it has."""
+        """Wait up to `seconds` for the agent's answers to all that it has heard. Return whether it has answered all."""
         if self._following is not None:
             await asyncio.wait((self._following,), timeout=seconds)
         return self._following is None
 
     def _end(self, finished: bool) -> None:
-        """End a conversation. With `finished`, all its messages are done; the others are heard again at the next start."""
+        """End a conversation. With `finished`, all its messages are done; else the agent will hear them again."""
         if self._following is not None:
             self._following.cancel()
             self._following = None
         heard = [*self._open, *([self._hearing] if self._hearing else [])]
         if heard and not finished and self._room.closing:
-            self._room.store.unhear(heard)  # an end in order is no crash
+            self._room.store.unhear(heard)  # an orderly end is not a crash, so do not count it as one
         self._open = heard
         self._commit(heard if finished else ())
         self._hearing = None
@@ -169,7 +170,7 @@ class Chat:
                     return
 
     async def _next(self) -> Entry:
-        """Return the oldest message that waits, as the user has changed it since."""
+        """Return the oldest waiting message, with the text of the user's last edit."""
         entry = self._hearing = self._waiting.popleft()
         edits: list[Entry] = []
         if entry.message.kind in ("text", "edit"):
@@ -199,12 +200,12 @@ class Chat:
             context.put(rawio.input, printable(message.text))
 
     async def _meet(self, context: Context, person: Person) -> bool:
-        """Add a person who is not present to the users; return whether the agent has never met them in this chat."""
+        """Add a person to the present users. Return whether they were absent, and are new to the agent in this chat."""
         name = self._room.name
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
-        # A person who was here before is not greeted again. Silence would swallow the answers to others, so they come first.
+        # Do not greet a person again. Muting the greeting would also mute answers to others, so wait for those first.
         self._mute = not new and await self._answered(FAREWELL)
         await people.welcome(context, name, person, self._room.log)
         with contextlib.suppress(TimeoutError):
@@ -245,7 +246,7 @@ class Chat:
             self.rest()
 
     def _keep_for_later(self, gone: Person) -> None:
-        """Let the next conversation answer the messages of others that have no answer yet."""
+        """Let the next conversation answer other people's messages that have no answer yet."""
         others = [entry for entry in self._open if entry.message.person.id != gone.id]
         self._open = [entry for entry in self._open if entry not in others]
         self._waiting.extendleft(reversed(others))
@@ -310,7 +311,7 @@ class Chat:
         return self._mute or self._state == "gone"
 
     def _cause(self) -> Entry | None:
-        """Return the message that the agent now answers: the oldest without an answer (L12)."""
+        """Return the message that the agent answers now: the oldest message without an answer (L12)."""
         answered = {answer.cause for answer in self._said}
         waiting = (entry for entry in self._open if entry.n not in answered)
         return next(waiting, None) or self._hearing or (self._open[-1] if self._open else None)
@@ -333,7 +334,7 @@ class Chat:
             self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._flush_said)
 
     def grow(self, piece: str) -> None:
-        """Take a piece of an utterance that is still growing. It becomes a message once it is whole."""
+        """Take a piece of a growing utterance. The utterance becomes a message once it is whole."""
         self._draft.grow(piece)
 
     def fall_silent(self) -> None:
@@ -365,7 +366,7 @@ class Chat:
         self._room.make_room()
 
     def _flush_said(self, attempt: int = 0) -> None:
-        """Keep the answers now, though the agent may still work; if the file fails, later."""
+        """Store the answers now, even if the agent is still working. If the file cannot be written, try again later."""
         self._flush = None
         try:
             self._commit()
@@ -374,7 +375,7 @@ class Chat:
             self._flush = asyncio.get_running_loop().call_later(back_off(attempt), self._flush_said, attempt + 1)
 
     def _commit(self, done: Sequence[Entry] = ()) -> None:
-        """Keep the answers in the store, and that some of the open messages are done."""
+        """Store the answers, and mark some of the open messages as done."""
         if self._flush is not None:
             self._flush.cancel()
             self._flush = None

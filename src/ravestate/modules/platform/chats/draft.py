@@ -39,14 +39,14 @@ class Draft:
         self._grown.set()
 
     async def show(self, room: Room, silent: Callable[[], bool]) -> None:
-        """Show until cancelled that the agent is writing, with the words so far, except while it is silent."""
+        """Show that the agent is writing, with the words so far, until cancelled. Pause while `silent` returns True."""
         await asyncio.sleep(SLOW)
         while True:
             self._grown.clear()
             if not silent() and room.sender.pace.spare():  # messages take priority
                 try:
                     await room.sender.show_work(self._chat, printable(self.text).strip())
-                except DeliveryError as error:  # a failure to show it does no harm
+                except DeliveryError as error:  # it does no harm if the chat shows no draft
                     await asyncio.sleep(error.wait)
             await asyncio.sleep(GROWTH)
             with contextlib.suppress(TimeoutError):

@@ -1,4 +1,4 @@
-"""Waiting until a conversation ends: the user leaves, or the agent does."""
+"""A function that waits until the user or the agent leaves a conversation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ async def agent_left(context: Context, user: Coroutine[Any, Any, object]) -> boo
 
     Raises:
         RavestateError: The agent has stopped because of this error.
-        Exception: The coroutine has raised it.
+        Exception: The coroutine has raised this error.
     """
     following = asyncio.create_task(user)
     stopped = asyncio.create_task(context.until_stopped())

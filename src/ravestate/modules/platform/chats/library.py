@@ -1,4 +1,4 @@
-"""The library of a messenger, which loads when the messenger is used."""
+"""The library of a messenger, which loads at the first use of the messenger."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ravestate.errors import PlatformError
 
 
 async def library(platform: str, package: str, extra: str) -> None:
-    """Import the package that a platform needs, in a thread: it takes long.
+    """Import the package that a platform needs, in a thread, because the import takes long.
 
     Raises:
         PlatformError: The package is missing; the message says how to get it.

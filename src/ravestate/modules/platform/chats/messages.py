@@ -10,14 +10,14 @@ from ravestate.errors import PlatformError
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """A person on a messenger: the id there, and the name that they have there; None if they have none."""
+    """A person on a messenger, with their id and their name on it; the name may be None."""
 
     id: str
     name: str | None = None
 
 
 Said = Literal["text", "picture", "voice", "command", "edit", "reaction", "left"]
-"""The kinds of incoming messages. ``left`` tells that the agent is no longer in the chat."""
+"""The kinds of incoming messages. ``left`` means that the agent is no longer in the chat."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +48,7 @@ class Incoming:
 
 
 Sent = Literal["text", "picture", "voice", "edit", "reaction"]
-"""The kinds of outgoing messages. A ``voice`` message comes to a carrier with its sound, if speech can be made; else as text."""
+"""The kinds of outgoing messages. A ``voice`` message reaches a carrier with its sound; without speech, as ``text``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,8 +80,8 @@ class DeliveryError(PlatformError):
     Args:
         reason: The reason, for the log.
         wait: The seconds to wait before the next attempt, if the messenger has set a time; 0 otherwise.
-        unsure: Whether the message may have arrived, as after a time-out.
-        final: Whether any further attempt would fail too.
+        unsure: Whether the message may have arrived nevertheless, for example after a time-out.
+        final: Whether every further attempt would fail, too.
         gone: Whether the chat is closed to the agent: it was blocked, or has left the group.
         moved: The chat's new id, if it has one.
     """
@@ -105,7 +105,7 @@ class DeliveryError(PlatformError):
 
 
 class Carrier(Protocol):
-    """The connection to a messenger: what a platform implements, and `Room` uses. All calls come on one event loop."""
+    """The connection to a messenger, which a platform implements and `Room` uses. All calls come on one event loop."""
 
     longest: int
     """The maximum number of characters in a message; longer texts are sent as several messages."""
@@ -120,12 +120,12 @@ class Carrier(Protocol):
             again: Whether an earlier attempt may have arrived. Then the carrier must not send the message twice.
 
         Raises:
-            DeliveryError: The message was not sent, or it is not known whether it was.
+            DeliveryError: The message was not sent, or the carrier does not know whether it was sent.
         """
         ...
 
     def trace(self, chat: str) -> str:
-        """Return a text by which `send` can find the message later, if its attempt ends without an answer."""
+        """Return a text by which a later `send` can find the message, if this attempt ends without an answer."""
         ...
 
     async def fetch(self, file: str) -> bytes:
@@ -137,10 +137,10 @@ class Carrier(Protocol):
 
         Args:
             chat: The id of the chat.
-            words: The answer so far, or an empty text. A carrier may show it, but only in a way that leaves no message.
+            words: The answer so far, or an empty text. A carrier may show the words if they leave no message behind.
 
         Raises:
-            DeliveryError: It was not shown.
+            DeliveryError: The chat does not show it.
         """
         ...
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MEMORY = "ontology:memory"
 PATIENCE = 30.0
-"""The seconds to wait for memory; after that the conversation begins without it."""
+"""The maximum number of seconds to wait for memory, before the conversation begins without memory."""
 
 
 async def welcome(context: Context, platform: str, person: Person, log: logging.Logger) -> None:
@@ -32,8 +32,8 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
                 node = await memory.together(lambda graph: _known(graph, account, person.name))
                 name = interloc.Recognised(node["name"], node) if node.get("name") else name
     except (RavestateError, TimeoutError) as error:
-        log.warning("memory was not asked about a person: %s", str(error) or "it took too long")
-        name = None  # the name alone might mean another person, of whom memory knows more
+        log.warning("memory could not look up a person: %s", str(error) or "it took too long")
+        name = None  # memory may know another person of the same name
     join(context, key(platform, person), name)
 
 
@@ -47,23 +47,23 @@ async def recalled(context: Context) -> None:
 
 
 def join(context: Context, key: str, name: str | None) -> None:
-    """Add a user to those who are present."""
+    """Add a user to the present users."""
     context.put(interloc.users, {**context.read(interloc.users), key: name})
 
 
 def leave(context: Context, key: str) -> None:
-    """Remove a user from those who are present."""
+    """Remove a user from the present users."""
     users = context.read(interloc.users)
     context.put(interloc.users, {each: user for each, user in users.items() if each != key})
 
 
 def present(context: Context, platform: str, person: Person) -> bool:
-    """Return whether a person is among the users who are present."""
+    """Return whether a person is one of the present users."""
     return key(platform, person) in context.read(interloc.users)
 
 
 async def forget(context: Context, platform: str, person: Person) -> None:
-    """Remove a person from memory, with all nodes that only they need, and tell the other modules.
+    """Remove a person, and all nodes that only they need, from memory. Then notify the other modules.
 
     Raises:
         RavestateError: Memory failed.

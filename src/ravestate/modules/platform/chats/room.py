@@ -27,19 +27,19 @@ T = TypeVar("T")
 E = TypeVar("E")
 
 LAST_WORDS = 5.0
-"""The seconds that the agent has to answer and to send when it ends. All other work is done at the next start."""
+"""The maximum number of seconds for last answers and deliveries when the agent ends. The next start does the rest."""
 
 
 class Room:
     """All chats of an agent on a messenger: ``async with Room(agent, ...) as room``, then `receive` each message.
 
-    On entry, the room takes up the messages that were left when the last process ended.
+    On entry, the room takes the messages that the last process left unanswered.
 
     Args:
         agent: The agent, which makes a context for each chat.
-        name: The name of the platform's module, which has called `connect`, and has `ChatSettings`.
+        name: The name of the platform's module. The module has called `connect`, and has `ChatSettings`.
         carrier: The connection to the messenger.
-        account: The agent's own id on the messenger: each account has a file of its own.
+        account: The agent's own id on the messenger. Each account has its own file.
 
     Raises:
         PlatformError: The file with the messages cannot be used.
@@ -99,8 +99,8 @@ class Room:
 
         Args:
             events: The events.
-            read: Returns the message in an event; None if it does not concern the agent. If it fails, the event is left
-                out: anybody may send an event of any shape.
+            read: A function that returns the message in an event; None if the event does not concern the agent. If the
+                function fails, the room ignores the event, because anybody may send an event of any shape.
         """
         found: list[Incoming] = []
         for event in events:
@@ -128,10 +128,10 @@ class Room:
             self.log.warning("%s %s", concerned, what)
 
     def receive(self, messages: Iterable[Incoming], position: tuple[str, str] | None = None) -> None:
-        """Take messages from the messenger. After the call they are kept, and may be acknowledged.
+        """Take messages from the messenger. After the call they are stored, so the caller may acknowledge them.
 
         Args:
-            messages: The messages, in order. The room ignores those that it got before.
+            messages: The messages, in order. The room ignores messages that it got before.
             position: A name and a text to note in the same transaction, e.g. the position in a stream of events.
         """
         with self.store.batch():
@@ -139,7 +139,7 @@ class Room:
             if position is not None:
                 self.store.note(*position)
         for entry in entries:
-            if not self.closing:  # otherwise the next process takes it up
+            if not self.closing:  # otherwise the next process takes the message
                 self._give(entry)
 
     def _taken(self, message: Incoming) -> Entry | None:
@@ -182,7 +182,7 @@ class Room:
                 del self._chats[chat.id]
 
     def make_room(self) -> None:
-        """Beyond the limit, put chats to rest that are not busy: first those that are silent for longest."""
+        """If there are too many chats, put idle chats to rest: the chats with the longest silence first."""
         if len(self._tasks) > self._limit:
             staying = [chat for chat in self._tasks if not chat.leaving]
             idle = sorted((chat for chat in staying if not chat.busy), key=lambda chat: chat.last_active)

@@ -10,7 +10,7 @@ from .commands import Command
 
 
 def connect(module: rs.Module) -> tuple[rs.Slot[Chat | None], rs.Signal[Command]]:
-    """Declare the slot ``chat``, the signal ``command``, and the rules of a platform with many chats; `Room` uses them.
+    """Declare the slot ``chat``, the signal ``command``, and the rules of a platform with many chats, for `Room`.
 
     Returns:
         The slot with the chat of the context, and the signal for the commands ``/start`` and ``/help``.
@@ -21,7 +21,7 @@ def connect(module: rs.Module) -> tuple[rs.Slot[Chat | None], rs.Signal[Command]
 
     @module.rule(when=command.max_age(None), writes=rawio.output, weight=0.1)
     async def explain(ctx: rs.RuleContext) -> None:
-        """Say what the user can do. A rule of another module for the same command takes priority."""
+        """Explain the commands to the user. A rule of another module for the same command takes priority."""
         ctx[rawio.output] = ctx.payload(command).explanation
 
     return chat, command

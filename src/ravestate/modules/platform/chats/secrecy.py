@@ -1,4 +1,4 @@
-"""Keeping secrets out of the log: libraries write addresses that contain a token."""
+"""Functions that keep secrets out of the log, because libraries log addresses that contain a token."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ class Censor:
         self._plain = logging.Formatter()
 
     def add(self, secrets: Iterable[str]) -> None:
-        """Hide texts; the first ones install the censor."""
+        """Hide texts. The first call installs the censor."""
         if not self._secrets:
             self._make = logging.getLogRecordFactory()
             logging.setLogRecordFactory(self.record)
         self._secrets.update(secrets)
 
     def remove(self, secrets: Iterable[str]) -> None:
-        """Hide texts no longer that nobody else hides; after the last ones, remove the censor."""
+        """Stop hiding texts, unless another caller hides them, too. After the last text, remove the censor."""
         self._secrets -= Counter(secrets)
         if not self._secrets:
             logging.setLogRecordFactory(self._make)
@@ -35,7 +35,7 @@ class Censor:
     def record(self, *values: Any, **named: Any) -> logging.LogRecord:
         """Return a log record without secrets."""
         record = self._make(*values, **named)
-        with contextlib.suppress(TypeError, ValueError):  # the wrong arguments of the message; a handler reports them
+        with contextlib.suppress(TypeError, ValueError):  # the arguments do not fit the message; a handler reports this
             message = record.getMessage()
             if (safe := self._without(message)) != message:
                 record.msg, record.args = safe, ()

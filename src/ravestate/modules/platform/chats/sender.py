@@ -13,13 +13,13 @@ from .store import Item, Store
 from .voice import voiced
 
 IN_FLIGHT = 8
-"""The maximum number of attempts at a time. After a crash only these may have arrived unnoticed."""
+"""The maximum number of attempts at a time. After a crash, only so many messages may have arrived unnoticed."""
 
 SHOWN = 2.0
-"""The maximum number of seconds for which a message waits until a draft of it is shown."""
+"""The maximum number of seconds for which a message waits for a request that shows its draft."""
 
 BURST = 0.15
-"""The seconds of pause whose turns may be made up for at once. At 25 a second, the first second has 28."""
+"""After a pause, the unused turns of this many seconds may come at once. At a rate of 25, the first second has 28."""
 
 
 class Pace:
@@ -37,7 +37,7 @@ class Pace:
             await asyncio.sleep(self._next - now)
 
     def spare(self) -> bool:
-        """Take a turn if there is one without a wait; return whether there was."""
+        """Take a turn if no wait is needed; return whether there was a turn."""
         now = asyncio.get_running_loop().time()
         if self._next + self._gap > now:
             return False
@@ -51,8 +51,8 @@ class Sender:
     Args:
         store: The messages.
         carrier: The connection to the messenger.
-        on_gone: Called with the id of a chat that is closed to the agent.
-        on_moved: Called with the old and the new id of a chat.
+        on_gone: A function to call with the id of a chat that is closed to the agent.
+        on_moved: A function to call with the old and the new id of a chat.
         log: The logger of the platform.
     """
 
@@ -73,19 +73,19 @@ class Sender:
         self._showing: dict[str, asyncio.Task[None]] = {}
         self._attempts = asyncio.Semaphore(IN_FLIGHT)
         self.pace = Pace(carrier.rate)
-        """The pace of all requests that a messenger counts."""
+        """The pace of all requests that count towards the messenger's limit."""
 
     async def show_work(self, chat: str, words: str) -> None:
-        """Show in a chat that the agent is writing. If the call is cancelled, the next message still comes later.
+        """Show in a chat that the agent is writing. Even after a cancellation, the next message waits for the request.
 
         Raises:
-            DeliveryError: It was not shown.
+            DeliveryError: The chat does not show it.
         """
 
         def shown(task: asyncio.Task[None]) -> None:
             del self._showing[chat]
             if not task.cancelled():
-                task.exception()  # retrieved also if nobody waits any more
+                task.exception()  # retrieve the exception even if nobody waits for the task any more
 
         if chat not in self._showing:
             task = self._showing[chat] = asyncio.create_task(self._carrier.show_work(chat, words))
@@ -93,7 +93,7 @@ class Sender:
             await asyncio.shield(task)
 
     def wake(self, chat: str) -> None:
-        """Deliver the messages to a chat that the store has."""
+        """Deliver the messages that the store has for a chat."""
         if chat not in self._tasks:
             self._tasks[chat] = asyncio.create_task(self._deliver(chat))
 
@@ -103,10 +103,10 @@ class Sender:
         except Exception:  # a fault in one chat must not end the others
             self._log.exception("the messages to chat %s are not sent", chat)
         finally:
-            del self._tasks[chat]  # at once, so that no message is overlooked that comes now
+            del self._tasks[chat]  # at once, so that a message that comes now is not overlooked
 
     async def close(self, grace: float) -> None:
-        """Deliver what can be delivered within `grace` seconds; the rest stays in the store."""
+        """Deliver messages for up to `grace` seconds; the rest stays in the store."""
         if self._tasks:
             await asyncio.wait(list(self._tasks.values()), timeout=grace)
         tasks = [*self._tasks.values(), *self._showing.values()]
@@ -137,7 +137,7 @@ class Sender:
                 await attempts.fail(error, error.wait)
 
     def _is_elsewhere(self, chat: str, error: DeliveryError) -> bool:
-        """Return whether a chat is closed or has another id, after telling so."""
+        """Report a chat that is closed or has another id; return whether there was such a report."""
         if error.gone:
             self._on_gone(chat)
         elif error.moved:
@@ -157,7 +157,7 @@ class Sender:
         """Try to deliver an item once; return the error of a failure."""
         async with self._attempts:
             await self.pace.turn()
-            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft that came later would stay
+            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft after it would stay
                 await asyncio.wait((showing,), timeout=SHOWN)
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:

@@ -10,16 +10,16 @@ import ravestate as rs
 
 
 class ChatSettings(rs.Settings):
-    """The settings of a platform with many chats: the people whom it answers, and the limits of its chats."""
+    """The settings of a platform with many chats: the people whom the agent answers, and the limits of the chats."""
 
     allow: tuple[int | str, ...] = ()
-    """The people whom the agent answers: their ids or names, or ids of groups. Empty: everybody."""
+    """The people whom the agent answers: their ids or names, or ids of groups. If empty, it answers everybody."""
     rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
     """The seconds of silence after which a chat is put to rest."""
     chats: int = pydantic.Field(1000, ge=1)
-    """The maximum number of chats at a time that do not rest. Chats that are busy may exceed it for as long."""
+    """The maximum number of chats that do not rest. There may be more while all of them are busy."""
     path: Path | None = None
-    """The file with unanswered and undelivered messages. Default: one for each account in the user's data folder."""
+    """The file with unanswered and undelivered messages. By default, each account has one in the user's data folder."""
 
     def allows(self, *names: object) -> bool:
         """Return whether one of the sender's ids and names is in `allow`, or `allow` is empty."""

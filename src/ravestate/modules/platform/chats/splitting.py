@@ -1,4 +1,4 @@
-"""Splitting a long text into messages."""
+"""A function that splits a long text into messages."""
 
 from __future__ import annotations
 

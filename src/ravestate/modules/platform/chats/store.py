@@ -20,10 +20,10 @@ SEEN = 3 * 24 * 3600.0
 """The seconds for which the store remembers the keys of messages. Messengers repeat a message for a day at most."""
 
 TRIES = 3
-"""The number of crashes after which a message is given up, if the agent was hearing it: it may be their cause."""
+"""The number of crashes during one message after which the store gives the message up: it may cause the crashes."""
 
 PARTING = ("stop", "forget")
-"""The commands after which the agent treats the person as somebody whom it has not met in the chat."""
+"""The commands after which the agent treats the person as new in the chat."""
 
 TABLES = """
 CREATE TABLE IF NOT EXISTS inbox (
@@ -71,10 +71,10 @@ class Store:
     on the event loop. After a power failure the last transactions may be missing.
 
     Args:
-        path: The file; the store makes it, and its folder. Only the user may read it.
+        path: The file. The store makes it, and its folder, and only the user may read it.
 
     Raises:
-        PlatformError: The file cannot be used: another process has it open, or it is no such file.
+        PlatformError: The file cannot be used: another process has it open, or it is not a store.
     """
 
     def __init__(self, path: Path) -> None:
@@ -126,7 +126,7 @@ class Store:
         self._db.execute("DELETE FROM inbox WHERE at < ? AND data IS NULL", (time.time() - SEEN,))
 
     def take(self, message: Incoming) -> Entry | None:
-        """Keep a message until it is done; return None if a message of this key came before."""
+        """Keep a message until it is done. Return None if a message with this key came before."""
         with self._transaction():
             self._purge()
             data = json.dumps(asdict(message))
@@ -137,7 +137,7 @@ class Store:
             return Entry(cursor.lastrowid or 0, message) if cursor.rowcount else None
 
     def pending(self) -> list[Entry]:
-        """Return the messages that are not done, in order. Give up those that the agent has heard too often."""
+        """Return the messages that are not done, in order. Give up messages that the agent has heard too often."""
         with self._transaction():
             self._db.execute("UPDATE inbox SET data = NULL WHERE tries >= ?", (TRIES,))
             return [
@@ -159,15 +159,15 @@ class Store:
         return entry
 
     def unhear(self, entries: Iterable[Entry]) -> None:
-        """Note that messages were not heard to their end, although the process ends in order."""
+        """Undo the count of `hear` for messages, because the process ends in order instead of crashing."""
         with self._transaction():
             for entry in entries:
                 self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
 
     def answer_to(self, edit: Entry) -> str | None:
-        """Return the id of the answer to the message that was edited; an empty text if there is none yet.
+        """Return the id of the answer to the edited message; an empty text if there is no answer yet.
 
-        Return None unless that was the last message of its chat.
+        If the edited message was not the last message of its chat, return None.
         """
         chat, id = edit.message.chat, edit.message.id
         query = "SELECT id, answer FROM inbox WHERE chat = ? AND n < ? ORDER BY n DESC LIMIT 20"
@@ -266,7 +266,7 @@ class Store:
             self._db.execute("UPDATE inbox SET data = NULL WHERE chat = ?", (chat,))
 
     def move(self, chat: str, to: str) -> None:
-        """Give a chat another id. The messages to it are sent there from the beginning."""
+        """Give a chat another id. Deliveries that have begun start again under the new id."""
         with self._transaction():
             self._db.execute("UPDATE outbox SET state = 'queued' WHERE chat = ? AND state = 'begun'", (chat,))
             for table in ("inbox", "outbox", "people"):

@@ -1,4 +1,4 @@
-"""Voice notes: words in a recording, and words as a recording, where `voiceio` is installed."""
+"""Voice notes: recordings as words, and words as recordings, if `voiceio` is installed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ async def spoken(text: str) -> bytes | None:
 
 
 async def voiced(message: Outgoing) -> Outgoing:
-    """Return a message of the kind ``voice`` with its sound, or as text if it cannot be spoken; any other as it is."""
+    """Return a ``voice`` message with its sound, or as text if it cannot be spoken. Return other messages unchanged."""
     if message.kind != "voice":
         return message
     note = await spoken(message.text)

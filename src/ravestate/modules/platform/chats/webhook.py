@@ -35,15 +35,15 @@ async def listen(
     take: Callable[[Any], None],
     announce: Callable[[], Awaitable[object]],
 ) -> None:
-    """Take what a messenger posts to an address, until cancelled. A request is acknowledged after `take` has returned.
+    """Take the requests of a messenger until cancelled. The server acknowledges a request once `take` has returned.
 
     Args:
-        url: The public address, of which the server needs the path.
+        url: The public address. The server uses only its path.
         address: The host and the port to listen on.
         header: The name of the header by which the messenger shows the secret.
-        secret: The secret; a request without it is refused.
-        take: Called with the parsed JSON of each request.
-        announce: Called once the server listens.
+        secret: The secret. The server refuses a request without it.
+        take: A function to call with the parsed JSON of each request.
+        announce: A function to call once the server listens.
 
     Raises:
         PlatformError: The port is in use.

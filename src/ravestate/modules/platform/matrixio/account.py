@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from .names import Settings
 
 POLL = 30_000  # the milliseconds for which the server holds a request for events, if there are none
-ANSWER = 20.0  # the seconds to wait for the answer to a request
+ANSWER = 20.0  # the seconds to wait for an answer to a request
 PAGE = 100  # the number of events of a room in one answer
-DEVICE = "RAVESTATE"  # always the same, so that the server knows a message that is repeated after a restart
-JOINS = 12  # the number of refusals after which a room is not joined, over six minutes
+DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
+JOINS = 12  # the number of refusals, within about six minutes, after which the agent does not try to join a room again
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -70,7 +70,7 @@ def _key_folder(settings: Settings) -> str:
 
 
 async def _log_in(client: AsyncClient, settings: Settings) -> None:
-    """Log in; wait until the server answers."""
+    """Log in. Wait until the server answers."""
     attempts = Attempts(log, f"{settings.homeserver} does not answer")
     while True:
         try:
@@ -151,7 +151,7 @@ class Inlet:
     async def _take(self, answer: SyncResponse, since: str | None) -> None:
         """Take the events of an answer, and note the position after them in the same transaction."""
         messages: list[Incoming] = []
-        rooms: Any = answer.rooms  # its types are not complete
+        rooms: Any = answer.rooms  # nio's types are not complete
         for id, info in rooms.join.items():
             events: list[Event] = info.timeline.events
             if info.timeline.limited and since is not None:
@@ -167,10 +167,10 @@ class Inlet:
         self._room.receive(messages, ("since", answer.next_batch))
 
     async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
-        """Return the events that do not fit into an answer, because there are too many.
+        """Return the events that the server left out of an answer, because there are too many.
 
         Raises:
-            OSError: The server does not tell them now; the position must stay, so that the same answer comes again.
+            OSError: The server does not send them now. Keep the position, so that the same answer comes again.
         """
         found: list[Event] = []
         while start:
@@ -191,7 +191,7 @@ class Inlet:
         return isinstance(event, RoomMemberEvent) and event.state_key == me and event.membership == "invite"
 
     def _read(self, room: MatrixRoom, events: Sequence[Event]) -> list[Incoming]:
-        """Return the messages in a room's events; those before the agent's invitation do not count."""
+        """Return the messages in a room's events, without messages from before the agent's invitation."""
         me = self._client.user_id
         names = {room.user_name(me) or "", *self._room.called}
         invited = max((at for at, event in enumerate(events) if self._is_invitation(event)), default=0)
@@ -211,7 +211,7 @@ class Inlet:
             self._room.warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
-        """Join a room in a task. The server reports an invitation once, so it is kept until the agent has joined."""
+        """Join a room in a task. The server reports an invitation only once, so keep it until the agent has joined."""
         if room not in self._joining:
             self._room.store.note("invited", json.dumps([*self._joining, room]))
             self._joining[room] = asyncio.create_task(self._join(room))

@@ -20,7 +20,7 @@ FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
 LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
 """The failures after which a request may have reached the server."""
 
-FILE = 60.0  # the seconds that a file may take
+FILE = 60.0  # the maximum number of seconds to transfer a file
 JPEG = b"\xff\xd8"  # the first bytes of a JPEG file
 WRITING = 5000  # the milliseconds for which a room shows that the agent is writing
 
@@ -35,15 +35,15 @@ class MatrixCarrier:
         self._client = client
 
     def trace(self, chat: str) -> str:
-        """Return nothing: the server itself knows a repeated message."""
+        """Return an empty text, because the server itself recognises a repeated message."""
         return ""
 
     def can_react(self, emoji: str) -> bool:
-        """Return whether a text is one emoji. Matrix takes any."""
+        """Return whether a text is one emoji. Matrix accepts every emoji."""
         return is_emoji(emoji)
 
     async def send(self, message: Outgoing, again: bool) -> str:
-        """Send a message, and return its id; a repeated message gets the id that it has."""
+        """Send a message, and return its id. A repeated message keeps its first id."""
         with _delivery():
             kind, content = await self._content(message)
             answer: Any = await self._client.room_send(
@@ -71,7 +71,7 @@ class MatrixCarrier:
         return "m.room.message", content
 
     async def _upload(self, message: Outgoing, kind: str) -> dict[str, Any]:
-        """Upload a message's file, encrypted if the room is; return the fields that tell where it is."""
+        """Upload a message's file, encrypted if the room is encrypted. Return the fields with the file's address."""
         room, data = self._client.rooms.get(message.chat), message.data
         secret = room is not None and room.encrypted and self._client.olm is not None
         answer: Any
@@ -81,7 +81,7 @@ class MatrixCarrier:
         return {"file": {**(keys or {}), "url": url, "mimetype": kind}} if secret else {"url": url}
 
     async def fetch(self, file: str) -> bytes:
-        """Return the bytes of a file: of an address, or of the JSON that describes an encrypted file."""
+        """Return the bytes of a file. `file` is an address, or the JSON that describes an encrypted file."""
         found: dict[str, Any] = {"url": file} if file.startswith("mxc:") else json.loads(file)
         with _delivery():
             client: Any = self._client
@@ -103,7 +103,7 @@ def _checked(answer: Any) -> Any:
     if not isinstance(answer, ErrorResponse):
         if (status := answer.transport_response.status) < 400:
             return answer
-        raise DeliveryError(f"the server has failed (status {status})", unsure=True)  # nio takes it for a file
+        raise DeliveryError(f"the server has failed (status {status})", unsure=True)  # nio takes this answer for a file
     code = str(answer.status_code)
     if code == "M_LIMIT_EXCEEDED":
         raise DeliveryError(str(answer), wait=(answer.retry_after_ms or 5000) / 1000)

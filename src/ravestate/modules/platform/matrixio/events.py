@@ -24,7 +24,7 @@ from ravestate.modules.platform.chats.addressing import mentions
 from ravestate.modules.platform.chats.messages import Said
 
 SPOKEN = ("m.text", "m.emote")
-"""The types of messages with words for the agent. Other bots write notices, which must not be answered."""
+"""The types of messages with words for the agent. Other bots write notices, which the agent must not answer."""
 
 QUOTE = re.compile(r"\A(?:> .*\n)+\n?")
 """The quotation of another message before a reply, as older clients write it."""
@@ -73,7 +73,7 @@ def incoming(event: Event, room: MatrixRoom, me: str, names: Iterable[str]) -> I
 
 
 def _file(event: Any) -> str:
-    """Return the address of a file, or the JSON that describes an encrypted one, for the carrier."""
+    """Return the address of a file, or the JSON that describes an encrypted file, for the carrier."""
     secret = isinstance(event, RoomEncryptedMedia)
     return json.dumps(event.source["content"]["file"]) if secret else str(event.url)
 

@@ -17,7 +17,7 @@ class Settings(ChatSettings):
     homeserver: str = "https://matrix.org"
     """The address of the account's homeserver."""
     user: str = ""
-    """The account's id, ``@robin:museum.example``; not needed with a token."""
+    """The account's id, such as ``@robin:museum.example``; not needed with a token."""
     password: pydantic.SecretStr | None = None
     """The account's password. Set it as ``RAVESTATE_MATRIXIO_PASSWORD``."""
     token: pydantic.SecretStr | None = None

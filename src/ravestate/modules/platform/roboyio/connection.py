@@ -16,9 +16,9 @@ from .robot import Axis, Port, Robot
 QUALITY = quality(None, depth=10, latch=False)
 LATCHED = quality("latched", depth=1, latch=True)
 STEP = 0.1
-"""Seconds between two commands to an axis that takes a speed. A base that gets no more commands stops by itself."""
+"""Seconds between two commands to an axis that takes a speed. Without further commands, a base stops by itself."""
 NEAR = 0.03
-"""The angle (radians) at which such an axis has arrived."""
+"""The distance to the target (radians) below which such an axis has arrived."""
 NOD = ((0.0, -0.18), (0.25, 0.1), (0.25, -0.12), (0.25, 0.0))
 """A nod: the seconds to wait, and then the pitch to add."""
 SHAKE = ((0.0, 0.25), (0.3, -0.25), (0.3, 0.2), (0.3, 0.0))
@@ -31,9 +31,9 @@ class Connection:
     Args:
         robot: The data file's content.
         node: The node; this class does not close it.
-        sleep: Waits for seconds on the context's clock.
-        now: Returns the seconds on the context's clock.
-        speech_timeout: Seconds that speaking an utterance may take.
+        sleep: A function that waits for some seconds on the context's clock.
+        now: A function that returns the time on the context's clock (seconds).
+        speech_timeout: The maximum number of seconds for which the robot may speak an utterance.
     """
 
     def __init__(
@@ -47,23 +47,23 @@ class Connection:
         self.robot = robot
         self.node = node
         self.turn = asyncio.Lock()
-        """Held while the robot speaks: one utterance at a time."""
+        """The lock that each utterance holds while the robot speaks it, so that only one is spoken at a time."""
         self._sleep = sleep
         self._now = now
         self._speech_timeout = speech_timeout
         self._pose = Pose()
         self._angles: dict[str, float] = {}
-        """Axis that takes a speed → the angle at which it is."""
+        """Axis that takes a speed → its present angle."""
         self._targets: dict[str, float] = {}
-        """Axis that turns → the angle at which it is to stop."""
+        """Axis that turns → the angle at which it shall stop."""
         self._ports: dict[str, Channel] = {}
         self._opened = asyncio.Event()
 
     async def open(self) -> None:
-        """Open the topics and services. Earlier acts of the robot wait for it.
+        """Open the topics and services. The robot's acts wait until they are open.
 
         Raises:
-            PlatformError: A type is unknown or does not have the field, or there is no ROS here.
+            PlatformError: A type is unknown or does not have the field, or ROS is not installed here.
         """
         robot = self.robot
         await self.node.prepare()
@@ -73,12 +73,12 @@ class Connection:
             if port is not None:
                 self._ports[name] = self._open(port, self._speech_timeout if name == "speak" else 5.0)
         for axis, port in robot.head.items():
-            # A robot that connects late gets the newest pose; an old speed must not reach it.
+            # A robot that connects late gets the newest pose, but it must not get an old speed.
             self._ports[axis] = self._open(port, 5.0, LATCHED if port.speed is None else QUALITY)
         self._opened.set()
 
     def listen(self, port: Port | None, take: Callable[[Any], None]) -> None:
-        """Call `take` with each message of a topic of the robot, if it has it.
+        """Call `take` with each message of a topic, if the robot has the topic.
 
         Raises:
             PlatformError: The type is unknown, or does not have the field.
@@ -88,7 +88,7 @@ class Connection:
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
-        """Speak a text. It returns when the robot has spoken, as far as the robot tells.
+        """Speak a text. Return when the robot has spoken, if the robot reports this.
 
         Raises:
             PlatformError: The robot does not answer.
@@ -96,7 +96,7 @@ class Connection:
         await self._send("speak", self.robot.speak, text)
 
     async def express(self, name: str) -> None:
-        """Show an expression, if the robot has it."""
+        """Show an expression, if the robot has this expression."""
         if self.robot.express is not None and name in self.robot.express.faces:
             await self._send("express", self.robot.express, self.robot.express.faces[name])
 
@@ -106,7 +106,7 @@ class Connection:
         await asyncio.gather(*(self._move(name, axis) for name, axis in self.robot.head.items()))
 
     async def perform(self, name: str) -> None:
-        """Perform a gesture: the robot's own, or one made of head movements."""
+        """Perform a gesture: the robot's own gesture, or movements of the head."""
         gesture = self.robot.gesture
         if gesture is not None and name in gesture.gestures:
             await self._send("gesture", gesture, gesture.gestures[name])

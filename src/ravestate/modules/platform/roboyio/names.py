@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A pose of the head: angles in radians. Positive: to the left, up, to the left shoulder."""
+    """A pose of the head (radians). Positive angles are to the left, up, and towards the left shoulder."""
 
     yaw: float = 0.0
     pitch: float = 0.0
@@ -26,7 +26,7 @@ class Pose:
 
 
 class Settings(rs.Settings):
-    """The settings of roboyio: the robot, and how the agent reaches it."""
+    """The settings of roboyio: the robot, and the connection to it."""
 
     link: Literal["bus", "ros1", "ros2"] = "bus"
     """``bus`` for the stand-in robot, ``ros1`` or ``ros2`` for a robot."""
@@ -51,10 +51,10 @@ body: rs.Slot[Connection | None] = module.slot("body", None)
 """The connection to the robot; None without one, as in virtual time."""
 
 words: rs.Slot[str] = module.slot("words", "", type=str, always=True, input=True)
-"""The words that the robot's ears understood last."""
+"""The last words that the robot understood."""
 
 direction: rs.Slot[float | None] = module.slot("direction", None, input=True)
-"""The direction of the speaker (radians, positive: left); None before anybody spoke."""
+"""The direction of the speaker (radians, positive to the left); None before anybody has spoken."""
 
 expression: rs.Slot[str] = module.slot("expression", "neutral", type=str)
 """The face: ``neutral``, ``happy``, ``shy``, ``surprised``, ``affectionate``, ``sad`` or ``thinking``."""

@@ -1,4 +1,4 @@
-"""The stand-in robot's page: it shows the robot's looks, and takes what a visitor says."""
+"""The stand-in robot's page: it shows the robot's looks, and takes a visitor's words."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class PageServer:
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._listener.bind(("127.0.0.1", self._port))
-            self._listener.listen()  # a visitor who comes before the server runs waits
+            self._listener.listen()  # a visitor who comes too early then waits for the server
         except OSError as error:
             self._listener.close()
             raise PlatformError(
@@ -76,7 +76,7 @@ class PageServer:
         return f"http://127.0.0.1:{self._listener.getsockname()[1]}/"
 
     async def _talk(self, websocket: WebSocket) -> None:
-        """Show a visitor the robot's looks, and pass on what they say."""
+        """Show a visitor the robot's looks, and pass on the visitor's words."""
         if not _is_own_page(websocket):
             await websocket.close(1008)
             return
@@ -88,7 +88,7 @@ class PageServer:
         async def show() -> None:
             while True:
                 looks = await news.get()
-                while not news.empty():  # a slow page gets the newest
+                while not news.empty():  # a slow page gets only the newest looks
                     looks = news.get_nowait()
                 await websocket.send_json(looks)
 
@@ -104,7 +104,7 @@ class PageServer:
             self._sockets.discard(websocket)
 
     def _hear(self, said: str) -> None:
-        with contextlib.suppress(ValueError, TypeError, AttributeError):  # a page of ours sends nothing else
+        with contextlib.suppress(ValueError, TypeError, AttributeError):  # our page sends no such frame: ignore it
             told: Any = json.loads(said)
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))
@@ -122,7 +122,7 @@ class _Quiet(uvicorn.Server):
 
 
 def _is_own_page(websocket: WebSocket) -> bool:
-    """Return whether the connection comes from this server's own page: another site in the browser must not speak."""
+    """Return whether the connection comes from this server's own page. Other sites must not talk to the robot."""
     host = websocket.headers.get("host", "")
     origin = websocket.headers.get("origin")
     name = urlsplit(f"//{host}").hostname

@@ -18,7 +18,7 @@ ROBOTS = Path(__file__).with_name("robots")
 
 
 class Port(pydantic.BaseModel):
-    """A topic or a service of the robot, and the field of its messages that counts."""
+    """A topic or a service of the robot, and the field of its messages that has the value."""
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
@@ -29,7 +29,7 @@ class Port(pydantic.BaseModel):
     type: str
     """The type of the messages."""
     field: str
-    """The field, with dots for one within another: ``angular.z``."""
+    """The name of the field. Dots separate nested fields: ``angular.z``."""
 
     @pydantic.model_validator(mode="after")
     def _one_name(self) -> Port:
@@ -63,7 +63,7 @@ class Port(pydantic.BaseModel):
 
 
 class Direction(Port):
-    """Where the speaker is."""
+    """The topic with the direction of the speaker."""
 
     unit: Literal["radians", "degrees"] = "radians"
 
@@ -82,10 +82,10 @@ class Axis(Port):
     high: float
     """The highest angle (radians)."""
     speed: float | None = pydantic.Field(None, gt=0)
-    """The field is a speed, and this is the one to turn with (radians a second). None: the field is the angle."""
+    """The speed of a turn (radians a second), if the field is a speed. None if the field is the angle."""
 
     def limited(self, angle: float) -> float:
-        """Return the nearest angle that the axis reaches."""
+        """Return the nearest angle within the range of the axis."""
         return min(self.high, max(self.low, angle))
 
 
@@ -93,14 +93,14 @@ class Faces(Port):
     """The expressions of the face."""
 
     faces: dict[str, str]
-    """Ravestate's name of an expression → the robot's."""
+    """Ravestate's name of an expression → the robot's name."""
 
 
 class Gestures(Port):
     """The gestures of the robot."""
 
     gestures: dict[str, str]
-    """Ravestate's name of a gesture → the robot's."""
+    """Ravestate's name of a gesture → the robot's name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,13 +112,13 @@ class Part:
 
 
 class Robot(pydantic.BaseModel):
-    """A robot. Everything that it does not have may be left out."""
+    """A robot. A data file leaves out the parts that the robot lacks."""
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
     name: str
     definitions: Path | None = None
-    """A folder with the definitions of its messages, beside the file."""
+    """A folder beside the data file, with the definitions of the robot's messages."""
     hear: Port | None = None
     direction: Direction | None = None
     people: Port | None = None
@@ -128,7 +128,7 @@ class Robot(pydantic.BaseModel):
     gesture: Gestures | None = None
 
     def parts(self, version: Literal[1, 2]) -> list[Part]:
-        """Return what an agent binds to ROS 1 or ROS 2 for this robot."""
+        """Return the parts of this robot that an agent binds to ROS 1 or ROS 2."""
         senses = {"hear": self.hear, "direction": self.direction, "people": self.people}
         acts = {"speak": self.speak, "express": self.express, **self.head, "gesture": self.gesture}
         found: list[Part] = []
@@ -148,7 +148,7 @@ def load_robot(name: str) -> Robot:
         name: ``roboy``, ``turtlebot``, or the path of a file of your own.
 
     Raises:
-        DeclarationError: There is no such file, or it is wrong; the message names the line to write.
+        DeclarationError: The file does not exist, or has a fault. The message names the line to write.
     """
     path = Path(name).expanduser()
     if path.suffix not in (".yaml", ".yml"):

@@ -1,4 +1,4 @@
-"""The rules of a robot: hearing, speaking, its face, its gaze, its gestures."""
+"""The rules of a robot: hearing, speaking, the face, the gaze, and gestures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .robot import load_robot
 THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
 """The gaze of a robot that thinks."""
 _connected: WeakSet[Node] = WeakSet()
-"""The nodes that have their robot. Two runs of `connect` may begin at once, and neither sees what the other writes."""
+"""The nodes that have a robot. If two runs of `connect` begin at once, neither sees the slots that the other writes."""
 THINKS_AFTER = 0.6
 """Seconds of work after which a robot shows that it thinks."""
 
@@ -32,11 +32,11 @@ THINKS_AFTER = 0.6
     | ros2.node.changed.max_age(None).detached(),
     reads=(here, ros1.node, ros2.node),
     writes=(body, words, direction, interloc.users),
-    detached=True,  # all that the robot senses is a cause of its own
+    detached=True,  # each thing that the robot senses is a separate cause
     background=True,
 )
 async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Connect to the robot, and take what it senses."""
+    """Connect to the robot, and take the messages of its sensors."""
     settings: Settings = ctx.settings
     if getattr(asyncio.get_running_loop(), "is_virtual", False):
         return rs.Resign("time is virtual: a test writes the slots")
@@ -48,7 +48,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         node = ctx[ros1.node] if settings.link == "ros1" else ctx[ros2.node]
         if settings.link == "bus":
             node = own = open_node(2, NodeSettings(bus=settings.bus), _nowhere, {}, bus=True)
-        assert node is not None  # `_not_now` has looked
+        assert node is not None  # `_not_now` has checked this
         made = Connection(robot, node, ctx.sleep, lambda: ctx.now, settings.speech_timeout)
         _connected.add(node)
         ctx[body] = made  # at once, so that the first words wait for this connection
@@ -88,11 +88,11 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _not_now(ctx: rs.RuleContext) -> str | None:
-    """Return why this run of `connect` is not the one that connects; None if it is."""
+    """Return the reason for which this run of `connect` shall not connect; None if it shall connect."""
     link: str = ctx.settings.link
     others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
     if others and not ctx[here]:
-        return f"the robot is not this user's, who comes by {others[0]}"
+        return f"this user comes by {others[0]}, and the robot is not theirs"
     if link != "bus":
         node = ctx[ros1.node if link == "ros1" else ros2.node]
         if node is None:
@@ -113,7 +113,7 @@ def _nowhere() -> Place:
 
 @module.rule(when=words.changed.max_age(None), writes=rawio.input)
 async def understand(ctx: rs.RuleContext) -> None:
-    """Pass the words that the robot heard on."""
+    """Pass on the words that the robot heard."""
     ctx[rawio.input] = ctx.payload(words.changed)
 
 
@@ -161,7 +161,7 @@ async def face_speaker(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=direction.changed.max_age(0.5).detached(), writes=gaze, background=True)
 async def turn_to_sound(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Turn to where somebody begins to speak."""
+    """Turn towards a person who begins to speak."""
     where = ctx.payload(direction.changed)
     if where is None:
         return rs.Resign("nobody speaks")
@@ -194,7 +194,7 @@ async def think(ctx: rs.RuleContext) -> rs.Resign | None:
     when=rs.startup.detached() | rs.activity.false.max_age(None).detached(),
     writes=gaze,
     until=words.changed | rs.activity.true | rs.shutdown,
-    detached=True,  # each glance is a cause of its own
+    detached=True,  # each glance is a separate cause
     background=True,
 )
 async def look_around(ctx: rs.RuleContext) -> None:
@@ -269,7 +269,7 @@ def add_feelings(ctx: rs.RuleContext) -> None:
         background=True,
     )
     async def feel(ctx: rs.RuleContext) -> None:
-        """Show a feeling for a while, with a nod if it is a happy one."""
+        """Show a feeling for a while, with a nod if the feeling is happy."""
         feeling = ctx.payload(emotion.felt.changed) or "neutral"
         ctx[expression] = feeling
         if feeling == "happy":

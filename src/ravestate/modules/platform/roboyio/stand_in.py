@@ -1,4 +1,4 @@
-"""The stand-in robot: a node that offers the topics and services of a robot's data file, and shows what they do."""
+"""The stand-in robot: a node that offers the topics and services of a robot's data file, and shows their effects."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .robot import Axis, Port, Robot
 
 QUALITY = quality(None, depth=100, latch=False)
 RATE = 14.0
-"""The characters a second that the stand-in speaks."""
+"""The number of characters that the stand-in speaks in a second."""
 SHORTEST = 0.8
-"""The seconds that the shortest utterance takes."""
+"""The minimum number of seconds for an utterance."""
 TICK = 0.05
 """Seconds between two steps of a robot that turns."""
 
@@ -30,7 +30,7 @@ class Looks:
         yaw, pitch, roll: The head's angles (radians).
         text: The words in the speech bubble; empty if there are none.
         seconds: The time that speaking these words takes.
-        gesture: The last gesture, with a number, so that the same one counts again.
+        gesture: The last gesture, with a number, so that a repeated gesture is a change.
         people: The names of the people whom the robot sees.
     """
 
@@ -51,10 +51,10 @@ class StandIn:
     Args:
         robot: The robot's data file.
         node: A node of its own; this class does not close it.
-        sleep: Waits for seconds; a test may pass a faster one.
+        sleep: A function that waits for some seconds; a test may pass a faster function.
 
     Raises:
-        PlatformError: A type is unknown, or there is no ROS here.
+        PlatformError: A type is unknown, or ROS is not installed here.
     """
 
     def __init__(self, robot: Robot, node: Node, sleep: Callable[[float], Any] = asyncio.sleep) -> None:
@@ -80,7 +80,7 @@ class StandIn:
     # ------------------------------------------------------------------------------- the visitor's side
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
-        """Call `watcher` with the looks now and after each change; return a function that ends it."""
+        """Call `watcher` with the looks now and after each change. Return a function that ends these calls."""
         self._watchers.add(watcher)
         watcher(asdict(self.looks))
         return lambda: self._watchers.discard(watcher)
@@ -103,7 +103,7 @@ class StandIn:
             channel.publish(port.pack(", ".join(names)))
 
     async def close(self) -> None:
-        """End what the robot does."""
+        """End the robot's acts."""
         for task in self._tasks:
             task.cancel()
 

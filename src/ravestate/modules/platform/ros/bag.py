@@ -26,12 +26,12 @@ class Simulated(Protocol):
 
 
 def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
-    """Play a recorded bag into a simulated agent: each message is written to the slots of its topic, at its time.
+    """Play a recorded bag into a simulated agent. Each message goes to the slots of its topic, at its time.
 
-    Time is virtual, so that a bag of an hour takes seconds, and gives the same decisions each time.
+    Time is virtual, so a bag of an hour takes seconds, and leads to the same decisions each time.
 
     Args:
-        sim: The simulation; the bag's first message comes at its present time.
+        sim: The simulation. The bag's first message comes at the simulation's present time.
         bag: A ``.bag`` file of ROS 1, or a folder or file of ROS 2.
         types: The types of the bag's messages, if the bag does not bring their definitions.
 

@@ -1,4 +1,4 @@
-"""The built-in bus: what ROS is for an agent and the stand-in robot on a machine without ROS.
+"""The built-in bus: it takes the place of ROS for an agent and the stand-in robot on a machine without ROS.
 
 The bus is a server on a local TCP port. It speaks the frames of a bridge process (``children/pipe.py``), and passes
 messages and calls from one node to the others.
@@ -26,7 +26,7 @@ AGAIN = 0.5
 
 
 class Bus:
-    """A bus; ``async with Bus(port) as bus`` serves it on the running loop.
+    """A bus. ``async with Bus(port) as bus`` serves the bus on the running loop.
 
     Args:
         port: The TCP port on the loopback interface; 0 takes a free one.
@@ -75,7 +75,7 @@ class Bus:
             self._nodes.add(_BusNode(self, connection))
 
     def leave(self, node: _BusNode) -> None:
-        """Forget a node, and tell those that wait for its answers."""
+        """Forget a node, and send a fault to the nodes that wait for its answers."""
         self._nodes.discard(node)
         for own, call in list(self._calls.items()):
             if call.caller is node:
@@ -94,7 +94,7 @@ class Bus:
         ]
 
     def publish(self, binding: Mapping[str, Any], body: memoryview) -> None:
-        """Pass a message on to all subscribers of its topic."""
+        """Pass on a message to all subscribers of its topic."""
         for node, channel, other in self.find("subscriber", binding["name"]):
             if other["type"] == binding["type"]:
                 node.outlets[channel].put(body)
@@ -102,7 +102,7 @@ class Bus:
                 node.note(channel, f"{binding['name']} carries {binding['type']}, not {other['type']}")
 
     def call(self, caller: _BusNode, channel: int, number: int, body: memoryview) -> None:
-        """Pass a call on to the server of its service."""
+        """Pass on a call to the server of its service."""
         binding = caller.bindings[channel]
         found = self.find("server", binding["name"])
         if not found:
@@ -119,7 +119,7 @@ class Bus:
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
-        """Pass an answer on to the caller."""
+        """Pass on an answer to the caller."""
         call = self._calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)
@@ -127,7 +127,7 @@ class Bus:
             call.caller.frames.send(kind, call.channel, call.number, body)
 
     def cancel(self, caller: _BusNode, channel: int, number: int) -> None:
-        """Forget a call whose caller waits no longer."""
+        """Forget a call whose caller no longer waits."""
         self._calls = {
             own: call
             for own, call in self._calls.items()
@@ -135,7 +135,7 @@ class Bus:
         }
 
     def graph(self, asker: _BusNode) -> dict[str, Any]:
-        """Return what other nodes publish, subscribe and serve."""
+        """Return the topics and services that other nodes publish, subscribe to and serve."""
         topics: dict[str, dict[str, Any]] = {}
         services: dict[str, dict[str, Any]] = {}
         for node in self._nodes:
@@ -157,7 +157,7 @@ class Bus:
 
 @dataclass(frozen=True, slots=True)
 class _Call:
-    """A call under way: the caller's node, channel and number, and the node that is to answer."""
+    """A call under way: the caller's node, channel and number, and the node that must answer."""
 
     caller: _BusNode
     channel: int
@@ -214,7 +214,7 @@ class _BusNode:
 
 
 class BusLink:
-    """A node's connection to the bus. It is made again when the bus is back."""
+    """A node's connection to the bus. If the bus goes away and comes back, the link connects again."""
 
     pid = None
 
@@ -237,11 +237,11 @@ class BusLink:
 
     @property
     def frames(self) -> Frames | None:
-        """The pipe to the bus, once it is ready for work."""
+        """The pipe to the bus, once the pipe is ready for work."""
         return self._frames if self._works else None
 
     def start(self) -> None:
-        """Connect as soon as there is a bus."""
+        """Connect as soon as the bus runs."""
         host, _, port = self._address.rpartition(":")
         if not port.isdecimal():
             self.failed = PlatformError(f"bus={self._address!r} is no address: write HOST:PORT, such as 127.0.0.1:7411")
@@ -301,5 +301,5 @@ class BusLink:
 
 
 def bus_link(address: str) -> MakeLink:
-    """Return the maker of links to the bus at an address."""
+    """Return a function that makes links to the bus at an address."""
     return lambda config, handle, ready, lost: BusLink(address, config, handle, ready, lost)

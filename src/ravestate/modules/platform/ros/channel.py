@@ -21,8 +21,8 @@ class Channel:
         number: The channel's number on the link.
         binding: The description that the bridge gets.
         type: The full name of the type.
-        fault: Why the bridge could not make it; empty if it could.
-        pending: The newest message that has come during the pause after another one, whichever way.
+        fault: The reason for which the bridge could not make the channel; empty if it could.
+        pending: The newest message that has come during the pause after another message.
         timer: The end of that pause.
         owed: Whether the bridge waits for an acknowledgement.
     """
@@ -46,7 +46,7 @@ class Channel:
 
     @property
     def latches(self) -> bool:
-        """Whether a late subscriber is to have the last message."""
+        """Whether a late subscriber gets the last message."""
         return self.binding.get("latch", False)
 
     def publish(self, value: Any) -> None:
@@ -75,12 +75,12 @@ class Channel:
         self.node.drop(self)
 
     def offer(self, body: memoryview, *, newest: bool = True, owed: bool = False) -> None:
-        """Take a message of the topic, unless a newer one replaces it.
+        """Take a message of the topic, unless a newer message replaces it.
 
         Args:
             body: The message.
-            newest: Whether no newer one has come the same way.
-            owed: Whether the bridge waits for an acknowledgement before it sends the next one.
+            newest: Whether no newer message has come over the same connection.
+            owed: Whether the bridge waits for an acknowledgement before it sends the next message.
         """
         if not self.binding["latest"]:
             self.node.take(self, body)

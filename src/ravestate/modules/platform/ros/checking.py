@@ -1,4 +1,4 @@
-"""The check of an agent's slots: whether there is another end, whether the types match, and how to mend it."""
+"""The check of an agent's slots: whether there is another end, whether the types match, and the remedy for faults."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""Kind of a slot → the other end that it needs, as the graph calls it."""
+"""Kind of a slot → the graph's name for the other end that the slot needs."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8
@@ -40,7 +40,7 @@ class Line:
     Attributes:
         good: Whether all is well.
         what: The slot or part.
-        text: Its binding and its other end; after a fault, how to mend it.
+        text: The binding and the other end; after a fault, the remedy.
     """
 
     good: bool
@@ -49,10 +49,10 @@ class Line:
 
 
 async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
-    """Check what is bound to one node against the network.
+    """Check the slots or parts that are bound to one node against the network.
 
     Raises:
-        PlatformError: There is no ROS here, or no master.
+        PlatformError: ROS is not installed here, or there is no master.
     """
     wanted = list(slots)
     lines: list[Line] = []
@@ -66,7 +66,7 @@ async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
 
 
 def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
-    """Return what the network has for a slot."""
+    """Return the line about a slot: whether the network has its other end."""
     binding = slot.binding
     name = node.absolute(binding.name)
     bound = f"{binding.kind} of {name} ({binding.type})"

@@ -1,4 +1,4 @@
-"""Connections of ROS 1 between the agent and another node. Their messages pass without a way through the bridge."""
+"""Connections of ROS 1 between the agent and another node. Their messages do not pass through the bridge."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from .outbox import Outbox
 
 LENGTH = struct.Struct("<I")
 BLOCK = 1 << 12
-"""The number of bytes to read at once, or more if a message lacks more. To make room for more takes longer."""
+"""The number of bytes to read at once, or more if a message lacks more. A larger buffer takes longer to make."""
 TURN = 1 << 20
-"""The number of bytes after which the loop has a turn."""
+"""The number of bytes after which the loop gets a turn."""
 MESSAGES = 1000
-"""The number of messages after which the loop has a turn."""
+"""The number of messages after which the loop gets a turn."""
 LONGEST = 1 << 28
-"""The maximum length of a message. A greater length is that of something else."""
+"""The maximum length of a message (bytes). A greater length means that the data are not a message."""
 
 
 class _Connection(abc.ABC):
-    """A TCP connection that the bridge has made, and has passed to the agent.
+    """A TCP connection that the bridge has made and then passed to the agent.
 
     Args:
         sock: The connected socket; this object closes it.
-        lost: Called once on the loop when the connection has ended, unless `close` has ended it.
+        lost: A function to call once on the loop when the connection has ended, unless `close` has ended it.
     """
 
     def __init__(self, sock: socket.socket, lost: Callable[[], None]) -> None:
@@ -39,7 +39,7 @@ class _Connection(abc.ABC):
 
     @abc.abstractmethod
     def read(self) -> None:
-        """Read what has come."""
+        """Read the data that have come."""
 
     def close(self) -> None:
         """Close the connection."""
@@ -49,7 +49,7 @@ class _Connection(abc.ABC):
             self._sock.close()
 
     def _receive(self, size: int) -> bytes | None:
-        """Return at most `size` bytes; none at the end of the connection, and `None` if nothing has come."""
+        """Return at most `size` bytes: empty at the end of the connection, and None if nothing has come."""
         try:
             return self._sock.recv(size)
         except (BlockingIOError, InterruptedError):
@@ -64,12 +64,12 @@ class _Connection(abc.ABC):
 
 
 class ToSubscriber(_Connection):
-    """A connection with a subscriber. It has nothing to say: the agent drops what it sends.
+    """A connection with a subscriber. The agent ignores all data from the subscriber.
 
     Args:
         sock: The connected socket; this object closes it.
-        lost: Called once on the loop when the subscriber has closed the connection.
-        depth: The maximum number of messages that wait for the subscriber. A further one replaces the oldest.
+        lost: A function to call once on the loop when the subscriber has closed the connection.
+        depth: The maximum number of messages that wait for the subscriber. A further message replaces the oldest.
     """
 
     def __init__(self, sock: socket.socket, lost: Callable[[], None], depth: int) -> None:
@@ -98,14 +98,14 @@ class ToSubscriber(_Connection):
 
 
 class FromPublisher(_Connection):
-    """A connection with a publisher, which sends messages, each after its length.
+    """A connection with a publisher. Before each message, the publisher sends the message's length.
 
     Args:
         sock: The connected socket; this object closes it.
-        take: Called on the loop with each message, and whether it is the newest of all that have come.
-        lost: Called once on the loop when the publisher has closed the connection, or sends no messages.
-        warn: Called with a sentence if what the publisher sends is no message.
-        first: The bytes that have been read already.
+        take: A function to call on the loop with each message, and whether it is the newest that has come.
+        lost: A function to call once on the loop when the publisher closes the connection, or sends nonsense.
+        warn: A function to call with a sentence about data that are not a message.
+        first: The bytes that were already read.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class FromPublisher(_Connection):
         self._lacks = BLOCK
 
     def read(self) -> None:
-        """Read all that has come, then take the messages that are complete: only then it is known which is the newest."""
+        """Read all that has come, and only then take the complete messages, because only then the newest is known."""
         bodies = list[memoryview]()
         goes_on, room = self._split(bodies), TURN
         while goes_on and room > 0 and len(bodies) < MESSAGES:

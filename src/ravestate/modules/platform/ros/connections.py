@@ -14,7 +14,7 @@ from .connection import FromPublisher, ToSubscriber
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node, its last message if it latches, and the new channels that are to have it."""
+    """A publisher of another node. If it latches, `last` is its last message, and `late` has channels that need it."""
 
     topic: str
     type: str
@@ -24,17 +24,17 @@ class Publisher:
     late: list[Channel] = field(default_factory=list[Channel])
 
     def suits(self, channel: Channel) -> bool:
-        """Return whether the publisher has the type that a channel reads. The bridge tells the designer if it has not."""
+        """Return whether the publisher has the type that a channel reads. If not, the bridge tells the designer."""
         binding = channel.binding
         return binding["type"] == self.type and self.md5 in (binding["md5"], "*")
 
 
 class Connections:
-    """The connections that the bridge has made, and has passed to the agent.
+    """The connections that the bridge has made and then passed to the agent.
 
     Args:
-        hang_up: Tells the bridge that the connection with a number has ended.
-        warn: Called with a sentence for the log.
+        hang_up: A function that tells the bridge that the connection with a number has ended.
+        warn: A function to call with a sentence for the log.
     """
 
     def __init__(self, hang_up: Callable[[int], None], warn: Callable[[str], None]) -> None:
@@ -48,7 +48,7 @@ class Connections:
         """Topic → the channels that subscribe to it."""
 
     def add(self, channel: Channel) -> None:
-        """Let a channel have the messages of its topic, and first what publishers have latched."""
+        """Give a channel the messages of its topic, beginning with the messages that publishers have latched."""
         self._readers.setdefault(channel.name, []).append(channel)
         for publisher in self._publishers.values():
             if publisher.last is not None and publisher.topic == channel.name and publisher.suits(channel):
@@ -56,7 +56,7 @@ class Connections:
                 asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
-        """Let a channel have no more messages. Without a channel, the connections of a topic end."""
+        """Give a channel no more messages. After its last channel, the connections of a topic end."""
         readers = self._readers[channel.name]
         readers.remove(channel)
         if not readers:
@@ -81,7 +81,7 @@ class Connections:
         return connection
 
     def from_publisher(self, number: int, sock: socket.socket, publisher: Publisher, first: bytes) -> None:
-        """Take over a connection with a publisher, of which some bytes have been read already."""
+        """Take over a connection with a publisher. The bytes `first` were already read from it."""
         self._publishers[number] = publisher
         take, lost = partial(self._take, publisher), partial(self._lost, number)
         warn = partial(self._warn_of, publisher)
@@ -105,7 +105,7 @@ class Connections:
     def _take(self, publisher: Publisher, body: memoryview, newest: bool) -> None:  # a callback
         if publisher.latching:
             publisher.last = body
-            publisher.late.clear()  # they have this one
+            publisher.late.clear()  # the late channels get this message
         for channel in list(self._readers.get(publisher.topic, ())):
             if publisher.suits(channel):
                 self._offer(channel, body, newest)
@@ -113,14 +113,14 @@ class Connections:
     def _catch_up(self, publisher: Publisher) -> None:  # a callback
         late, publisher.late = publisher.late, []
         for channel in late:
-            assert publisher.last is not None  # else nobody is late
+            assert publisher.last is not None  # only a publisher with a last message has late channels
             self._offer(channel, publisher.last, True)
 
     def _offer(self, channel: Channel, body: memoryview, newest: bool) -> None:  # a callback
-        if channel in self._readers[channel.name]:  # nobody has closed it meanwhile
+        if channel in self._readers[channel.name]:  # the channel has not been closed meanwhile
             try:
                 channel.offer(body, newest=newest)
-            except Exception as error:  # it must take away neither the other channels' messages nor those that follow
+            except Exception as error:  # other channels, and later messages, must go on
                 text = f"{channel.name}: a message failed"
                 asyncio.get_running_loop().call_exception_handler({"message": text, "exception": error})
 

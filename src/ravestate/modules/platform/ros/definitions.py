@@ -17,7 +17,7 @@ COMMON = {
     "std_srvs/srv/SetBool": "bool data\n---\nbool success\nstring message",
     "std_srvs/srv/Trigger": "---\nbool success\nstring message",
 }
-"""The services that most robots have, for places where their packages are not installed."""
+"""The services that most robots have, for machines on which their packages are not installed."""
 
 
 def full_name(name: str, kind: str = "msg") -> str:
@@ -43,7 +43,7 @@ class Definitions:
 
     Args:
         own: The user's files, or folders that hold them.
-        folders: Returns the folders that hold packages: ``FOLDER/PACKAGE/msg/NAME.msg``.
+        folders: A function that returns the folders with packages: ``FOLDER/PACKAGE/msg/NAME.msg``.
     """
 
     def __init__(self, own: Iterable[Path] = (), folders: Callable[[], Iterable[Path]] = tuple) -> None:
@@ -56,7 +56,7 @@ class Definitions:
             self._own.append(path)
 
     def text(self, name: str) -> str | None:
-        """Return the text of the definition of a type with its full name; None if there is none.
+        """Return the text of the definition of a type, given by its full name; None if there is no definition.
 
         Raises:
             PlatformError: A file or folder of the user is missing, or unreadable.
@@ -93,11 +93,11 @@ GOAL_TOPICS = {
     "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Result result",
     "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Feedback feedback",
 }
-"""The messages of an action's topics in ROS 1: the end of their names → their text."""
+"""The messages of an action's topics in ROS 1: end of a message's name → the message's text."""
 
 
 def part_names(name: str, version: int) -> list[str]:
-    """Return the full names of the messages that a definition of a service or an action consists of, in its order."""
+    """Return the full names of the messages in the definition of a service or an action, in the definition's order."""
     package, kind, short = name.split("/")
     if kind == "action" and version == 1:
         return [f"{package}/msg/{short}{title}" for title in PARTS[kind]]
@@ -105,9 +105,9 @@ def part_names(name: str, version: int) -> list[str]:
 
 
 def messages(name: str, text: str, version: int) -> Iterator[tuple[str, str]]:
-    """Yield the full name and the text of each message that a definition consists of.
+    """Yield the full name and the text of each message in a definition.
 
-    An action of ROS 1 has the messages of its topics as well.
+    For an action of ROS 1, also yield the messages of its topics.
 
     Raises:
         PlatformError: A service or an action has too few or too many parts.

@@ -1,6 +1,6 @@
 """The agent's end of the pipe to a bridge process: frames over a socket, without blocking the loop.
 
-``children/pipe.py`` describes the frames; it is the other end.
+``children/pipe.py`` is the other end, and describes the frames.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from .outbox import Outbox
 
 HEAD = struct.Struct("<BBxxIII")
 SHARED = 1
-"""A flag of a frame: its body is in shared memory."""
+"""The flag of a frame whose body is in shared memory."""
 PASSED = 2
-"""A flag of a frame: a socket comes with it; see `Frames.passed`."""
+"""The flag of a frame that comes with a socket; see `Frames.passed`."""
 LARGE = 1 << 16
-"""The number of bytes from which on a body travels in shared memory."""
+"""The minimum number of bytes of a body that travels in shared memory."""
 BLOCK = 1 << 16
-"""The number of bytes to read at once. To make room for more takes longer than to read a short message."""
+"""The number of bytes to read at once. A larger buffer would take longer to make than a short message to read."""
 TURN = 64
-"""The maximum number of frames for which the loop is kept busy at a time."""
+"""The maximum number of frames to handle before other tasks get a turn."""
 
 
 class Kind(IntEnum):
@@ -65,8 +65,8 @@ class Frames:
 
     Args:
         sock: The connected socket; this object closes it.
-        handle: Called on the loop with the kind, channel, number and body of each frame that comes.
-        lost: Called once on the loop when the other end has closed the socket.
+        handle: A function to call on the loop with the kind, channel, number and body of each frame that comes.
+        lost: A function to call once on the loop when the other end has closed the socket.
     """
 
     def __init__(self, sock: socket.socket, handle: Handle, lost: Callable[[], None]) -> None:
@@ -103,7 +103,7 @@ class Frames:
         await self._out.flush()
 
     def passed(self) -> socket.socket:
-        """Return the socket that has come with the frame which is being handled."""
+        """Return the socket that came with the frame in `handle`."""
         return socket.socket(fileno=self._fds.popleft())
 
     def close(self) -> None:
@@ -125,7 +125,7 @@ class Frames:
             if self._local:
                 block, fds, _, _ = socket.recv_fds(self._sock, BLOCK, 16)
                 for fd in fds:
-                    os.set_inheritable(fd, False)  # else a process that the agent starts keeps the connection open
+                    os.set_inheritable(fd, False)  # else a child process would keep the connection open
                 self._fds.extend(fds)
             else:
                 block = self._sock.recv(BLOCK)
@@ -140,7 +140,7 @@ class Frames:
         self._parse()
 
     def _parse(self) -> None:
-        """Handle the frames that are complete. After `TURN` of them, read no more until the loop had a turn."""
+        """Handle the complete frames. After `TURN` frames, read no more until the loop has had a turn."""
         rest, start = self._rest, 0
         for _ in range(TURN):
             if self._closed or len(rest) - start < HEAD.size:
@@ -158,12 +158,12 @@ class Frames:
                     else memoryview(bytes(memoryview(rest)[start : start + size]))
                 )
             except LookupError:
-                self._end()  # the other end is no bridge, no node and no bus
+                self._end()  # the other end does not speak this protocol
                 break
             start += inline
             try:
                 self._handle(what, channel, number, body)
-            except Exception as error:  # the fault of one frame must not lose those that follow
+            except Exception as error:  # a fault in one frame must not lose the next frames
                 self._loop.call_exception_handler({"message": f"a frame ({what.name}) failed", "exception": error})
         else:
             if not self._closed:

@@ -1,4 +1,4 @@
-"""Actions of ROS 1. They are five topics (the protocol of actionlib), so that they need no package and no bridge of their own."""
+"""Actions of ROS 1. An action is five topics (the protocol of actionlib), so it needs no package and no bridge."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .node import Node
 
 AGAIN = 0.2
-"""Seconds until a goal is sent again that the server has not listed. A server ignores a goal that it has."""
+"""The seconds after which a goal that the server has not listed is sent again. A server ignores repeated goals."""
 SUCCEEDED = 3
 ENDS = {2: "cancelled", 8: "cancelled", 4: "aborted", 5: "refused", 9: "lost"}
 """The states of a goal without a result, as in actionlib_msgs/GoalStatus."""
@@ -29,7 +29,7 @@ class _Goal:
     feedback: Callable[[Any], None] | None
     listed: asyncio.Event = field(default_factory=asyncio.Event)
     tracked: bool = False
-    """Whether its server's status had it. The topics arrive apart, so an old status may follow the first feedback."""
+    """Whether a status of the server has listed the goal. An old status may still follow the first feedback."""
 
 
 class GoalTopics:
@@ -66,7 +66,7 @@ class GoalTopics:
         """Send a goal; return the result. If the caller is cancelled, the goal is cancelled.
 
         Raises:
-            PlatformError: The value does not fit, there is no server, or the goal has no result.
+            PlatformError: The value does not fit, there is no server, or the goal ends without a result.
         """
         message = self._node.types.message(value, self._message)
         if self._goal.fault:
@@ -83,7 +83,7 @@ class GoalTopics:
             del self._goals[number]
 
     async def _offer(self, number: str, goal: _Goal, message: Any) -> None:
-        """Send a goal until its server lists it: the topics may not be connected yet."""
+        """Send a goal again and again until its server lists it, because the topics may not be connected yet."""
         try:
             async with asyncio.timeout(self._timeout):
                 while not goal.listed.is_set():

@@ -27,7 +27,7 @@ def resolve(name: str, node: str, namespace: str, remap: Mapping[str, str]) -> s
         name: ``/absolute``, ``relative`` to the namespace, or ``~private`` to the node.
         node: The node's name, without its namespace.
         namespace: The namespace, such as ``/robot``.
-        remap: Name → the name that takes its place; both may be written in each of these ways.
+        remap: Name → the name that takes its place. Both names may be absolute, relative or private.
     """
     absolute = _absolute(name, node, namespace)
     for old, new in remap.items():
@@ -50,7 +50,7 @@ def quality(qos: str | Mapping[str, Any] | None, *, depth: int, latch: bool) -> 
 
     Args:
         qos: The name of a profile, or some values: ``depth``, ``reliability`` and ``durability``; None for the default.
-        depth: The depth, if `qos` does not say it.
+        depth: The depth, if `qos` has no depth.
         latch: Whether late subscribers get the last message.
 
     Raises:

@@ -15,6 +15,7 @@ from typing import Any, Literal, Protocol
 
 from ravestate.errors import PlatformError
 
+from .calls import Calls
 from .channel import Channel
 from .connections import Connections, Publisher
 from .frames import Frames, Handle, Kind
@@ -25,11 +26,11 @@ from .types import Types
 TOLD = 100
 """The maximum number of different texts that a node logs. Good news or a new link resets the count."""
 WAITING = 1000
-"""The maximum number of messages that wait while the bridge starts. Then the oldest is dropped."""
+"""The maximum number of messages that wait while the bridge starts. Beyond it, the node drops the oldest message."""
 LEAVING = 2.0
-"""Seconds that the last messages have to leave when a node ends."""
+"""The maximum number of seconds for which an ending node sends its last messages."""
 
-_nodes = itertools.count(1)  # two nodes of one process need two names: ROS 1 ends an older node of the same name
+_nodes = itertools.count(1)  # nodes need different names, because ROS 1 ends an older node of the same name
 
 
 class Link(Protocol):
@@ -48,22 +49,23 @@ class Link(Protocol):
 
 
 MakeLink = Callable[[Mapping[str, Any], Handle, Callable[[], None], Callable[[str], None]], Link]
-"""Makes a link from the node's configuration and the functions `handle`, `ready` and `lost`; see `BridgeProcess`."""
+"""A function that makes a link from a node's configuration and the functions `handle`, `ready` and `lost`; see
+`BridgeProcess`."""
 
 
 class Node:
-    """A node of ROS or of the bus. It connects at its first use; a link that breaks is made again.
+    """A node of ROS or of the bus. The node connects at its first use, and replaces a broken link.
 
     Args:
         title: The name of the node in logs and errors, such as ``ros1``.
         types: The types of its messages.
-        make_link: Makes the link.
+        make_link: A function that makes the link.
         name: The node's name.
         namespace: The namespace of relative names.
         remap: Name → the name that takes its place.
         environment: Environment variables for the bridge.
-        log: Where warnings go.
-        failed: Called with the reason if there can be no link.
+        log: The logger for warnings.
+        failed: A function to call with the reason if there can be no link.
     """
 
     def __init__(
@@ -83,11 +85,11 @@ class Node:
         self.types = types
         self.channels: dict[int, Channel] = {}
         self.bound: dict[str, Channel | GoalTopics] = {}
-        """Slot's name → its channel, for the slots that publish or call."""
+        """Slot's name → the slot's channel, for slots that publish or call."""
         self.goals: dict[str, set[asyncio.Future[Any]]] = {}
-        """Slot's name → its goals under way."""
+        """Slot's name → the slot's goals under way."""
         self.ready = asyncio.Event()
-        """Set while the link works."""
+        """An event that is set while the link works."""
         number = next(_nodes)
         self._name = f"{name}_{os.getpid()}" + (f"_{number}" if number > 1 else "")
         self._namespace = namespace
@@ -97,11 +99,11 @@ class Node:
         self._make_link = partial(make_link, config, self._handle, self._bind_all, self._lost)
         self._link: Link | None = None
         self._failed = failed
-        self._numbers = itertools.count(1)
         self._connections = Connections(partial(self._tell, Kind.HANGUP, 0), self._warn)
         self._latched: dict[str, memoryview] = {}
         """Topic → the last message, if a channel latches it."""
-        self._calls: dict[int, tuple[asyncio.Future[Any], Channel, Callable[[Any], None] | None]] = {}
+        self._numbers = itertools.count(1)
+        self._calls = Calls(title, types)
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
         self._told: set[str] = set()
         self._preparing: asyncio.Future[Any] | None = None
@@ -114,7 +116,7 @@ class Node:
 
     @property
     def restarts(self) -> int:
-        """The number of times that the link was made again."""
+        """The number of links that replaced a broken link."""
         return 0 if self._link is None else self._link.restarts
 
     @property
@@ -140,7 +142,7 @@ class Node:
             type: The type's name.
             take: The function to call on the loop.
             latest: Whether a new message may replace an older one that `take` has not received yet.
-            rate: The maximum number of messages a second; the newest of each interval is taken.
+            rate: The maximum number of messages a second. The node takes the newest message of each interval.
             qos: The quality of service; see `naming.quality`.
 
         Raises:
@@ -158,11 +160,11 @@ class Node:
         return self._open("client", service, type, {"timeout": timeout}, "srv")
 
     def offer(self, service: str, type: str, serve: Callable[[Any], Awaitable[Any]]) -> Channel:
-        """Offer a service: `serve` gets the request, and returns the response."""
+        """Offer a service. `serve` takes a request, and returns the response."""
         return self._open("server", service, type, {}, "srv", serve=serve)
 
     def action(self, name: str, type: str, *, timeout: float) -> Channel | GoalTopics:
-        """Return a channel to send goals; the server has `timeout` seconds to appear."""
+        """Return a channel to send goals. The server must appear within `timeout` seconds."""
         if self.types.version == 1:
             return GoalTopics(self, name, self.types.require(type, "action"), timeout)
         return self._open("action", name, type, {"timeout": timeout}, "action")
@@ -189,7 +191,7 @@ class Node:
         return channel
 
     def absolute(self, name: str) -> str:
-        """Return the absolute name that a name stands for, after remapping."""
+        """Return the absolute form of a name, after remapping."""
         return resolve(name, self._name, self._namespace, self._remap)
 
     def drop(self, channel: Channel) -> None:
@@ -207,7 +209,7 @@ class Node:
         """Start to connect, unless the node has already started.
 
         Raises:
-            PlatformError: There is no ROS here, or it does not start.
+            PlatformError: ROS is not installed here, or does not start.
         """
         if self._link is None:
             self._link = self._make_link()
@@ -224,7 +226,7 @@ class Node:
             PlatformError: The library of types is missing.
         """
         if not self.types.loaded:
-            if self._preparing is None:  # all callers await one future, so they go on in their order
+            if self._preparing is None:  # all callers await one future, so they continue in their order
                 self._preparing = asyncio.ensure_future(asyncio.to_thread(lambda: self.types.store))
             await asyncio.shield(self._preparing)
 
@@ -236,14 +238,14 @@ class Node:
             self._waiting.append((kind, channel, number, body))
 
     def publish(self, channel: Channel, body: memoryview) -> None:
-        """Send a message by the connections that the bridge has passed on; if there are none, by the bridge."""
+        """Send a message over the connections that the bridge has passed on; without them, send it over the bridge."""
         if channel.latches:
             self._latched[channel.name] = body
         if not self._connections.send(channel.name, body):
             self.send(Kind.MESSAGE, channel.number, 0, body)
 
     def _tell(self, kind: Kind, channel: int, number: int = 0) -> None:
-        """Send a frame that is of use to the present link alone."""
+        """Send a frame that only the present link needs."""
         if frames := self._frames:
             frames.send(kind, channel, number)
 
@@ -253,27 +255,25 @@ class Node:
             raise PlatformError(channel.fault)
         acts = channel.binding["kind"] == "action"
         body = self.types.encode(value, f"{channel.type}_{'Goal' if acts else 'Request'}")
-        number = next(self._numbers)
-        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        self._calls[number] = future, channel, feedback
-        self.send(Kind.CALL, channel.number, number, body)
+        call = self._calls.open(channel, feedback)
+        self.send(Kind.CALL, channel.number, call.number, body)
         timeout = channel.binding["timeout"]
         try:
-            if acts:  # the bridge watches whether there is a server; a goal may take any time
-                return await future
+            if acts:  # no time limit: the bridge watches for a server, and a goal may take any time
+                return await call.future
             async with asyncio.timeout(timeout):
-                return await future
+                return await call.future
         except TimeoutError:
-            self.send(Kind.CANCEL, channel.number, number)
+            self.send(Kind.CANCEL, channel.number, call.number)
             raise PlatformError(
                 f"{self.title}: the service {channel.name} did not answer within {timeout:g} s: is its node alive? "
                 "A longer time: timeout=..."
             ) from None
         except asyncio.CancelledError:
-            self.send(Kind.CANCEL, channel.number, number)
+            self.send(Kind.CANCEL, channel.number, call.number)
             raise
         finally:
-            del self._calls[number]
+            self._calls.close(call)
 
     async def graph(self, timeout: float = 10.0) -> dict[str, list[dict[str, Any]]]:  # noqa: ASYNC109  # a public name
         """Return the network's ``topics``, ``services`` and ``actions``, each with name, types and numbers of nodes.
@@ -285,15 +285,13 @@ class Node:
         try:
             async with asyncio.timeout(timeout):
                 await self.ready.wait()
-                self.start()  # it may have failed
-                number = next(self._numbers)
-                future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-                self._calls[number] = future, Channel(self, 0, {}, ""), None
+                self.start()  # this raises the error of a node that has failed
+                call = self._calls.open(Channel(self, 0, {}, ""))
                 try:
-                    self.send(Kind.ASK, 0, number)
-                    return await future
+                    self.send(Kind.ASK, 0, call.number)
+                    return await call.future
                 finally:
-                    self._calls.pop(number, None)
+                    self._calls.close(call)
         except TimeoutError:
             reason = "; ".join(sorted(self._told)) or "the bridge does not answer"
             raise PlatformError(f"{self.title}: {reason}") from None
@@ -308,14 +306,14 @@ class Node:
         if self._link is not None:
             await self._link.close()
         self._connections.close()
-        self._fail_calls("the node is closed")
+        self._calls.fail_all("the node is closed")
 
     # ------------------------------------------------------------------------------- frames from the link
 
     def _bind_all(self) -> None:
         frames = self._frames
         assert frames is not None  # the link has just become ready
-        self._told.clear()  # a fault that comes back is logged again
+        self._told.clear()  # log a fault again if it comes back
         latched = dict(self._latched)
         for channel in self.channels.values():
             channel.fault = ""
@@ -333,16 +331,11 @@ class Node:
         self.ready.clear()
         self._connections.close()
         self._log.warning("%s", why)
-        self._fail_calls(why)
+        self._calls.fail_all(why)
         if self._link is not None and self._link.failed is not None:
             if self._failed is not None:
                 self._failed(self._link.failed)
-            self.ready.set()  # a failed link never gets ready: let the callers that wait see the failure
-
-    def _fail_calls(self, why: str) -> None:
-        for future, channel, _ in list(self._calls.values()):
-            if not future.done():
-                future.set_exception(PlatformError(f"{self.title}: {channel.binding.get('name', 'the graph')}: {why}"))
+            self.ready.set()  # a failed link never gets ready, so let waiting callers see the failure
 
     def _handle(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
         known = self.channels.get(channel)
@@ -350,19 +343,20 @@ class Node:
             known.offer(body, owed=True)
         elif kind in (Kind.SUBSCRIBER, Kind.PUBLISHER):
             self._connect(kind, number, json.loads(bytes(body)))
-        elif kind is Kind.CALL and known is not None:
-            task = asyncio.create_task(self._serve(known, number, body))
-            self._tasks.add(task)
-            task.add_done_callback(self._tasks.discard)
+        elif kind is Kind.CALL:
+            if known is not None:
+                task = asyncio.create_task(self._serve(known, number, body))
+                self._tasks.add(task)
+                task.add_done_callback(self._tasks.discard)
         elif kind is Kind.NOTE:
             self._note(known, json.loads(bytes(body)))
-        elif number in self._calls:
-            self._answer(kind, number, body)
+        else:
+            self._calls.answer(kind, number, body)
 
     def _connect(self, kind: Kind, number: int, what: dict[str, Any]) -> None:
         """Take over a connection that the bridge passes on."""
         frames = self._frames
-        assert frames is not None  # it is from there
+        assert frames is not None  # the connection comes from this pipe
         sock = frames.passed()
         if kind is Kind.PUBLISHER:
             first: str = what.pop("first")
@@ -374,7 +368,7 @@ class Node:
 
     def take(self, channel: Channel, body: memoryview) -> None:
         """Take a message for a channel that subscribes."""
-        assert channel.take is not None  # it subscribes
+        assert channel.take is not None  # the channel subscribes
         try:
             channel.take(self.types.decode(body, channel.type))
         except PlatformError as error:
@@ -385,12 +379,12 @@ class Node:
         self._tell(Kind.ACK, channel.number)
 
     async def _serve(self, channel: Channel, number: int, body: memoryview) -> None:
-        assert channel.serve is not None  # it is a server
+        assert channel.serve is not None  # the channel is a server
         try:
             request = self.types.decode(body, f"{channel.type}_Request")
             answer = await channel.serve(request)
             self.send(Kind.ANSWER, channel.number, number, self.types.encode(answer, f"{channel.type}_Response"))
-        except Exception as error:  # the caller gets the reason of any failure
+        except Exception as error:  # the caller gets the reason of each failure
             self._warn(f"{channel.name}: {error}")
             self.send(Kind.FAULT, channel.number, number, str(error).encode())
 
@@ -398,42 +392,13 @@ class Node:
         text: str = note["text"]
         if note.get("failed") and channel is not None:
             channel.fault = f"{self.title}: {channel.name}: {text}"
-            for future, of, _ in self._calls.values():
-                if of is channel and not future.done():
-                    future.set_exception(PlatformError(channel.fault))
+            self._calls.fail(channel, channel.fault)
         self._warn(text, note["level"])
 
     def _warn(self, text: str, level: Literal["info", "warning", "error"] = "warning") -> None:
-        """Log a text once. After a text of level `info`, or with a new link, the same text may be logged again."""
+        """Log a text once. After a text of level `info`, or with a new link, the log may get the same text again."""
         if level == "info":
             self._told.clear()
         if text not in self._told and len(self._told) < TOLD:
             self._told.add(text)
             self._log.log(logging.getLevelNamesMapping()[level.upper()], "%s: %s", self.title, text)
-
-    def _answer(self, kind: Kind, number: int, body: memoryview) -> None:
-        future, channel, feedback = self._calls[number]
-        if future.done():
-            return
-        if kind is Kind.FAULT:
-            future.set_exception(PlatformError(f"{self.title}: {channel.name}: {json.loads(bytes(body))}"))
-            return
-        if kind is Kind.TOLD:
-            told = json.loads(bytes(body))
-            if "error" in told:
-                future.set_exception(PlatformError(f"{self.title}: {told['error']}"))
-            else:
-                future.set_result(told)
-            return
-        acts = channel.binding["kind"] == "action"
-        part = "Feedback" if kind is Kind.FEEDBACK else "Result" if acts else "Response"
-        try:
-            value = self.types.decode(body, f"{channel.type}_{part}")
-        except PlatformError as error:
-            future.set_exception(error)
-            return
-        if kind is Kind.FEEDBACK:
-            if feedback is not None:
-                feedback(value)
-        else:
-            future.set_result(value)

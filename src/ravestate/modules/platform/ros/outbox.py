@@ -1,4 +1,4 @@
-"""The bytes that leave by a socket, now or as soon as the other end reads."""
+"""A queue of bytes that leave by a socket, at once or as soon as the other end reads."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ class Outbox:
 
     Args:
         sock: The connected socket; its owner closes it.
-        failed: Called when the socket takes no more, because the other end is gone.
-        depth: The maximum number of pieces that wait. A further one replaces the oldest. By default all wait.
+        failed: A function to call when the socket takes no more bytes, because the other end is gone.
+        depth: The maximum number of waiting pieces. A further piece replaces the oldest. By default there is no limit.
     """
 
     def __init__(self, sock: socket.socket, failed: Callable[[], None], depth: int = 0) -> None:
@@ -29,9 +29,9 @@ class Outbox:
         self._sent.set()
 
     def put(self, data: bytes, fd: int | None = None) -> None:
-        """Send a piece, together with a file descriptor if there is one. The outbox closes it."""
+        """Send a piece, together with a file descriptor, if given. The outbox closes the descriptor."""
         if self._depth and len(self._waiting) > self._depth:
-            del self._waiting[1]  # a part of the first one may have left
+            del self._waiting[1]  # not the first piece, because a part of it may have left
         self._waiting.append((memoryview(data), fd))
         if self._sent.is_set():
             self._send()
@@ -41,7 +41,7 @@ class Outbox:
         await self._sent.wait()
 
     def close(self) -> None:
-        """Forget the pieces that wait."""
+        """Forget the waiting pieces."""
         self._loop.remove_writer(self._sock)
         for _, fd in self._waiting:
             if fd is not None:

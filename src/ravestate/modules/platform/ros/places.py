@@ -1,4 +1,4 @@
-"""The places in which ROS may be installed: which interpreter runs a bridge, and with which environment."""
+"""The places in which ROS may be installed: the interpreter and the environment of a bridge."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ ROS2_MEND = (
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A program beside this file, and what runs it.
+    """A program beside this file, with its interpreter and its environment.
 
     Attributes:
-        name: The user's name for it.
+        name: The user's name for the place.
         program: The file's name in the folder `CHILDREN`.
         python: The interpreter.
         setup: A shell script to source first; None if there is none.
@@ -52,7 +52,7 @@ class Place:
 
     @property
     def folders(self) -> list[Path]:
-        """The folders that hold packages of message definitions."""
+        """The folders with packages of message definitions."""
         paths = [Path(path) for path in os.environ.get("ROS_PACKAGE_PATH", "").split(":") if path]
         for variable in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH"):
             paths += [Path(path) / "share" for path in os.environ.get(variable, "").split(":") if path]
@@ -62,10 +62,10 @@ class Place:
 
 
 def ros1_place(python: Path | None) -> Place:
-    """Return where rospy is: the setting, the sourced ROS 1, one under /opt/ros, or Debian's packages.
+    """Return the place of rospy: the setting, the sourced ROS 1, a ROS 1 under /opt/ros, or Debian's packages.
 
     Raises:
-        PlatformError: It is nowhere.
+        PlatformError: There is no rospy.
     """
     if python is not None:
         return Place("ros1", "ros1_node.py", str(python.expanduser()), mend=f". {ROS1_MEND}")
@@ -80,17 +80,17 @@ def ros1_place(python: Path | None) -> Place:
 
 
 def ros2_place(python: Path | None, backend: str = "auto") -> Place:
-    """Return where rclpy or DDS is.
+    """Return the place of rclpy or DDS.
 
-    The order: the setting, the sourced ROS 2, one under /opt/ros, this environment, that of ``make ros``, and then DDS in
-    the same environments.
+    The order is: the setting, the sourced ROS 2, a ROS 2 under /opt/ros, this environment, and the environment of
+    ``make ros``. DDS in the same environments comes last.
 
     Args:
         python: The interpreter of the setting.
         backend: ``auto``, ``rclpy`` or ``dds``.
 
     Raises:
-        PlatformError: It is nowhere.
+        PlatformError: There is neither rclpy nor DDS.
     """
     apart = [Path(sys.prefix).parent / ".venvs" / "ros2", user_folder("data") / "ros2"]
     if backend in ("auto", "rclpy"):
@@ -126,5 +126,5 @@ def _dds(python: str) -> Place:
 
 
 def _system_python() -> str:
-    """Return the system's interpreter, for which ROS is built; the one on the path may be that of an environment."""
+    """Return the system's interpreter, for which ROS is built. The path may begin with another environment."""
     return "/usr/bin/python3" if Path("/usr/bin/python3").exists() else shutil.which("python3") or sys.executable

@@ -1,4 +1,4 @@
-"""A bridge process: started with the first use, started again when it dies, and ended in order."""
+"""A bridge process: it starts at the first use, starts again if it dies, and ends in order."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""Seconds until a new process replaces a dead one, by the number of processes that died without work."""
+"""The seconds until a new process replaces a dead process, by the number of processes that never became ready."""
 
 ENDING = 3.0
-"""Seconds that a process has to end in order."""
+"""The maximum number of seconds for a process to end in order."""
 
 
 class BridgeProcess:
@@ -28,9 +28,9 @@ class BridgeProcess:
     Args:
         place: The program, and the interpreter that has its packages.
         config: The configuration of the program, as data for JSON.
-        handle: Called with each frame of the process, except those that this class handles.
-        ready: Called when a process is ready to work: the first one, and each that replaces another.
-        lost: Called with a sentence when a process has died.
+        handle: A function to call with each frame of the process, except frames that this class handles.
+        ready: A function to call when a process is ready for work: the first process, and each replacement.
+        lost: A function to call with a sentence when a process has died.
     """
 
     def __init__(
@@ -43,9 +43,9 @@ class BridgeProcess:
         lost: Callable[[str], None],
     ) -> None:
         self.restarts = 0
-        """The number of processes that replaced a dead one."""
+        """The number of processes that replaced a dead process."""
         self.failed: PlatformError | None = None
-        """The reason for which there is no process, and will be none; else None."""
+        """The reason for which no process can run any more; else None."""
         self._place = place
         self._config = config
         self._handle = handle
@@ -65,11 +65,11 @@ class BridgeProcess:
 
     @property
     def frames(self) -> Frames | None:
-        """The pipe to the process, once it is ready for work."""
+        """The pipe to the process, once the process is ready for work."""
         return self._frames if self._works else None
 
     def start(self) -> None:
-        """Start the process; it is ready later."""
+        """Start the process. It becomes ready later."""
         self._again = None
         ours, theirs = socket.socketpair()
         try:
@@ -89,13 +89,13 @@ class BridgeProcess:
         self._frames.send(Kind.OPEN, body=json.dumps(self._config).encode())
 
     async def close(self) -> None:
-        """Let the process finish and end; kill it if it does not."""
+        """Let the process finish its work and end. If it does not end, kill it."""
         self._closing = True
         if self._again is not None:
             self._again.cancel()
         frames, process = self._frames, self._process
         if frames is not None and process is not None:
-            if self._works:  # else it waits for a master, and has nothing to finish
+            if self._works:  # otherwise it waits for a master, and has nothing to finish
                 frames.send(Kind.CLOSE)
                 with contextlib.suppress(TimeoutError):
                     async with asyncio.timeout(ENDING):
@@ -137,6 +137,6 @@ class BridgeProcess:
         )
 
     def _bury(self) -> str:
-        """Make sure that the process is gone; return how it ended."""
+        """Make sure that the process is gone. Return the manner of its end."""
         process, self._process = self._process, None
         return process.end(patience=0.1) if process is not None else "closed"

@@ -26,7 +26,7 @@ class NodeSettings(rs.Settings):
     """The settings of a node, of either version."""
 
     node: str = "ravestate"
-    """The node's name; the number of the agent's process is added to it."""
+    """The beginning of the node's name. The number of the agent's process follows it."""
     namespace: str = ""
     """The namespace of relative names, such as ``/robot``."""
     remap: dict[str, str] = pydantic.Field(default_factory=dict[str, str])
@@ -34,7 +34,7 @@ class NodeSettings(rs.Settings):
     definitions: tuple[Path, ...] = ()
     """Your own ``.msg``, ``.srv`` and ``.action`` files, or folders that hold them."""
     python: Path | None = None
-    """The Python that has ROS. By default it is looked for."""
+    """The Python that has ROS. By default, the agent looks for it."""
     use_sim_time: bool = False
     """Whether the agent's clock follows the topic ``/clock``."""
     bus: str = "127.0.0.1:7411"
@@ -50,15 +50,15 @@ def open_node(
     bus: bool,
     failed: Callable[[PlatformError], None] | None = None,
 ) -> Node:
-    """Return a node; it connects at its first use.
+    """Return a node, which connects at its first use.
 
     Args:
         version: 1 or 2.
-        settings: Its settings.
-        place: Finds the bridge's program.
+        settings: The node's settings.
+        place: A function that finds the bridge's program.
         environment: Environment variables for the bridge.
         bus: Whether the node is on the built-in bus instead of ROS.
-        failed: Called with the reason if there can be no link.
+        failed: A function to call with the reason if there can be no link.
     """
 
     def folders() -> list[Path]:
@@ -89,21 +89,21 @@ def connect(
     version: Literal[1, 2],
     make_node: Callable[[Any, Callable[[PlatformError], None] | None], Node],
 ) -> rs.Slot[Node | None]:
-    """Declare on a module the slot with the node, and the rule that makes it; return the slot.
+    """Declare the slot with the node, and the rule that makes the node, on a module. Return the slot.
 
     Args:
         module: ``ros1`` or ``ros2``.
         version: 1 or 2.
-        make_node: Makes a node from the module's settings and a function for failures.
+        make_node: A function that makes a node from the module's settings and a function for failures.
     """
     node: rs.Slot[Node | None] = module.slot("node", None)
 
     @module.rule(when=rs.startup.detached(), writes=node, detached=True, background=True)
     async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-        """Open the topics, services and actions of all slots; follow the simulation's clock if the settings say so."""
+        """Open the topics, services and actions of all slots. If the settings say so, follow the simulation's clock."""
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
-        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # at once, so that no rule of the startup finds no node
+        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # at once, so that each rule of the startup finds the node
         try:
             await made.prepare()
             bind_all(ctx, made, version)
@@ -121,10 +121,10 @@ def connect(
 
 
 def follow_clock(ctx: rs.RuleContext, node: Node) -> None:
-    """Let the context's clock follow the topic ``/clock``: at its speed, and halted while it is.
+    """Let the context's clock follow the topic ``/clock``, at the same speed, and with the same stops.
 
     Raises:
-        PlatformError: There is no ROS here.
+        PlatformError: ROS is not installed here.
     """
     offset: float | None = None
     last = 0.0
@@ -132,8 +132,8 @@ def follow_clock(ctx: rs.RuleContext, node: Node) -> None:
     def tick(message: Any) -> None:
         nonlocal offset, last
         time = message.clock.sec + message.clock.nanosec / 1e9
-        if offset is None or time < last:  # the first message, or the simulation began anew
-            ctx.drive_clock(ctx.now)  # from here on it stands still
+        if offset is None or time < last:  # the first message, or the first after a restart of the simulation
+            ctx.drive_clock(ctx.now)  # the clock stands still from here on
             offset = ctx.now - time
         last = time
         ctx.drive_clock(time + offset)

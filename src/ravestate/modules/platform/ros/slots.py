@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .node import Channel, Node
 
 DEEP = 1000
-"""The number of messages that may wait on the way to an agent that wants all of them."""
+"""The maximum number of messages that wait on the way to an agent that wants all messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ class Binding:
         version: 1 for ROS 1, 2 for ROS 2.
         kind: The kind of the slot.
         name: The name of the topic, service or action, as the designer wrote it.
-        type: The name of its type, as the designer wrote it.
-        options: The arguments of the `Node` method that opens it.
+        type: The name of the type, as the designer wrote it.
+        options: The arguments of the `Node` method that opens the topic, service or action.
     """
 
     version: Literal[1, 2]
@@ -55,7 +55,7 @@ class Binding:
 
 
 class TopicSlot(rs.Slot[Any]):
-    """A slot that is a topic. Its value is the last message; None before the first."""
+    """A slot that is a topic. Its value is the last message; None before the first message."""
 
     __slots__ = ("binding",)
     binding: Binding
@@ -109,7 +109,7 @@ class Declarations:
     Args:
         version: 1 or 2.
         module: The module ``ros1`` or ``ros2``; modules with such slots require it.
-        node: Its slot with the node of the context.
+        node: The module's slot with the node of the context.
     """
 
     def __init__(self, version: Literal[1, 2], module: rs.Module, node: rs.Slot[Node | None]) -> None:
@@ -134,10 +134,10 @@ class Declarations:
         Args:
             module: The module to declare the slot on.
             name: The slot's name.
-            topic: The topic, such as ``/chat``; relative names and ``~private`` ones are allowed.
+            topic: The topic, such as ``/chat``. Relative names and ``~private`` names are allowed.
             type: The type of its messages, such as ``std_msgs/String``.
-            keep: ``latest`` lets a newer message replace one that waits; ``all`` takes each.
-            rate: The maximum number of messages a second; the newest of each interval is taken.
+            keep: ``latest`` lets a newer message replace a waiting message; ``all`` takes every message.
+            rate: The maximum number of messages a second. The slot takes the newest message of each interval.
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
             latch: ROS 2: whether to get the last message of a publisher that latches.
 
@@ -162,7 +162,7 @@ class Declarations:
             reads=node,
             writes=slot,
             until=node.changed,
-            detached=True,  # each message is a cause of its own
+            detached=True,  # each message is a separate cause
             background=True,
             name=f"{name}_receive",
         )
@@ -223,13 +223,13 @@ class Declarations:
         return slot
 
     def service(self, module: Any, name: str, *, service: str, type: str, timeout: float = 5.0) -> ServiceSlot:
-        """Declare a slot that calls a service: a write is the request, ``.changed`` brings the response.
+        """Declare a slot that calls a service. A write is the request, and ``.changed`` brings the response.
 
         Args:
             module, name: As for `subscriber`.
             service: The service's name.
-            type: Its type, such as ``std_srvs/SetBool``.
-            timeout: Seconds within which the response must come; else ``.failed`` is raised.
+            type: The service's type, such as ``std_srvs/SetBool``.
+            timeout: The seconds after which a missing response raises ``.failed``.
 
         Raises:
             DeclarationError: An argument is wrong.
@@ -268,15 +268,16 @@ class Declarations:
         timeout: float = 5.0,
         until: Condition | None = None,
     ) -> ActionSlot:
-        """Declare a slot that is an action: a write is the goal, ``.feedback`` and ``.changed`` bring feedback and result.
+        """Declare a slot that is an action: a write is the goal, and ``.changed`` brings the result.
 
-        The goal is cancelled when `until` is met, or the ``until`` of a rule that writes the slot.
+        Feedback raises ``.feedback``. The slot cancels the goal when `until` is met, or when the ``until`` of a rule
+        that writes the slot is met.
 
         Args:
             module, name: As for `subscriber`.
             action: The action's name.
-            type: Its type, such as ``nav2_msgs/NavigateToPose`` or, in ROS 1, ``move_base_msgs/MoveBase``.
-            timeout: Seconds within which the action's server must be there.
+            type: The action's type, such as ``nav2_msgs/NavigateToPose`` or, in ROS 1, ``move_base_msgs/MoveBase``.
+            timeout: The seconds within which the action's server must appear.
             until: A condition that cancels the goal.
 
         Raises:
@@ -377,10 +378,10 @@ def module_of(module: Any) -> rs.Module:
 
 
 def bind_all(ctx: rs.RuleContext, node: Node, version: int) -> None:
-    """Open the channels of all slots of a context that publish or call; add the rules that cancel goals."""
+    """Open the channels of all slots that publish or call in a context, and add the rules that cancel goals."""
     for slot in ctx.policy.slots.values():
         if isinstance(slot, TopicSlot) and slot.binding.version == version and slot.binding.kind != "subscriber":
-            with contextlib.suppress(PlatformError):  # its own rule reports it when it is used
+            with contextlib.suppress(PlatformError):  # the slot's own rule reports the error at the first use
                 _channel(node, slot)
             if isinstance(slot, ActionSlot):
                 _cancel_with_writers(ctx, node, slot)
@@ -403,7 +404,7 @@ def _cancel_with_writers(ctx: rs.RuleContext, node: Node, slot: ActionSlot) -> N
 
 
 def _looking(condition: Condition) -> Condition:
-    """Return a condition that is met as `condition` is, and consumes nothing (L19)."""
+    """Return a condition that is met whenever `condition` is met, but consumes nothing (L19)."""
     if isinstance(condition, Compound):
         return type(condition)(tuple(_looking(part) for part in condition.parts))
     if isinstance(condition, (Signal, Constraint)):
@@ -412,7 +413,7 @@ def _looking(condition: Condition) -> Condition:
 
 
 def _channel(node: Node, slot: TopicSlot) -> Channel | GoalTopics:
-    """Return the channel of a slot that publishes or calls; open it at the first call."""
+    """Return the channel of a slot that publishes or calls. The first call opens the channel."""
     channel = node.bound.get(slot.name)
     if channel is None:
         channel = node.bound[slot.name] = slot.binding.open(node)

@@ -24,8 +24,8 @@ class Types:
     """The types of ROS 1 or ROS 2 that an agent uses.
 
     Args:
-        version: 1 or 2. The wire forms are those of ROS 1, or CDR.
-        definitions: The definition files to read types from that the library does not bring.
+        version: 1 or 2. The wire form of ROS 2 is CDR.
+        definitions: The definition files for types that the library lacks.
     """
 
     def __init__(self, version: Literal[1, 2], definitions: Definitions | None = None) -> None:
@@ -36,7 +36,7 @@ class Types:
 
     @property
     def store(self) -> Any:
-        """The library's store of types. Its first use loads the library, which takes a while."""
+        """The library's store of types. The first use loads the library, which takes a while."""
         if self._store is None:
             with self._loading:
                 if self._store is None:
@@ -49,10 +49,10 @@ class Types:
         return self._store is not None
 
     def require(self, name: str, kind: str = "msg") -> str:
-        """Make a type known, with all that it contains; return its full name.
+        """Load a type and all types in it; return the type's full name.
 
         Raises:
-            PlatformError: There is no definition of the type, or it is wrong. The message says what to do.
+            PlatformError: The definition of the type is missing or wrong. The message names the remedy.
         """
         name = full_name(name, kind)
         if name.split("/")[1] == "msg":
@@ -106,7 +106,7 @@ class Types:
         """Return the wire form of a message.
 
         Args:
-            value: A message, a mapping of fields (those left out are zero), or the value of the only field.
+            value: A message, a mapping of fields (missing fields are zero), or the value of the only field.
             name: The type's full name.
 
         Raises:
@@ -195,7 +195,7 @@ class Types:
         return ", ".join(f"{field}: {_spelt(what)}" for field, what in fields if field != DUMMY) or "none"
 
     def fields(self, name: str) -> dict[str, Any]:
-        """Return type → its fields as data for JSON, of a type and of all that it contains."""
+        """Return type → the type's fields as data for JSON, for a type and for all types in it."""
         found: dict[str, Any] = {}
 
         def collect(type_: str) -> None:
@@ -211,14 +211,14 @@ class Types:
         return found
 
     def ros1_definition(self, name: str) -> tuple[str, str]:
-        """Return the text and the MD5 sum by which ROS 1 knows a message type or a service type."""
+        """Return the text and the MD5 sum by which ROS 1 identifies a message type or a service type."""
         if name.split("/")[1] == "msg":
             return self.store.generate_msgdef(name, ros_version=1)
         text = "".join(self._hashed(f"{name}_{title}") for title in PARTS["srv"])
         return "", hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
 
     def _hashed(self, name: str) -> str:
-        """Return the text whose MD5 sum is that of a message: constants, then fields, messages by their own sums."""
+        """Return the text for the MD5 sum of a type: constants, then fields, with the sums of nested messages."""
         subdefs: dict[str, tuple[str, str]] = {}
         lines = [f"{type_} {field}={value}" for field, type_, value in self.store.fielddefs[name][0]]
         for field, (kind, of) in self.store.fielddefs[name][1]:
@@ -275,14 +275,14 @@ def _spelt(what: Any) -> str:
 def _base_store(version: int) -> Any:
     try:
         typesys = importlib.import_module("rosbags.typesys")
-        importlib.import_module("numpy")  # else the first message waits for it
+        importlib.import_module("numpy")  # else the first message would wait for this import
     except ImportError as error:
         raise PlatformError(f"ros{version} needs {error.name}: pip install 'ravestate[ros]'") from error
     return typesys.get_typestore(typesys.Stores.ROS1_NOETIC if version == 1 else typesys.Stores.ROS2_KILTED)
 
 
 def _store(version: int) -> Any:
-    """Return a store of types to add to, which begins with the common types."""
+    """Return a new store of types, which begins with the common types."""
     base = _base_store(version)
     store = type(base)()
     store.fielddefs.update(base.fielddefs)

@@ -17,7 +17,7 @@ class Settings(NodeSettings):
     backend: Literal["rospy", "bus"] = "rospy"
     """``rospy``, or the built-in ``bus``."""
     master: str = ""
-    """The address of the ROS master. Default: that of the environment (``ROS_MASTER_URI``), or else this machine's."""
+    """The address of the ROS master. By default ``ROS_MASTER_URI`` in the environment, or else this machine."""
     ip: str = ""
     """This machine's address for other nodes (``ROS_IP``)."""
 
@@ -26,7 +26,7 @@ module = rs.Module("ros1", settings=Settings)
 
 
 def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None = None) -> Node:
-    """Return a node of ROS 1 with these settings; it connects at its first use."""
+    """Return a node of ROS 1 with these settings. The node connects at its first use."""
     environment = {"ROS_MASTER_URI": settings.master, "ROS_IP": settings.ip}
     return open_node(
         1, settings, lambda: ros1_place(settings.python), environment, bus=settings.backend == "bus", failed=failed
@@ -34,7 +34,7 @@ def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None
 
 
 node = connect(module, 1, make_node)
-"""The node of this context; None before it starts, and in virtual time."""
+"""The node of this context; None before the node starts, and in virtual time."""
 
 declarations = Declarations(1, module, node)
 subscriber = declarations.subscriber

@@ -17,16 +17,16 @@ class Settings(NodeSettings):
     """The settings of the node of ROS 2."""
 
     backend: Literal["auto", "rclpy", "dds", "bus"] = "auto"
-    """``rclpy``; ``dds``, which carries topics alone; the built-in ``bus``; or ``auto``: rclpy, else dds."""
+    """``rclpy``; ``dds``, which carries only topics; the built-in ``bus``; or ``auto``: rclpy, or else dds."""
     domain: int | None = pydantic.Field(None, ge=0, le=232)
-    """The domain. Default: that of the environment (``ROS_DOMAIN_ID``), or else 0."""
+    """The domain. By default ``ROS_DOMAIN_ID`` in the environment, or else 0."""
 
 
 module = rs.Module("ros2", settings=Settings)
 
 
 def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None = None) -> Node:
-    """Return a node of ROS 2 with these settings; it connects at its first use."""
+    """Return a node of ROS 2 with these settings. The node connects at its first use."""
     environment = {"ROS_DOMAIN_ID": "" if settings.domain is None else str(settings.domain)}
     return open_node(
         2, settings, lambda: ros2_place(settings.python, settings.backend), environment,
@@ -35,7 +35,7 @@ def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None
 
 
 node = connect(module, 2, make_node)
-"""The node of this context; None before it starts, and in virtual time."""
+"""The node of this context; None before the node starts, and in virtual time."""
 
 declarations = Declarations(2, module, node)
 subscriber = declarations.subscriber

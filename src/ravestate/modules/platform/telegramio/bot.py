@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 POLL = 30  # the seconds for which the server holds a request for updates, if there are none
 MOST = 100  # the maximum number of updates in an answer
-PATIENCE = 10  # the seconds by which an answer to a request for updates may be late
+PATIENCE = 10  # the seconds for which the bot waits for a late answer to a request for updates
 ANSWER = 20.0  # the seconds to wait for the answer to any other request
-CONFLICTS = 4  # the number of conflicts in a row after which the bot gives up: another program polls it all the time
-SETTLED = 60.0  # the seconds after which it no longer gives up: the other program has come later, and should do so
+CONFLICTS = 4  # the number of conflicts in a row after which the bot gives up: another program polls the same bot
+SETTLED = 60.0  # the seconds after which the bot no longer gives up: the other program came later, and should give up
 CONFLICT_WAIT = 2.0  # the seconds to wait after a conflict: after a crash, the server still holds the old request
 SECRET = "x-telegram-bot-api-secret-token"
 
@@ -56,7 +56,7 @@ async def run(agent: Agent, settings: Settings, token: str) -> None:
 
 
 async def _log_in(bot: Bot, root: str) -> User:
-    """Return the bot's own user; wait until the server answers."""
+    """Wait until the server answers, and return the bot's own user."""
     attempts = Attempts(log, f"{root} does not answer")
     while True:
         try:
@@ -79,7 +79,7 @@ class Inlet:
         self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings
 
     async def listen(self, url: str, token: str) -> None:
-        """Take the updates that the server sends to a webhook. It stays set, so that no update is lost afterwards."""
+        """Take the updates that the server sends to a webhook. The webhook stays set, so that no update is lost."""
         from ravestate.modules.platform.chats.webhook import listen
 
         secret = hashlib.sha256(f"webhook {token}".encode()).hexdigest()
@@ -126,7 +126,7 @@ class Inlet:
                 await attempts.fail(error, wait_of(error))
 
     def take(self, updates: Sequence[Mapping[str, Any]]) -> None:
-        """Give updates to the room. After the call they are kept, and may be acknowledged."""
+        """Give updates to the room. After the call they are stored, so the caller may acknowledge them."""
         self._room.receive(self._room.read(updates, self._read))
 
     def _read(self, data: Mapping[str, Any]) -> Incoming | None:

@@ -17,19 +17,19 @@ from ravestate.modules.platform.chats.sender import SHOWN
 
 from .requests import FloodError
 
-UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)  # after these, a request has not been sent
-AHEAD = 40  # the number of ids among which a message is looked for, if the answer to its attempt got lost
-KNOWN = 1000  # the number of newest message ids that the carrier remembers of a count
-DRAFT = 1  # the id of the draft in a chat: one at a time grows there
-BIGGEST = 20 * 1024 * 1024  # the bytes of the largest file that the server hands out
+UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)  # errors before a request is sent
+AHEAD = 40  # the number of ids among which to look for a message whose attempt had no answer
+KNOWN = 1000  # the number of newest message ids that the carrier remembers for each count
+DRAFT = 1  # the id of the draft in each chat, which has at most one draft at a time
+BIGGEST = 20 * 1024 * 1024  # the bytes of the largest file that the server delivers
 REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
 
 
 class TelegramCarrier:
     """Sends messages as a bot; see `Carrier`.
 
-    Telegram has no id by which it would recognise a repeated message. Therefore `send` looks for a message whose attempt
-    has ended without an answer: the ids of a bot's messages grow, and Telegram says which of them the bot may edit.
+    Telegram cannot recognise a repeated message. So after an attempt without an answer, `send` looks for the message:
+    the ids of a bot's messages grow, and Telegram says which of these messages the bot may edit.
 
     Args:
         bot: The bot.
@@ -44,7 +44,7 @@ class TelegramCarrier:
         self._drafts = drafts
         self.rate = rate
         self.current = asyncio.Event()
-        """Set once the messages have come that waited for the start of the bot."""
+        """Set once the bot has the messages that came before its start."""
         # The known message ids, by the chat that counts its own ids, or "" for the bot's common count.
         self._ids: defaultdict[str, deque[int]] = defaultdict(lambda: deque(maxlen=KNOWN))
 
@@ -96,7 +96,7 @@ class TelegramCarrier:
         return (await bot.send_message(chat, text, reply_parameters=reply)).message_id
 
     async def _find(self, message: Outgoing) -> str | None:
-        """Return the id of a message that an earlier attempt has sent; None if there is none."""
+        """Return the id of a message that an earlier attempt has sent; None if no attempt has sent it."""
         if not message.trace:
             return None
         await self.current.wait()
@@ -110,7 +110,7 @@ class TelegramCarrier:
             try:
                 await self._bot.edit_message_reply_markup(message.chat, id)
             except BadRequest as error:
-                if "not modified" in error.message:  # it is the bot's own, in this chat, and newer than all others
+                if "not modified" in error.message:  # the bot's own message, in this chat, newer than all others
                     return str(id)
             except InvalidToken:  # a server without this method
                 return None
@@ -125,7 +125,7 @@ class TelegramCarrier:
             return bytes(await found.download_as_bytearray())
 
     async def show_work(self, chat: str, words: str) -> None:
-        """Show in the chat that the agent is writing; in a private chat also the words, as a draft.
+        """Show in the chat that the agent is writing. In a private chat, also show the words as a draft.
 
         Telegram removes a draft when the next message comes, or after 30 s.
         """
@@ -142,7 +142,7 @@ class TelegramCarrier:
 
 
 def _count(chat: str) -> str:
-    """Return the name of the count of a chat's message ids: supergroups and channels have counts of their own."""
+    """Return the name of the count to which a chat's message ids belong. Supergroups and channels count separately."""
     return chat if chat.startswith("-100") else ""
 
 

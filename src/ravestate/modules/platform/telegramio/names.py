@@ -12,20 +12,20 @@ from .serving import serve
 
 
 class Settings(ChatSettings):
-    """The settings of telegramio: the bot, the people whom it answers, and the way in which messages come."""
+    """The settings of telegramio: the bot, the people whom it answers, and the way to get messages."""
 
     token: pydantic.SecretStr | None = None
     """The bot's token from @BotFather. Set it as ``RAVESTATE_TELEGRAMIO_TOKEN``."""
     base_url: str = "https://api.telegram.org/bot"
     """The address of the Bot API server, up to the token."""
     webhook: str | None = None
-    """The public address, with ``https://``, at which Telegram delivers messages. None: the bot asks for them."""
+    """The public address, with ``https://``, to which Telegram delivers messages. If None, the bot asks for them."""
     host: str = "127.0.0.1"
     """The address to listen on for the webhook."""
     port: int = pydantic.Field(8443, ge=0, le=65535)
     """The port to listen on for the webhook."""
     rate: float = pydantic.Field(25.0, gt=0, allow_inf_nan=False)
-    """The maximum number of messages per second. Telegram allows a bot 30; a server of your own may allow more."""
+    """The maximum number of messages per second. Telegram allows 30 for a bot; a server of your own may allow more."""
     drafts: bool = True
     """Whether a private chat shows an answer while it grows."""
 

@@ -1,4 +1,4 @@
-"""Requests to the Bot API: flood waits, and failures of the server, as errors of their own."""
+"""Requests to the Bot API. Flood waits and failures of the server raise separate errors."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 from telegram.error import NetworkError, TelegramError
 from telegram.request import HTTPXRequest
 
-WAIT = 5.0  # the seconds to wait if the server asks to wait, but does not say how long
+WAIT = 5.0  # the seconds to wait if the server asks for a wait without a time
 
 
 class FloodError(TelegramError):
-    """The server asks to wait for some seconds."""
+    """The server asks the bot to wait for some seconds."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(f"too many messages: the server asks to wait {seconds:g} s")
@@ -20,7 +20,7 @@ class FloodError(TelegramError):
 
 
 class Requests(HTTPXRequest):
-    """Requests that tell a flood wait from other refusals, without a warning of the library."""
+    """Requests that raise a `FloodError` for a flood wait, without a warning of the library."""
 
     async def do_request(self, *values: Any, **named: Any) -> tuple[int, bytes]:
         """Make a request; return the status and the body of the answer."""
@@ -36,5 +36,5 @@ class Requests(HTTPXRequest):
 
 
 def wait_of(error: Exception) -> float:
-    """Return the seconds to wait that the server has set with an error; 0 if it has set none."""
+    """Return the wait that the server has set with an error (seconds); 0 if there is none."""
     return error.seconds if isinstance(error, FloodError) else 0.0

@@ -17,16 +17,18 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .sound import Samples, samples
 
 CHUNK = 512
-"""The samples that the model judges at once: 32 ms."""
+"""The number of samples that the model judges at once: 32 ms."""
 _CONTEXT = 64
 
 
 class Activity:
-    """The judge of one stream of sound."""
+    """The voice activity in one stream of sound."""
 
     def __init__(self) -> None:
-        """Raises:
-        PlatformError: The model is missing.
+        """Load the model.
+
+        Raises:
+            PlatformError: The model is missing.
         """
         self._session = _session()
         self.reset()
@@ -47,7 +49,7 @@ class Activity:
 
 
 def speech_spans(pcm: bytes, above: float = 0.5, gap: float = 0.5) -> list[tuple[float, float]]:
-    """Return the beginnings and ends (seconds) of the speech in a sound (16 kHz); shorter pauses than `gap` do not count."""
+    """Return begin and end (seconds) of each span of speech in a sound (16 kHz). Pauses below `gap` do not count."""
     judge, found = Activity(), list[tuple[float, float]]()
     sound = samples(pcm)
     for at in range(0, len(sound) - CHUNK + 1, CHUNK):
@@ -73,7 +75,7 @@ def _session() -> Any:
 
 def session(file: Path) -> Any:
     """Return an ONNX model that runs in one thread."""
-    onnxruntime: Any = import_module("onnxruntime")  # it has no types
+    onnxruntime: Any = import_module("onnxruntime")  # the package has no types
     options = onnxruntime.SessionOptions()
     options.inter_op_num_threads = options.intra_op_num_threads = 1
     options.log_severity_level = 3

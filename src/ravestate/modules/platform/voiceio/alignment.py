@@ -1,4 +1,4 @@
-"""The times of written words, from the times of spoken ones."""
+"""The times of written words, from the times of spoken words."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _PHONEMES = 0.85
 _DIGIT = 4.0
 """The average number of phonemes in a spoken digit."""
 _MOST = 10
-"""The maximum number of spoken words for one written word: 1859 has several."""
+"""The maximum number of spoken words for one written word. For example, 1859 is several spoken words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +30,11 @@ def places_of(text: str) -> list[tuple[int, int]]:
 
 
 def by_places(text: str, found: Sequence[tuple[int, float]], length: float) -> tuple[Word, ...]:
-    """Return the words of a text from the places and times of some of them.
+    """Return the words of a text, from the places and times of some words.
 
     Args:
         text: The text.
-        found: Places in the text (characters), each with its time (seconds).
+        found: The known places in the text (characters), each with its time (seconds).
         length: The length of the whole sound (seconds).
     """
     places = places_of(text)
@@ -46,10 +46,10 @@ def by_places(text: str, found: Sequence[tuple[int, float]], length: float) -> t
 
 
 def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -> tuple[Word, ...]:
-    """Return the words of a text from its spoken words: their times (seconds) and their numbers of phonemes.
+    """Return the words of a text, from the times (seconds) and the numbers of phonemes of its spoken words.
 
-    A spoken word may be several written ones ("there was a"), and a number is several spoken words. The alignment with
-    the most plausible lengths counts.
+    One spoken word may be several written words ("there was a"), and a number is several spoken words. The function
+    takes the alignment with the most plausible lengths.
     """
     places = places_of(text)
     expected = [_expected(text[begin:end]) for begin, end in places]
@@ -71,7 +71,7 @@ def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -
                     best[to] = cost, (written, said)
     times: dict[int, float] = {}
     at = rows, columns
-    if at not in best:  # far from each other: an even distribution
+    if at not in best:  # the two lengths differ too much, so distribute the words evenly
         for row in range(rows if columns else 0):
             times[row] = spoken[row * columns // rows][0]
         return _filled(text, places, times, length)
@@ -93,7 +93,7 @@ def _expected(word: str) -> float:
 def _filled(
     text: str, places: Sequence[tuple[int, int]], times: Mapping[int, float], length: float
 ) -> tuple[Word, ...]:
-    """Return all words; a word without a time lies between its neighbours, according to its place."""
+    """Return all words. A word without a time gets a time between its neighbours, according to its place."""
     known = [
         (-1, 0, 0.0),
         *((row, places[row][0], times[row]) for row in sorted(times)),

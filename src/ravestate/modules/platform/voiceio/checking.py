@@ -1,4 +1,4 @@
-"""The parts of speech on this machine: which are there, and how to get the others."""
+"""The check of the software and devices for speech on this machine, with remedies for missing parts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .names import Settings
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A part of speech: whether it is there, whether speech is impossible without it, and details or the remedy."""
+    """A line about a part: whether it is there, whether speech needs it, and details or the remedy."""
 
     part: str
     present: bool

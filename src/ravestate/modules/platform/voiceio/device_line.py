@@ -14,9 +14,9 @@ from ravestate.errors import PlatformError
 from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
 BLOCK = 0.02
-"""The seconds of a block."""
+"""The length of a block (seconds)."""
 WAITING = 200
-"""The blocks of sound that wait for a slow agent; older ones are dropped."""
+"""The maximum number of blocks of sound that wait for a slow agent. Older blocks are dropped."""
 GONE = 2.0
 """The seconds after which a device that neither brings nor takes sound counts as unplugged."""
 AGAIN = 2.0
@@ -53,12 +53,12 @@ class DeviceLine:
         self._streams: list[Any] = []
         self._taken = self._given = 0.0
         self.lost = 0
-        """How often a device was unplugged."""
+        """The number of times that a device was unplugged."""
         self._open()
         self._watch = asyncio.create_task(self._keep_open())
 
     def _open(self, *, again: bool = False) -> None:
-        """Open the devices; `again`, do without a loudspeaker that is still away, so that the agent goes on listening."""
+        """Open the devices. With `again`, a missing loudspeaker is no error, so that the agent can go on listening."""
         sound = portaudio()
         parts = (
             ("microphone", "source", sound.RawInputStream, IN_RATE, self._take),
@@ -85,12 +85,12 @@ class DeviceLine:
                 ) from error
 
     async def blocks(self) -> AsyncIterator[bytes]:
-        """Yield the microphone's sound. An unplugged device is opened again when it is back."""
+        """Yield the microphone's sound. If a device was unplugged and comes back, the line opens it again."""
         while not self._closed and (block := await self._blocks.get()) is not None:
             yield block
 
     async def _keep_open(self) -> None:
-        """Open the devices again if one was unplugged: it then neither fails nor works."""
+        """Open the devices again after one was unplugged. An unplugged device raises no error, but carries no sound."""
         while not self._closed:
             await asyncio.sleep(GONE / 4)
             late = self._loop.time() - GONE
@@ -190,7 +190,7 @@ def portaudio() -> Any:
         PlatformError: The package or the library PortAudio is missing.
     """
     try:
-        return import_module("sounddevice")  # it has no types
+        return import_module("sounddevice")  # the package has no types
     except ImportError as error:
         raise PlatformError("voiceio needs sounddevice: pip install 'ravestate[voice]'") from error
     except OSError as error:
@@ -200,7 +200,7 @@ def portaudio() -> Any:
 
 
 def restart() -> None:
-    """Make PortAudio look for devices again: it knows those that were there at its start.
+    """Make PortAudio look for devices again, because it knows only the devices that were there at its start.
 
     Raises:
         PlatformError: PortAudio does not start.

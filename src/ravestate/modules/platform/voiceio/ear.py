@@ -1,4 +1,4 @@
-"""The user's sound: where speech begins and pauses, and the sound of the turn so far."""
+"""The user's sound: the beginnings and pauses of speech, and the sound of the turn so far."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from .pitch import NEEDED, change, is_another, pitch
 from .sound import Samples, samples
 
 BEFORE = 12
-"""Chunks before the onset that belong to the turn: a soft beginning is not cut off."""
+"""The number of chunks before the onset that belong to the turn, so that a soft beginning is not cut off."""
 ONSET = 2
-"""The number of chunks of speech in a row that make an onset. A click is shorter."""
+"""The number of successive chunks of speech that make an onset. A click is shorter."""
 STAY = 0.7
-"""The share of the threshold of speech above which speech goes on."""
+"""The share of the threshold of speech above which a chunk continues the speech."""
 ARTICULATE = 3
 """The number of articulate chunks since the onset that prove speech, rather than a hum or a cough."""
 LONG = 16
-"""The number of chunks of any speech since the onset that prove it as well: half a second."""
+"""The number of chunks of any speech since the onset that also prove speech: half a second."""
 LONGEST = 60.0
-"""The longest turn (seconds). A longer one is taken in parts."""
+"""The longest turn (seconds). A longer turn is taken in parts."""
 CLIPPED = 0.02
 """The share of samples at the limit above which a second of speech counts as clipped."""
 
 COMPARED = round(2.0 * IN_RATE / CHUNK)
-"""The chunks of each of two voices on both sides of a pause that are compared: 2 s."""
+"""The number of chunks on each side of a pause, for the comparison of two voices: 2 s."""
 SEARCHED = round(8.0 * IN_RATE / CHUNK)
-"""The last chunks of a turn in which a change of the voice is looked for: 8 s."""
+"""The number of last chunks of a turn in which the ear looks for a change of the voice: 8 s."""
 
 Event = Literal["onset", "articulate", "another", "pause"]
 
@@ -56,7 +56,7 @@ class Turn:
         start: The time of the onset (seconds).
         end: The time at which speech ended last.
         agent_spoke: Whether the agent was speaking at the onset.
-        full: Whether the turn has reached its greatest length, and is taken at once.
+        full: Whether the turn has reached its greatest length, so that the agent takes it at once.
     """
 
     start: float
@@ -67,7 +67,7 @@ class Turn:
     pitches: list[float | None] = field(default_factory=list[float | None])
     """The pitch (Hz) of each chunk; None without voice."""
     continued: tuple[int, float, float] | None = None
-    """The last continuation after a pause: its first chunk, its time, and the time at which speech had ended before."""
+    """The last continuation after a pause: its first chunk, its time, and the time at which the pause began."""
 
     @property
     def sound(self) -> bytes:
@@ -76,21 +76,21 @@ class Turn:
 
 
 class Ear:
-    """The ear of one line. It takes blocks of sound and yields what happens: onsets, pauses.
+    """The ear of one line. It takes blocks of sound and yields events, such as onsets and pauses.
 
     Args:
         speech: The probability above which a chunk counts as speech.
         pause: The seconds of silence that make a pause.
-        canceller: Takes out the echo; None for a line without echo.
+        canceller: The canceller that removes the echo; None for a line without echo.
     """
 
     def __init__(self, speech: float = 0.5, pause: float = 0.2, canceller: Canceller | None = None) -> None:
         self.turn: Turn | None = None
-        """The turn that is under way, also during a pause; None before the next onset."""
+        """The present turn, also during a pause; None before the next onset."""
         self.speaking = False
         """Whether the user speaks."""
         self.parted: Turn | None = None
-        """The turn of the person who spoke before another person went on (event ``another``)."""
+        """The turn of the first person, after another person has begun to speak (event ``another``)."""
         self.clipped = False
         """Whether the sound is so loud that it is cut off at the limit."""
         self._activity = Activity()
@@ -111,8 +111,8 @@ class Ear:
 
         Args:
             block: The sound (PCM at `IN_RATE`), of any length.
-            now: The time at its end (seconds).
-            far: The loudspeaker's sound in the same time, as long as `block`; none for silence.
+            now: The time at the end of the block (seconds).
+            far: The loudspeaker's sound in the same time, as long as `block`; empty for silence.
             agent_speaks: Whether the agent is speaking.
         """
         self._clean += self._without_echo(block, far)
@@ -126,7 +126,7 @@ class Ear:
         return turn
 
     def reset(self) -> None:
-        """Forget the turn that is under way, and all that was heard."""
+        """Forget the present turn, and all sound so far."""
         self.take()
         self.speaking = False
         self._in_a_row = self._silent = 0
@@ -204,13 +204,13 @@ class Ear:
             self.turn.continued = first, now, self.turn.end
 
     def _pitch(self) -> float | None:
-        """Return the pitch of the newest chunk and the end of the one before."""
+        """Return the pitch of the newest chunk, together with the end of the chunk before it."""
         assert self.turn is not None
         lately = samples(b"".join(self.turn.chunks[-2:]))[-NEEDED:]
         return pitch(lately) if len(lately) == NEEDED else None
 
     def _part(self, now: float) -> bool:
-        """Part the turn in two if another person has spoken since the last pause; return whether it is so."""
+        """If another person has spoken since the last pause, split the turn in two. Return whether it was split."""
         turn = self.turn
         if turn is None:
             return False

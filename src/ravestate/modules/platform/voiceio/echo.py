@@ -1,4 +1,4 @@
-"""Echo cancellation: the agent's own voice is taken out of the microphone's sound, by libspeexdsp."""
+"""Echo cancellation: libspeexdsp removes the agent's own voice from the microphone's sound."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 from ravestate.modules.modality.rawio.line import IN_RATE
 
 FRAME = 320
-"""The samples that are worked on at once: 20 ms."""
+"""The number of samples in a frame: 20 ms."""
 TAIL = 4096
-"""The samples within which an echo arrives: 256 ms."""
+"""The number of samples within which an echo arrives: 256 ms."""
 
 # Requests of the library.
 _SET_RATE, _SET_DENOISE, _SET_STATE, _SET_SUPPRESS, _SET_SUPPRESS_ACTIVE = 24, 0, 24, 20, 22
@@ -43,7 +43,7 @@ class EchoCanceller:
         return out.raw
 
     def close(self) -> None:
-        """Free the library's memory. The canceller is of no use any more."""
+        """Free the library's memory. Do not use the canceller after this call."""
         if self._echo:
             self._library.speex_preprocess_state_destroy(self._after)
             self._library.speex_echo_state_destroy(self._echo)
@@ -55,7 +55,7 @@ def library() -> Any:
     """Return libspeexdsp.
 
     Raises:
-        OSError: It is not installed.
+        OSError: The library is not installed.
     """
     name = ctypes.util.find_library("speexdsp") or "libspeexdsp.so.1"
     found: Any = ctypes.CDLL(name)

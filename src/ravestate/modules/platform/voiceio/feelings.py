@@ -1,4 +1,4 @@
-"""The agent's feelings in its voice, where the agent has the module `emotion`."""
+"""The agent's feelings in its voice, if the agent has the module `emotion`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def add_feelings(ctx: rs.RuleContext) -> None:
         background=True,
     )
     async def feel(ctx: rs.RuleContext) -> None:
-        """Speak in the manner of the feeling for a while."""
+        """Speak for a while in the manner of the feeling."""
         ctx[prosody] = FEELINGS.get(ctx.payload(emotion.felt.changed) or "", Prosody())
         await ctx.sleep(LASTS)
         ctx[prosody] = Prosody()

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .opening import Conversation
 
 DEAF = 0.25
-"""half_duplex: seconds after the agent's speech for which the agent stays deaf, because the room echoes."""
+"""The seconds for which an agent with `half_duplex` stays deaf after its speech, because the room echoes."""
 LONGEST_END = 300.0
 """The greatest number of seconds for which an agent may go on after the end of a recording."""
 

@@ -1,4 +1,4 @@
-"""The part of the agent's voice that stays in the microphone's sound, and the level at which somebody else must speak."""
+"""The part of the agent's voice that stays in the microphone's sound. Only louder sound counts as another voice."""
 
 from __future__ import annotations
 
@@ -12,43 +12,44 @@ from .likeness import FAR, NEAR, likeness, strength
 from .sound import Samples
 
 MEMORY = 16
-"""Frames of the loudspeaker's sound that may still echo: 0.3 s."""
+"""The number of last frames of the loudspeaker's sound that may still echo: 0.3 s."""
 SILENT = 100.0
 """The power of a frame below which the loudspeaker is silent."""
 FIRST = 10 ** (-13 / 10)
-"""The part that is expected in the beginning: the canceller has not learnt the room yet."""
+"""The share of the loudspeaker's power to expect at first, before the canceller has learnt the room."""
 LEAST, MOST = 1e-6, 0.25
 CLEAR = 10.0
-"""The factor above the expected power at which it is another voice: 10 dB."""
+"""The factor above the expected power at which the sound is another voice: 10 dB."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
-"""The factors by which a chunk changes the expected share: less power than expected, more, another voice."""
+"""The factors by which a chunk changes the expected share: for less power than expected, for more, and for another
+voice."""
 
 SETTLED = 15
-"""Frames with sound on both sides after which the measured strength of the echo counts: 0.3 s."""
+"""The number of frames with sound on both sides after which the measured strength of the echo counts: 0.3 s."""
 SMOOTH = 0.3
-"""The weight of a new measurement of the strength."""
+"""The weight of a new measurement in the mean strength."""
 MARGIN = 10 ** (4 / 10)
-"""The factor by which an echo may exceed its measured strength: late reflections do not count in it."""
+"""The factor by which an echo may exceed its measured strength, which does not include late reflections."""
 
 ALIKE = 25.0
 """The `likeness` above which the microphone hears the loudspeaker."""
 TWICE = 2
-"""Comparisons in a row that prove an echo. A moment of two voices may be alike by chance."""
+"""The number of comparisons in a row that prove an echo. For a moment, two voices may be alike by chance."""
 DOUBTFUL = 12
-"""Frames with sound on both sides in which no echo is found, before a line counts as one without echo: 0.24 s."""
+"""The number of frames with sound on both sides, but no echo, after which a line counts as free of echo: 0.24 s."""
 QUIET = 0.25
 """The weight of a frame in which the microphone is silent: an echo may be late."""
 OFTEN, SELDOM = 2, 8
-"""Frames between two comparisons before and after that: one takes a few milliseconds."""
+"""The frames between two comparisons before and after the first decision. A comparison takes a few milliseconds."""
 GONE = 250
-"""The same for a line that had an echo: 5 s. Somebody may speak louder than the echo."""
+"""The same as `DOUBTFUL`, for a line that had an echo: 5 s. Somebody may speak louder than the echo."""
 
 
 class Leak:
     """The expected share of the loudspeaker's power in the cleaned sound of the microphone.
 
-    A line without echo (headphones, a recording) hides nobody. The likeness of the two sounds tells such a line. Their levels
-    cannot tell it, because a user who speaks at the same time is as loud as an echo.
+    On a line without echo (headphones, a recording), no sound counts as the agent's. The likeness of the two sounds
+    shows whether a line has an echo. Their levels do not, because a user who speaks may be as loud as an echo.
     """
 
     def __init__(self) -> None:
@@ -68,7 +69,7 @@ class Leak:
         return self._unlike < self._limit
 
     def play(self, near: Samples, far: Samples) -> None:
-        """Note a frame of the microphone's sound before it is cleaned, and one of the loudspeaker's sound."""
+        """Note a frame of the microphone's sound before cleaning, and the frame of the loudspeaker's sound."""
         self._far.append(_power(far))
         self._near_sound = _shifted(self._near_sound, near)
         self._far_sound = _shifted(self._far_sound, far)
@@ -94,7 +95,7 @@ class Leak:
             self.echoes, self._limit = False, 0
 
     def hides(self, near: Samples) -> bool:
-        """Return whether a chunk of the microphone's cleaned sound may be the loudspeaker's, and learn from it."""
+        """Return whether a chunk of the microphone's cleaned sound may be the loudspeaker's. Learn from the chunk."""
         far = max(self._far, default=0.0)
         if far < SILENT or not self.possible:
             return False
@@ -108,7 +109,7 @@ class Leak:
 
     @property
     def _loudest(self) -> float:
-        """The share that the echo has at most. It does not grow with a user who speaks from the first moment."""
+        """The greatest share that an echo can have. A user who speaks from the first moment does not increase it."""
         if self._strength is None or self._frame < SETTLED:
             return CLEAR * MOST
         return MARGIN * self._strength

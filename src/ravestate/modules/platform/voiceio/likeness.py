@@ -1,4 +1,4 @@
-"""How surely a microphone's sound holds an echo of the loudspeaker's sound, and how strong it is."""
+"""The certainty and the strength of an echo of the loudspeaker's sound in a microphone's sound."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from numpy.typing import NDArray
 from ravestate.modules.modality.rawio.line import IN_RATE
 
 NEAR = 8000
-"""The samples of the microphone's sound that are compared: 0.5 s."""
+"""The number of samples of the microphone's sound in a comparison: 0.5 s."""
 FAR = 24000
-"""The samples of the loudspeaker's sound that are compared: an echo arrives within 1 s."""
+"""The number of samples of the loudspeaker's sound in a comparison. An echo arrives within 1 s."""
 EARLY = 1600
-"""The samples by which the reference may be late: 0.1 s."""
+"""The number of samples by which the reference may be late: 0.1 s."""
 _SIZE = 32768
 WINDOW = 1024
-"""The samples of a window of `strength`: an echo's first 64 ms hold most of it."""
+"""The number of samples in a window of `strength`: 64 ms, which hold most of an echo."""
 _BAND = slice(200 * _SIZE // IN_RATE, 6000 * _SIZE // IN_RATE)
 _WINDOW = np.hanning(WINDOW).astype(np.float32)
 _EDGE = np.hanning(160)[80:]
-"""Both sounds end at the same time. Without a soft end, these two ends would be alike."""
+"""The soft end for both sounds. Without it, their ends would be alike, because both sounds end at the same time."""
 
 
 def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float, int]:
     """Return the highest peak of the whitened correlation (GCC-PHAT), in standard deviations, and its delay in samples.
 
-    An echo repeats the loudspeaker's sound at one delay, so all frequencies agree on it: the peak is mostly above 30, at
-    any level. For another voice, it is about 10, and below 20 in the first moments.
+    An echo repeats the loudspeaker's sound at one delay, so all frequencies agree on this delay. Then the peak is
+    mostly above 30, at any level. For another voice, the peak is about 10, and below 20 in the first moments.
 
     Args:
         near: The last `NEAR` samples of the microphone.
@@ -39,7 +39,7 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
     white = np.zeros_like(cross)
     white[_BAND] = cross[_BAND] / (np.abs(cross[_BAND]) + 1e-6 * np.abs(cross).max() + 1e-9)
     found = np.fft.irfft(white)
-    # `near` begins FAR - NEAR samples behind `far`, so that is the shift without a delay.
+    # `near` begins FAR - NEAR samples after `far`, so this is the shift for a delay of zero.
     none = _SIZE - (FAR - NEAR)
     delays = np.roll(found, EARLY - none)[: EARLY + FAR - NEAR]
     best = int(delays.argmax())
@@ -49,8 +49,8 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
 def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) -> float:
     """Return the share of the loudspeaker's power that the microphone hears, also while somebody speaks.
 
-    The share is the power that follows from the loudspeaker's sound in each band (Welch's coherence). Another voice adds
-    its power divided by the number of windows. With 14 windows, it counts 11 dB less.
+    The share is the part of the power that depends on the loudspeaker's sound in each band (Welch's coherence). Another
+    voice adds its power divided by the number of windows: with 14 windows, it counts 11 dB less.
 
     Args:
         near, far: As for `likeness`.

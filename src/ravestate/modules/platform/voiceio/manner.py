@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Prosody:
-    """The manner of speech, relative to the voice's own: 1 is normal.
+    """The manner of speech, relative to the voice's normal manner, which is 1.
 
     Attributes:
         rate: The speed.
-        pitch: The height of the voice, where the backend can change it (espeak-ng).
+        pitch: The height of the voice, if the backend can change it (espeak-ng).
         range: The liveliness of the melody.
     """
 

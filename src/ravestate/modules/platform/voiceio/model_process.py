@@ -16,7 +16,7 @@ CHILDREN = Path(__file__).with_name("children")
 
 
 def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True) -> ModelProcess:
-    """Return the process of a backend, which is the file ``kind`` in `CHILDREN`. Pair it with `drop`."""
+    """Return the process of a backend, which is the file ``kind`` in `CHILDREN`. Pair each call with `drop`."""
 
     def mend(reason: str) -> str:
         if kind == "espeak":

@@ -1,4 +1,4 @@
-"""The models on this machine: folders, files, and how to get the missing ones."""
+"""The models on this machine: folders, files, and downloads of missing models."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
 
 PREFERRED = ("base", "base.en", "small.en", "small", "tiny.en", "tiny")
-"""The order in which models of speech recognition are taken if the settings name none."""
+"""The order of preference for models of speech recognition, if the settings name no model."""
 
 SMART_TURN = "smart-turn-*.onnx"
 
 
 def folders() -> tuple[Path, ...]:
-    """Return the folders that may hold models: the user's, and that of this Python environment."""
+    """Return the folders that may hold models: the user's folder, and the folder of this Python environment."""
     return user_folder("data") / "voice", Path(sys.prefix) / "share" / "ravestate" / "voice"
 
 
@@ -28,7 +28,7 @@ def whisper_model(name: str) -> Path:
     """Return the folder of a model for faster-whisper.
 
     Args:
-        name: A folder's path, or the name of a folder within `folders`; empty for the best that is there.
+        name: A folder's path, or the name of a folder within `folders`; empty for the best model on this machine.
 
     Raises:
         PlatformError: There is no such model; the message says how to get one.
@@ -69,20 +69,20 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
     partial = folder.with_name(folder.name + ".part")
     try:
         partial.mkdir(parents=True, exist_ok=True)
-        with warnings.catch_warnings(action="ignore"):  # an option that faster-whisper passes on is out of date
+        with warnings.catch_warnings(action="ignore"):  # faster-whisper passes on an outdated option
             download_model(name, output_dir=str(partial))
         os.replace(partial, folder)
     except Exception as error:
         if not any(
             file.is_file() and file.stat().st_size > 1000 for file in partial.rglob("*")
-        ):  # else the next attempt goes on from there
+        ):  # otherwise keep the files, so that the next attempt continues
             shutil.rmtree(partial, ignore_errors=True)
         raise PlatformError(f"voiceio: cannot fetch {name!r}: {error}") from error
     return folder
 
 
 def piper_voice(name: str) -> Path | None:
-    """Return the file of a voice for Piper, by its path, or its name within `folders`; an empty name means any."""
+    """Return the file of a voice for Piper, by its path or its name within `folders`. An empty name fits any voice."""
     if name and Path(name).expanduser().suffix == ".onnx" and Path(name).expanduser().is_file():
         return Path(name).expanduser().absolute()
     for folder in folders():
@@ -93,7 +93,7 @@ def piper_voice(name: str) -> Path | None:
 
 
 def piper_python(setting: Path | None) -> str | None:
-    """Return the interpreter that has Piper: the setting's, this one, or that of the environment of ``make voice``."""
+    """Return an interpreter with Piper: from the setting, this interpreter, or the environment of ``make voice``."""
     if setting is not None:
         return str(setting.expanduser())
     if find_spec("piper") is not None:
@@ -105,5 +105,5 @@ def piper_python(setting: Path | None) -> str | None:
 
 
 def smart_turn() -> Path | None:
-    """Return the file of the model for the end of a turn; None if there is none."""
+    """Return the file of the model for the end of a turn; None if this machine has no such file."""
     return next((file for folder in folders() for file in sorted(folder.glob(SMART_TURN), reverse=True)), None)

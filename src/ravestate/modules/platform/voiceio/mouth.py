@@ -1,4 +1,4 @@
-"""The agent's sound: utterances as they grow, and how far they have been heard."""
+"""The agent's sound: utterances as they grow, and the parts that the user has heard."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 HEARD = 0.5
 """The share of a word that must have sounded for the word to count as heard."""
 FAINT = 0.1
-"""The share of a word's greatest level below which its end counts as silence: the pause behind it is no part of it."""
+"""The share of a word's greatest level below which the end of the word counts as a pause after it."""
 DRIFT = 0.06
-"""Seconds by which the play-out may differ from its regular course before the echo's reference jumps there."""
+"""The seconds by which the play-out may differ from a regular course, before the echo's reference jumps to it."""
 LEAD = 4.0
-"""Seconds of sound in the loudspeaker's queue that are enough: no more text is made into sound."""
+"""The seconds of sound in the loudspeaker's queue above which the mouth synthesises no more text."""
 KEPT = 30.0
-"""Seconds of sound that are kept as the echo's reference."""
+"""The seconds of sound to keep as the echo's reference."""
 
 
 class Speech:
@@ -37,7 +37,7 @@ class Speech:
     Args:
         text: The text so far.
         whole: Whether the text is complete.
-        counts: Whether it is an utterance, so that ``rawio.heard`` reports it; a filler is none.
+        counts: Whether ``rawio.heard`` reports it. For a filler, this is False.
     """
 
     def __init__(self, text: str = "", *, whole: bool = False, counts: bool = True) -> None:
@@ -45,11 +45,11 @@ class Speech:
         self.whole = whole
         self.counts = counts
         self.start = self.end = 0.0
-        """The times at which its sound began and ended (seconds on the context's clock)."""
+        """The times at which the utterance's sound began and ended (seconds on the context's clock)."""
         self.over = False
-        """Whether it has been spoken, or cut."""
+        """Whether the agent has finished the utterance, or was cut short."""
         self.heard = ""
-        """The part that the user heard, once it is over."""
+        """The part that the user heard, once the utterance is over."""
         self._given = 0
         self._grown = asyncio.Event()
 
@@ -103,9 +103,9 @@ class Mouth:
         self.growing: Speech | None = None
         """The utterance that still grows."""
         self.said = ""
-        """The last sentences that were queued, to know one's own voice."""
+        """The last queued sentences, by which the agent recognises its own voice in the microphone."""
         self.speaking = False
-        """Whether an utterance is under way, also while it is held."""
+        """Whether an utterance is under way, also while the speech is held."""
         self.silent_since: float | None = None
         """The time since which the speech is held back; None if it is not held back."""
         self._queue: list[_Queued] = []
@@ -122,7 +122,7 @@ class Mouth:
 
     @property
     def position(self) -> float:
-        """The seconds that the line has played; while the speech is held, those at which it stopped."""
+        """The seconds of sound that the line has played. While the speech is held, the position at which it stopped."""
         return self.line.played if self._held_at is None else self._held_at
 
     @property
@@ -166,7 +166,7 @@ class Mouth:
             self._cut_track(self._held_at)
 
     def release(self) -> None:
-        """Go on where `hold` stopped, at the beginning of the word that was cut."""
+        """Continue the speech that `hold` stopped, from the beginning of the word that was cut."""
         if self._held_at is None:
             return
         stopped, self._held_at, self.silent_since = self._held_at, None, None
@@ -195,7 +195,7 @@ class Mouth:
             await self._released.wait()
 
     async def room(self) -> None:
-        """Wait until little sound is left in the queue, also if the line drops the sound because nobody hears it."""
+        """Wait until little sound is left in the queue. This also works for a line that drops unheard sound."""
         while (left := self.lead - LEAD) > 0.0:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(max(0.05, left)):

@@ -25,32 +25,32 @@ Share = Annotated[float, Field(ge=0, le=1)]
 class Settings(rs.Settings):
     """Devices, models, and the manners of a conversation."""
 
-    model_config = ConfigDict(protected_namespaces=())  # `model` is ours
+    model_config = ConfigDict(protected_namespaces=())  # `model` is our own field
 
     source: str = "default"
-    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` comes first."""
+    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` goes first."""
     sink: str = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
-    """Whether the agent is deaf while it speaks: for a loud loudspeaker beside the microphone. Nothing then interrupts it."""
+    """Whether the agent is deaf while it speaks, so that nobody can interrupt it: for a loud loudspeaker."""
     echo_cancellation: bool = True
     """Whether the agent's own voice is removed from the microphone's sound (libspeexdsp)."""
 
     recogniser: Literal["whisper", "grammar"] = "whisper"
     """``whisper``: faster-whisper; ``grammar``: pocketsphinx, for a few commands."""
     model: str = ""
-    """whisper: a model's name or folder, by default the best that is there; grammar: a file in JSGF."""
+    """For whisper, a model's name or folder, by default the best model on this machine. For grammar, a file in JSGF."""
     language: str = "en"
     """The user's language; empty to detect it in each utterance."""
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """Seconds for a piece of at most 25 s of sound, after which a recogniser counts as stuck, and starts again."""
+    """The seconds after which a recogniser counts as stuck, and starts again. A piece of sound has at most 25 s."""
     captions: Seconds = 1.0
     """Seconds between two captions (``rawio.hearing``) while the user speaks; 0 for none."""
 
     voice: str = ""
-    """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper where it is set up."""
+    """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
     piper: Path | None = None
     """The Python interpreter of Piper's environment, by default that of ``make voice``."""
 
@@ -59,7 +59,7 @@ class Settings(rs.Settings):
     pause: Annotated[float, Field(ge=0.1)] = 0.2
     """Seconds of silence after which the turn may be over."""
     doubtful_pause: Seconds = 1.2
-    """Seconds of silence that end a turn if the words or the melody sound unfinished."""
+    """The seconds of silence that end a turn whose words or melody sound unfinished."""
     longest_pause: Seconds = 1.4
     """Seconds of silence that end every turn."""
     complete: Share = 0.5
@@ -68,7 +68,7 @@ class Settings(rs.Settings):
     ask_back_below: Share = 0.38
     """The recogniser's confidence below which the agent asks back."""
     back_channel: Seconds = 1.0
-    """Seconds after which the user's speech is no mere "mhm", so that the agent gives way."""
+    """The seconds of the user's speech after which it is more than an "mhm", so that the agent stops speaking."""
     filler_after: Seconds = 0.8
     """Seconds without an answer after which the agent says a filler; 0 for none."""
     fillers: tuple[str, ...] = ("Hm.", "Well.", "Let me see.")
@@ -93,7 +93,7 @@ heard = rawio.heard
 """The part of the agent's last utterance that the user heard: the slot ``rawio.heard`` itself."""
 
 spoke_up = module.signal("spoke_up", keep="latest")
-"""The user's sound is articulate speech for sure, not a hum or a cough."""
+"""The user's sound is certainly articulate speech, not a hum or a cough."""
 
 back_channel = module.signal("back_channel", payload=str)
 """The user has only shown that they listen ("mhm", "yes", laughter) while the agent was speaking."""
@@ -108,7 +108,7 @@ held = module.flag("held")
 """True while the agent's speech is held, until it is clear whether the user interrupts."""
 
 speech: rs.Signal[Speech] = module.signal("speech", payload=cast("type[Speech]", object))
-"""An utterance of the agent begins to be spoken; it may still grow."""
+"""The agent begins to speak an utterance, which may still grow."""
 
 prosody: rs.Slot[Prosody] = module.slot("prosody", Prosody(), type=Prosody, input=True)
 """The manner of the agent's speech. A module `emotion` in the agent sets it."""

@@ -1,4 +1,4 @@
-"""The parts of a spoken conversation, and how they are opened: line, ear, mouth, models."""
+"""The parts of a spoken conversation (line, ear, mouth and models), and functions that open them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .turn import Melody, is_back_channel, is_demand, is_echo, melody_of, wanted
 from .wav_line import WavLine
 
 SURE = 0.55
-"""The confidence below which a short sound does not interrupt the agent: recognisers hear "Amen" in a mere "mm"."""
+"""The confidence below which a short sound does not interrupt the agent. Recognisers may hear "Amen" in an "mm"."""
 
 
 @dataclass(slots=True)
@@ -39,20 +39,20 @@ class Conversation:
     closed: bool = False
 
     def close(self, *, linger: bool = False) -> None:
-        """Close the line, and let go of the models, which stay loaded for a while if they may `linger`.
+        """Close the line, and release the models. With `linger`, the models stay loaded for a while.
 
         Raises:
-            PlatformError: The file of the loudspeaker's sound cannot be written. Everything is closed all the same.
+            PlatformError: The file of the loudspeaker's sound cannot be written. Even so, all parts are closed.
         """
         self.closed = True
-        with ExitStack() as parts:  # if one cannot be closed, the others are
+        with ExitStack() as parts:  # after a fault in one part, close the others
             parts.callback(self.mouth.voice.close, linger=linger)
             parts.callback(self.recogniser.close, linger=linger)
             parts.callback(self.ear.close)
             parts.callback(self.line.close)
 
     async def words(self, sound: bytes, *, partial: bool = False) -> Recognised:
-        """Return the words of a sound. If the call is cancelled, its request no longer keeps later ones waiting.
+        """Return the words of a sound. If the call is cancelled, later requests do not wait for it.
 
         Args:
             sound: The sound (16 kHz).
@@ -68,7 +68,7 @@ class Conversation:
             unwanted.set()
 
     async def judge(self, turn: Turn) -> tuple[Recognised, float]:
-        """Return the words of a turn, and the seconds of silence after which it is over.
+        """Return the words of a turn, and the seconds of silence after which the turn is over.
 
         Raises:
             PlatformError: The recogniser fails.
@@ -79,11 +79,11 @@ class Conversation:
             complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
             found = await hearing
         finally:
-            hearing.cancel()  # nobody waits for the words of a turn that goes on, nor for their error
+            hearing.cancel()  # if the turn goes on, nobody needs these words or their error
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
-        """Return what a turn is: ``utterance``, ``back_channel`` or ``false_alarm``, and the words or the reason."""
+        """Return the kind of a turn (``utterance``, ``back_channel``, ``false_alarm``), and the words or the reason."""
         if not found.text:
             return "false_alarm", "there are no words in the sound"
         if turn.agent_spoke:
@@ -104,15 +104,15 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     Args:
         given: A platform's line; None to open the files or devices that the settings name.
         settings: The module's settings.
-        warn: Called with a sentence for each part that is left out.
+        warn: A function to call with a sentence for each missing part that the conversation can do without.
 
     Raises:
-        PlatformError: A model, a program or a device is missing; the message says how to get it.
+        PlatformError: A model, a program or a device is missing. The message says how to get it.
     """
     recogniser = await asyncio.to_thread(Recogniser, settings)
     voice = line = None
     try:
-        recorded = given is None and is_file(settings.source)  # the same recording gives the same conversation
+        recorded = given is None and is_file(settings.source)  # the same recording shall lead to the same conversation
         voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         if (melody := await asyncio.to_thread(_melody)) is None:
@@ -135,7 +135,7 @@ def is_file(name: str) -> bool:
 
 
 async def _line(settings: Settings) -> Line:
-    """Open the line between the files or devices that the settings name. A file may go with a device."""
+    """Open the line between the files or devices that the settings name. One may be a file, and the other a device."""
     source, sink = _file(settings.source), _file(settings.sink)
     by_clock = sink is not None or not settings.sink
     files = await asyncio.to_thread(WavLine, source, sink) if source or by_clock else None

@@ -1,4 +1,4 @@
-"""The pitch of a voice, to notice that another person goes on."""
+"""The pitch of a voice, which shows that another person has begun to speak."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .sound import Samples
 
 FRAME = 640
-"""The samples of a frame: 40 ms."""
+"""The number of samples in a frame: 40 ms."""
 LOWEST, HIGHEST = 70.0, 400.0
 """The range of speaking voices (Hz)."""
 PERIODIC = 0.6
-"""The correlation with itself, one period later, above which a frame is voiced."""
+"""The autocorrelation at one period above which a frame is voiced."""
 ENOUGH = 8
-"""The voiced frames that tell a voice's pitch."""
+"""The number of voiced frames that are enough to know a voice's pitch."""
 ANOTHER = 1.6
-"""The ratio of two pitches above which they are two people: one person's voice moves less on average."""
+"""The ratio of two mean pitches above which they belong to two people. One person's pitch varies less."""
 LASTING = 15
-"""The voiced frames on each side of a change within speech: a person's voice jumps for a shorter time."""
+"""The number of voiced frames on each side of a change within speech. One person's pitch jumps for a shorter time."""
 AGREE = 0.9
-"""The share of the frames on each side of a change that must be on that side."""
+"""The share of the frames on each side of a change whose pitches must be on the same side of the threshold."""
 SOFT = 500
 """The level below which a frame counts as silence."""
 _SHORTEST, _LONGEST = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
 NEEDED = FRAME + _LONGEST + 1
-"""The samples that tell a pitch: a frame, and its comparison one period later."""
+"""The number of samples from which to compute a pitch: a frame, and the frame one period later."""
 _SIZE = 1 << (NEEDED + FRAME).bit_length()
 
 
 def pitches(sound: Samples, step: int = FRAME) -> list[float | None]:
-    """Return the pitch (Hz) at each `step` of a sound (16 kHz); None where there is no voice."""
+    """Return the pitch (Hz) at each `step` of a sound (16 kHz); None at steps without a voice."""
     return [pitch(sound[at : at + NEEDED]) for at in range(0, len(sound) - NEEDED + 1, step)]
 
 
@@ -51,14 +51,14 @@ def pitch(sound: Samples) -> float | None:
     best = float(alike.max())
     if best <= PERIODIC:
         return None
-    first = int(np.flatnonzero(alike > 0.9 * best)[0])  # not a multiple of the period
+    first = int(np.flatnonzero(alike > 0.9 * best)[0])  # the first peak: later peaks are multiples of the period
     while first + 1 < len(alike) and alike[first + 1] > alike[first]:
         first += 1
     return IN_RATE / (first + _SHORTEST)
 
 
 def is_another(first: Sequence[float | None], second: Sequence[float | None]) -> bool:
-    """Return whether two rows of pitches are the voices of two people, as far as pitches tell."""
+    """Return whether two rows of pitches seem to be the voices of two people."""
     one, other = _voiced(first), _voiced(second)
     if len(one) < ENOUGH or len(other) < ENOUGH:
         return False
@@ -67,9 +67,10 @@ def is_another(first: Sequence[float | None], second: Sequence[float | None]) ->
 
 
 def change(found: Sequence[float | None]) -> int | None:
-    """Return the place in a row of pitches at which another person goes on; None if one person speaks.
+    """Return the place in a row of pitches at which another person begins; None if only one person speaks.
 
-    A person's voice also jumps, but seldom for long. So nearly all pitches on each side must be on that side.
+    One person's pitch also jumps, but seldom for long. So nearly all pitches on each side of the place must be on the
+    same side of the threshold.
     """
     places = [place for place, each in enumerate(found) if each is not None]
     logs = np.log(np.array(_voiced(found), np.float64))

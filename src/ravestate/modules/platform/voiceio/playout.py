@@ -1,4 +1,4 @@
-"""A play-out clock: which part of queued sound has been played at a time."""
+"""A play-out clock, which computes the part of queued sound that has been played at a time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ravestate.modules.modality.rawio.line import OUT_RATE
 
 SECOND = 2 * OUT_RATE
-"""The bytes of a second of sound."""
+"""The number of bytes in a second of sound."""
 
 
 @dataclass(slots=True)
@@ -22,13 +22,13 @@ class _Part:
 
 
 class PlayOut:
-    """A loudspeaker that plays by the clock. Times are seconds on any clock that does not run backwards."""
+    """A simulated loudspeaker. All times are seconds on one clock, which must not run backwards."""
 
     def __init__(self) -> None:
         self._parts: list[_Part] = []
 
     def play(self, sound: bytes, now: float) -> None:
-        """Queue sound at `OUT_RATE`; it begins at once, or after the queued sound."""
+        """Queue sound at `OUT_RATE`. The sound begins at once, or after the sound in the queue."""
         if sound:
             self._parts.append(_Part(max(now, self.end), sound))
 
@@ -48,9 +48,9 @@ class PlayOut:
         return self._parts[-1].end if self._parts else float("-inf")
 
     def played(self, now: float) -> float:
-        """Return the seconds of sound that were played until `now`, without pauses."""
+        """Return the seconds of sound that were played until `now`, not counting pauses."""
         return sum(min(part.end, max(part.begin, now)) - part.begin for part in self._parts)
 
     def parts(self) -> Iterator[tuple[float, bytes]]:
-        """Yield the times at which sounds began, and the sounds."""
+        """Yield each sound with the time at which it began."""
         return ((part.begin, part.sound) for part in self._parts)

@@ -1,4 +1,4 @@
-"""Speech recognition, in a process of its own."""
+"""Speech recognition, in its own process."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from .names import Settings
 from .sound import pieces
 
 LONGEST = 25.0
-"""The seconds of sound that are recognised at once. A whisper model reads 30 s, with the silence that follows."""
+"""The maximum number of seconds of sound in one request. A whisper model reads 30 s, including silence at the end."""
 
 _MARKS = re.compile(r"\[[^\]]*\]|\([^)]*\)|\*[^*]*\*|[♪♫]+")
 """Notes of a recogniser about sounds other than speech, such as ``[Music]`` or ``(coughs)``."""
 
-# Whisper has learnt these from the ends of films: it writes them for noise and silence.
+# Whisper has learnt these phrases from the ends of films, and writes them for noise and silence.
 _PHANTOMS = frozenset(
     {"i", "you", "thank you", "thanks for watching", "thank you for watching", "bye", "the end", "so"}
 )
@@ -37,7 +37,7 @@ class Recognised:
     Attributes:
         text: The words; empty if there are none.
         confidence: The recogniser's confidence, from 0 to 1.
-        last: The words that the last one may be, with their probabilities. Empty if the recogniser does not tell.
+        last: The candidates for the last word, with their probabilities. Empty if the recogniser names no candidates.
     """
 
     text: str
@@ -93,16 +93,16 @@ class Recogniser:
     def recognise(self, pcm: bytes, *, partial: bool = False, unwanted: Event | None = None) -> Recognised:
         """Return the words of a sound (16 kHz).
 
-        A long sound is recognised in pieces. So it may be of any length, and requests of others come between the pieces.
+        A sound may have any length, because the recogniser takes it in pieces. Other requests may come between pieces.
 
         Args:
             pcm: The sound.
             partial: Whether the sound is the beginning of an utterance, for a caption: quicker, and less exact.
-            unwanted: Set in another thread if the words are of no use any more. Then no further piece is recognised.
+            unwanted: An event that another thread sets if nobody needs the words any more. It stops the next pieces.
 
         Raises:
-            PlatformError: The recogniser fails, or does not answer in time, also at the second attempt; or the words
-                are unwanted.
+            PlatformError: The recogniser fails, or does not answer in time, also in a second attempt. Or nobody needs
+                the words any more.
         """
         found: list[tuple[float, Recognised]] = []
         for piece in pieces(pcm, IN_RATE, LONGEST):
@@ -126,18 +126,18 @@ class Recogniser:
         return replace(found, last=answer.get("last", {})) if found.text else found
 
     def close(self, *, linger: bool = False) -> None:
-        """Let go of the model; its last user ends the process, after a while if it may `linger`."""
+        """Release the model. Its last user ends the process: at once, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
 
 
 def _cores() -> int:
     """Return the number of cores that this process may use. More threads than cores wait for each other."""
-    allowed = getattr(os, "sched_getaffinity", None)  # Linux alone has it
+    allowed = getattr(os, "sched_getaffinity", None)  # only Linux has this function
     return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
 
 
 def _cleaned(text: str, confidence: float, no_speech: float) -> Recognised:
-    """Return recognised words without notes about sounds, and none for a sound that is hardly speech."""
+    """Return recognised words without notes about sounds. For a sound that is hardly speech, return no words."""
     text = " ".join(_MARKS.sub(" ", text).split())
     bare = "".join(c for c in text.casefold() if c.isalnum() or c == " ").strip()
     if not any(c.isalnum() for c in text) or (no_speech > 0.6 and confidence < 0.6):

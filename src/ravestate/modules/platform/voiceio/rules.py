@@ -44,17 +44,17 @@ if TYPE_CHECKING:
     writes=(conversation, user_speaking),
     emits=(spoke_up, another_speaks),
     until=rawio.sound.changed,
-    detached=True,  # each onset is a cause of its own
+    detached=True,  # each onset is a separate cause
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Open the line, and follow the user's sound: speech begins, is articulate, pauses."""
+    """Open the line, and raise signals when the user begins to speak, speaks articulately, or pauses."""
     settings: Settings = ctx.settings
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
         return rs.Resign("this user has no line: their platform brings one in rawio.sound")
     if line is not None and ctx.payload(rawio.sound.changed) is None:
-        return rs.Resign("another run of this rule opens the line that came at once")
+        return rs.Resign("a line came at once, and another run of this rule opens it")
 
     def warn(text: str) -> None:
         ctx.log.warning("%s", text)
@@ -65,7 +65,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     except (PlatformError, ImportError) as error:
         fault = error if isinstance(error, PlatformError) else PlatformError(f"{error}: pip install 'ravestate[voice]'")
         if line is None:
-            ctx.stop(fault)  # nobody could talk to the agent
+            ctx.stop(fault)  # without speech, nobody could talk to the agent
         else:
             ctx.log.error("%s", fault)
         return None
@@ -88,7 +88,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context, so that the machine's devices are not for it."""
+    """Return whether a platform with many users runs this context. Then the machine's devices are not for the user."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 
@@ -113,7 +113,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
         try:
             found = await talk.words(turn.sound, partial=True)
         except PlatformError as error:
-            if talk.closed:  # its process was ended in the middle of the work
+            if talk.closed:  # closing the line has ended the recogniser's process in the middle of its work
                 return rs.Resign("the line is closed")
             ctx.log.warning("%s", error)
             continue
@@ -182,7 +182,7 @@ async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=utterance, writes=rawio.input)
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Pass the user's words on, if the recogniser is confident."""
+    """If the recogniser is confident, pass on the user's words."""
     said = ctx.payload(utterance)
     if said.confidence < ctx.settings.ask_back_below:
         return rs.Resign(f"the recogniser's confidence is {said.confidence:.2f}")
@@ -192,7 +192,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=utterance, writes=verbaliser.intent)
 async def ask_back(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Ask the user to say it again, if the recogniser is not confident."""
+    """If the recogniser is not confident, ask the user to repeat their words."""
     said = ctx.payload(utterance)
     if said.confidence >= ctx.settings.ask_back_below:
         return rs.Resign("the words are clear")
@@ -226,7 +226,7 @@ async def speak_early(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak a complete utterance, or the rest of one that grew."""
+    """Speak a complete utterance, or the rest of a growing utterance."""
     from .mouth import Speech
     from .sentences import speakable
 
@@ -238,8 +238,8 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
     if growing is not None and (rest is not None or not ctx[rawio.speaking]):
         talk.mouth.growing = None
         growing.grow(rest or "")
-        growing.finish()  # without the flag, another utterance is the only sign that this one was given up
-        if growing.over and rest is not None:  # it was cut while it grew: its history is complete only now
+        growing.finish()  # rules need not set `rawio.speaking`: then the new utterance shows that the old one ended
+        if growing.over and rest is not None:  # it was cut while it grew: note its heard part once it is complete
             ctx[rawio.heard] = growing.heard
     if rest is None and speakable(text):
         ctx.emit(speech, Speech(text, whole=True))
@@ -248,7 +248,7 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=conversation, background=True)
 async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
-    """End an utterance that was given up while it grew."""
+    """End a growing utterance that no rule continues."""
     talk = ctx[conversation]
     if talk is None or talk.mouth.growing is None:
         return rs.Resign("no utterance grows")
@@ -264,7 +264,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     until=barge_in | utterance | rawio.hush | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak an utterance sentence by sentence. An interruption cuts it; then the user has heard a part."""
+    """Speak an utterance sentence by sentence. If the user interrupts it, note the part that the user has heard."""
     talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
     if talk is None:
         return rs.Resign("the line is closed")
@@ -280,7 +280,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                     mouth.queue(spoken, place)
                     if not mouth.speaking:
                         mouth.speaking, saying.start = True, ctx.now
-                        if talk.ear.speaking:  # the user has begun first
+                        if talk.ear.speaking:  # the user spoke first
                             mouth.hold(ctx.now)
                             ctx[held] = True
                         else:
@@ -291,7 +291,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
             except PlatformError as error:
                 if not talk.closed:
                     ctx.log.error("%s", error)
-                saying.heard = saying.text.strip()  # the text is on the screen, if there is one
+                saying.heard = saying.text.strip()  # without a voice, the user may still read the text
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)
                 raise
@@ -334,7 +334,7 @@ async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def give_way(ctx: rs.RuleContext) -> None:
-    """Stop for good when the user goes on speaking, because a mere "mhm" would be shorter."""
+    """Stop speaking for good when the user's speech goes on, because an "mhm" would be shorter."""
     await ctx.sleep(ctx.settings.back_channel)
     ctx.emit(barge_in)
 
@@ -346,7 +346,7 @@ async def give_way(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Go on with the speech where it stopped, because the user did not interrupt."""
+    """Continue the held speech, because the user did not interrupt."""
     talk = ctx[conversation]
     if talk is None or not talk.mouth.held:
         return rs.Resign("nothing is held")

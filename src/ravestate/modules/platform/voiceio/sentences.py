@@ -12,7 +12,7 @@ _UNSPEAKABLE = re.compile(
     "[\U0001f000-\U0001faff\u2600-\u27bf\u2b00-\u2bff\u2300-\u23ff\u200d\u20e3\ufe0e\ufe0f\U000e0020-\U000e007f*_`#]"
 )
 SHORTEST = 12
-"""The characters below which a sentence is spoken together with the next one, unless nothing follows."""
+"""The number of characters below which a sentence is spoken together with the next sentence, if there is one."""
 
 
 def sentences(text: str, begin: int = 0, *, whole: bool) -> Iterator[tuple[int, str]]:
@@ -37,6 +37,6 @@ def sentences(text: str, begin: int = 0, *, whole: bool) -> Iterator[tuple[int, 
 
 
 def speakable(text: str) -> str:
-    """Return `text` with spaces in place of emoji and marks, so that its places stay; empty if it has no words."""
+    """Return `text` with spaces in place of emoji and marks, so that places stay the same. Without words, return ""."""
     plain = _UNSPEAKABLE.sub(lambda mark: " " * len(mark[0]), text)
     return plain if any(c.isalnum() for c in plain) else ""

@@ -16,15 +16,15 @@ Samples = NDArray[np.int16]
 """Mono samples, 16 bits."""
 
 LONGEST = 3600.0
-"""The seconds of a file that are read."""
+"""The maximum number of seconds to read from a file."""
 FRAME = 0.02
-"""The seconds of the frames among which `pieces` looks for a quiet moment."""
+"""The length (seconds) of the frames among which `pieces` looks for a quiet moment."""
 QUIET = 15
 """The number of frames of a quiet moment: 0.3 s."""
 
 
 def samples(pcm: bytes) -> Samples:
-    """Return PCM bytes as samples; half a sample at the end is left out."""
+    """Return PCM bytes as samples, without half a sample at the end."""
     return np.frombuffer(pcm[: len(pcm) // 2 * 2], "<i2")
 
 
@@ -39,7 +39,7 @@ def silence(length: float, rate: int) -> bytes:
 
 
 def pieces(pcm: bytes, rate: int, longest: float) -> Iterator[bytes]:
-    """Yield a sound in pieces of at most `longest` seconds, cut in the quietest moment of the last third of each."""
+    """Yield a sound in pieces of at most `longest` seconds. Cut each piece at the quietest moment of its last third."""
     sound, most, frame = samples(pcm), round(longest * rate), round(FRAME * rate)
     while len(sound) > most:
         first = most * 2 // 3
@@ -84,7 +84,7 @@ def decode(source: bytes | Path, rate: int) -> bytes:
                     if size > LONGEST * rate * 2:
                         break
             except av.FFmpegError:
-                if not parts:  # a file that is cut short still has its beginning
+                if not parts:  # a truncated file still has a usable beginning
                     raise
             parts += [part.to_ndarray().astype("<i2").tobytes() for part in resampler.resample(None)]
     except (OSError, ValueError, IndexError) as error:
@@ -98,7 +98,7 @@ def decode(source: bytes | Path, rate: int) -> bytes:
 
 
 def encode_ogg(pcm: bytes, rate: int) -> bytes:
-    """Return a sound as an OGG file with Opus, as messengers take it for a voice note."""
+    """Return a sound as an OGG file with Opus, the format of messengers for voice notes."""
     av = _av()
     target = io.BytesIO()
     with av.open(target, "w", format="ogg") as container:

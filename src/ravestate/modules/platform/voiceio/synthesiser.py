@@ -1,4 +1,4 @@
-"""Speech synthesis, in a process of its own."""
+"""Speech synthesis, in its own process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .names import Settings
 from .sound import resample, seconds
 
 PATIENCE = 20.0
-"""The longest time (seconds) that a sentence may take."""
+"""The maximum number of seconds for the synthesis of a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class Spoken:
 class Synthesiser:
     """The voice that the settings name. All methods block and are thread-safe.
 
-    A voice varies from sentence to sentence, and its process draws these variations one after another. So a
-    conversation sounds the same each time only if its process speaks nothing else.
+    A voice varies at random from sentence to sentence. So a conversation sounds the same each time only if its process
+    speaks for no other conversation.
 
     Args:
         settings: The settings of voiceio.
@@ -92,7 +92,7 @@ class Synthesiser:
         return Spoken(text, sound, reference, _words(text, answer, seconds(sound, OUT_RATE)))
 
     def close(self, *, linger: bool = False) -> None:
-        """Let go of the voice; its last user ends the process, after a while if it may `linger`."""
+        """Release the voice. Its last user ends the process: at once, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
 
 

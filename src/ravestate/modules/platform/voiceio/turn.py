@@ -1,4 +1,4 @@
-"""The end of a turn: by its melody, by its words, and by silence."""
+"""The end of a turn, judged by the melody, the words, and silence."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .names import Settings
 
 WINDOW = 8.0
-"""The last seconds of a turn, which the model of the melody hears."""
+"""The number of last seconds of a turn that the model of the melody hears."""
 
 UNFINISHED = 0.3
-"""The part of the setting `complete` below which the melody alone says that the turn goes on."""
+"""The share of the setting `complete` below which the melody alone shows that the turn goes on."""
 
 ANOTHER = 0.03
-"""The probability of another last word that needs more, above which the written last word proves nothing."""
+"""The probability of another candidate, whose sentence goes on, above which the last word proves nothing."""
 UNCLEAR = 0.3
-"""The probability of the last word below which it is unclear, like a word that breaks off."""
+"""The probability below which the last word is unclear, like a word that breaks off."""
 
 _SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+[-.]?)+|m(?:[-.][a-z]{1,2})*[-.][mnh]+")
 """Laughter, and hums as a recogniser writes or spells them: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""
@@ -33,11 +33,13 @@ _EDGES = ".,!?…;:\"'“”‘’()-–— "
 
 
 class Melody:
-    """The model that tells from the sound whether a turn is complete (smart-turn)."""
+    """The model that judges from the sound whether a turn is complete (smart-turn)."""
 
     def __init__(self, file: Path) -> None:
-        """Raises:
-        PlatformError: The file cannot be loaded.
+        """Load the model in a file.
+
+        Raises:
+            PlatformError: The file cannot be loaded.
         """
         from faster_whisper.feature_extractor import FeatureExtractor  # pyright: ignore[reportMissingTypeStubs]
 
@@ -63,7 +65,7 @@ class Melody:
 
 @lru_cache(maxsize=1)
 def melody_of(file: Path) -> Melody:
-    """Return the model in a file. It stays loaded for the next conversation: it keeps nothing of the sounds.
+    """Return the model in a file. The model keeps nothing of the sounds, so it stays loaded for the next conversation.
 
     Raises:
         PlatformError: The file cannot be loaded.
@@ -80,7 +82,7 @@ def wanted_silence(
         text: The words so far.
         complete: The probability of a complete melody; None without the model.
         settings: The limits.
-        last: The words that the last one may be, with their probabilities, as far as the recogniser tells.
+        last: The recogniser's candidates for the last word, with their probabilities.
     """
     words = completeness(text, settings.language)
     if words == "complete" and last and _may_go_on(text, last, settings.language):
@@ -92,7 +94,7 @@ def wanted_silence(
 
 
 def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
-    """Return whether words are complete, by the last word: an article needs more, an auxiliary verb may need more.
+    """Return whether words are complete, judged by the last word. An article is open, an auxiliary verb is doubtful.
 
     Example:
         >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")
@@ -108,9 +110,9 @@ def completeness(text: str, language: str = "en") -> Literal["open", "doubtful",
 
 
 def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
-    """Return whether the last word may as well be one that needs more, or is unclear.
+    """Return whether the last word is unclear, or may be another word whose sentence goes on.
 
-    A recogniser has learnt whole sentences, and so hears "a photograph of mine" in "a photograph of my".
+    A recogniser has learnt from whole sentences, so it may hear "a photograph of mine" in "a photograph of my".
     """
     known, written = _words(language), _bare(text.split()[-1])
     more = known["open"] | known["doubtful"]
@@ -119,7 +121,7 @@ def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
 
 
 def is_back_channel(text: str, language: str = "en") -> bool:
-    """Return whether words only show that the user listens, or laughs.
+    """Return whether words show only that the user listens or laughs.
 
     Example:
         >>> is_back_channel("Yeah, I see."), is_back_channel("Ha ha ha!"), is_back_channel("Yes, but why?")

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 def transcribe(sound: bytes | Path, settings: Settings | None = None) -> Utterance:
-    """Return the words of a recording. This blocks: call it in a thread.
+    """Return the words of a recording. The call blocks, so make it in a thread.
 
     Args:
         sound: A file or its bytes, in any usual format: WAV, OGG with Opus, MP3, M4A.
         settings: The recogniser and its model, by default those of the environment.
 
     Returns:
-        The utterance, with seconds from the beginning of the recording; with empty words if nobody speaks.
+        The utterance, with times from the beginning of the recording (seconds). Its text is empty if nobody speaks.
 
     Raises:
         PlatformError: The recording cannot be read, or a package or a model is missing.
@@ -41,7 +41,7 @@ def transcribe(sound: bytes | Path, settings: Settings | None = None) -> Utteran
 
 
 def synthesise(text: str, settings: Settings | None = None) -> bytes:
-    """Return a text as a voice note: an OGG file with Opus. This blocks: call it in a thread.
+    """Return a text as a voice note: an OGG file with Opus. The call blocks, so make it in a thread.
 
     Raises:
         PlatformError: A program or a voice is missing, or the text has no words.
@@ -52,7 +52,7 @@ def synthesise(text: str, settings: Settings | None = None) -> bytes:
 
 
 def speak(text: str, settings: Settings | None = None) -> bytes:
-    """Return a text as PCM (mono, 16 bits, `OUT_RATE`). This blocks.
+    """Return a text as PCM (mono, 16 bits, `OUT_RATE`). The call blocks.
 
     Raises:
         PlatformError: A program or a voice is missing, or the text has no words.
@@ -69,7 +69,7 @@ def speak(text: str, settings: Settings | None = None) -> bytes:
 
 
 def settings_here() -> Settings:
-    """Return the module's settings, as the environment has them."""
+    """Return the module's settings from the environment."""
     from ravestate.settings import load_settings
 
     return load_settings([module])[module.name]

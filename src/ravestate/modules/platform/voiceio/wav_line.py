@@ -1,4 +1,4 @@
-"""A line between files: a recording is the microphone, and a WAV file the loudspeaker."""
+"""A line between files: a recording takes the place of the microphone, and a WAV file that of the loudspeaker."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .playout import PlayOut
 from .sound import decode, silence, write_wav
 
 BLOCK = 0.02
-"""The seconds of a block."""
+"""The length of a block (seconds)."""
 
 
 class WavLine:
-    """A recording as the microphone, at the speed of the loop's clock. After its end there is silence.
+    """A recording as the microphone, at the speed of the loop's clock. Silence follows the recording.
 
     Args:
         source: The recording, in any usual format; None for silence.
@@ -43,7 +43,7 @@ class WavLine:
         """Whether the recording has ended."""
 
     def begin(self) -> float:
-        """Begin the time line now, and return its beginning; `blocks` does it as well."""
+        """Begin the time line now, and return its beginning. `blocks` calls this method, too."""
         self._begun = _now()
         return self._begun
 
@@ -107,7 +107,7 @@ class WavLine:
 
 
 def check_target(path: Path) -> None:
-    """Make sure that a WAV file can be written, before a long conversation ends in a fault.
+    """Make sure that a WAV file can be written, so that a long conversation does not end in a fault.
 
     Raises:
         PlatformError: The name does not end in ``.wav``, or the file cannot be written.

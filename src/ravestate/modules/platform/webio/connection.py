@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 BURST, RATE = 20, 5.0
 """How many frames a client may send in a burst, and per second after it. The server delays further frames, and loses
-none. `Writing` frames have a limit of their own with the same numbers; the server ignores further ones."""
+none. `Writing` frames have their own limit with the same numbers; the server ignores further `Writing` frames."""
 
 SOUND_BURST, SOUND_RATE = 2 * 32_000, 1.25 * 32_000
 """How many bytes of sound a client may send in a burst (2 s), and per second after it. The server ignores more."""
@@ -31,7 +31,7 @@ REPORTS_BURST, REPORTS_RATE = 40, 20.0
 """How many `Played` frames a client may send in a burst, and per second after it. The server ignores more."""
 
 PICTURES_BURST, PICTURES_RATE = 20, 20.0
-"""How many pictures a client may send in a burst, and per second after it. The server delays further ones."""
+"""How many pictures a client may send in a burst, and per second after it. The server delays further pictures."""
 
 REPLIES = 32  # the maximum number of replies that may wait to be sent to a client
 

@@ -1,4 +1,4 @@
-"""The fields of the web protocol's frames: the types of their values, their limits, and the error about a refused value."""
+"""The fields of the web protocol's frames: the types and limits of values, and the error about a refused value."""
 
 from __future__ import annotations
 

@@ -66,8 +66,8 @@ class Ping:
 class Microphone:
     """The visitor's microphone goes on or off in this window.
 
-    While it is on, binary frames carry its sound, and this window plays the agent's sound. At most one window of a
-    conversation has it: the last one that turned it on.
+    While the microphone is on, binary frames carry its sound, and this window plays the agent's sound. At most one
+    window of a conversation has the microphone: the last window that turned it on.
     """
 
     on: Truth
@@ -99,7 +99,7 @@ class Hush:
 class Camera:
     """The visitor's camera goes on or off in this window.
 
-    At most one window of a conversation has it: the last one that turned it on.
+    At most one window of a conversation has the camera: the last window that turned it on.
     """
 
     on: Truth

@@ -28,7 +28,7 @@ async def caption(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.hush.max_age(None).detached(), reads=page, background=True)
 async def hush(ctx: rs.RuleContext) -> None:
-    """Silence the visitor's loudspeaker. The rule that speaks already knows about the wish."""
+    """Silence the visitor's loudspeaker. `rawio.hush` also interrupts the rule that speaks."""
     if (session := ctx[page]) and session.line is not None:
         session.line.stop()
 

@@ -1,4 +1,4 @@
-"""Goals of the agent: it pursues them while the user is silent, until they are reached or refused."""
+"""Goals of the agent. The agent pursues a goal while the user is silent, until the goal is reached or refused."""
 
 from __future__ import annotations
 

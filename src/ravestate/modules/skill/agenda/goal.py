@@ -20,7 +20,7 @@ from .names import OPEN, GoalState, Status, goals, opportunity
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
 MOMENT = 1.0  # the seconds for which an opportunity to pursue a goal lasts
-LONGEST = 1000  # how many characters of the user's words the expressions `done` and `refused` search
+LONGEST = 1000  # the expressions `done` and `refused` search at most this number of the user's characters
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Goal:
     Attributes:
         name: The name of the goal's rule, ``module:name``; `agenda.goals` has the goal's state under this name.
         rule: The rule that pursues the goal; the rule retires when the goal is over.
-        pursued: A constraint for your own rules. A spike of it means that the goal has just been pursued. Example:
+        pursued: A constraint for your own rules; its spikes mean that the goal has just been pursued. A rule with
             ``when=offer.pursued.max_age(60) & rawio.input.changed`` reacts to the user's answer to the goal `offer`.
     """
 
@@ -60,9 +60,9 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    When the agent is bored, and has not just pursued another goal, it says the words of this goal. The goal is over
-    when `done` or `refused` happens, or after the last try. The user has priority: their words interrupt a pursuit, and
-    end the opportunity.
+    The agent says the words of the goal when it is bored, unless it has just pursued another goal. The goal is over
+    when `done` or `refused` happens, or after the last try. The user has priority: their words interrupt the pursuit of
+    a goal.
 
     The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
 
@@ -83,7 +83,8 @@ def goal(
         tries: The maximum number of tries; the goal is dropped after the last one.
 
     Raises:
-        rs.DeclarationError: Neither or both of `say` and `intent`, an impossible number, or a faulty expression.
+        rs.DeclarationError: `say` and `intent` are both given or both missing, a number is impossible, or an expression
+            is faulty.
 
     Example:
         >>> import ravestate as rs

@@ -39,7 +39,7 @@ OPEN = GoalState()
 
 
 class Settings(rs.Settings):
-    """The settings of agenda: when the agent may pursue goals, and goals that need no code."""
+    """The settings of agenda: the time between pursuits, and goals that need no code."""
 
     gap: Annotated[float, Field(ge=0)] = 15.0
     """The minimum number of seconds from the pursuit of one goal to the pursuit of the next."""

@@ -1,4 +1,4 @@
-"""The rules of agenda: when the agent may pursue a goal."""
+"""The rules of agenda. They decide when the agent may pursue a goal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions about the agent: its name, origin, likes, mood."""
+"""Answers to questions about the agent: its name, origin, likes, mood."""
 
 from __future__ import annotations
 

@@ -18,12 +18,12 @@ class Topic:
     questions: tuple[str, ...]
     """Example questions. Questions with the same meaning are understood as well."""
     phrases: tuple[str, ...]
-    """Answers, with facts in braces. The agent chooses one whose facts are known."""
+    """Answers, with facts in braces. The agent chooses an answer whose facts are known."""
     otherwise: tuple[str, ...] = ()
     """Answers to use if each phrase needs an unknown fact. If `otherwise` is empty, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """Pairs of a fact and the answers to a question that names one of its values. In the answers, ``{it}`` is that
-    value, and ``{that}`` is the second text if the value is a pair."""
+    """Pairs of a fact and answers. The answers suit a question that names a value of the fact. In them, ``{it}`` stands
+    for this value. If the value is a pair, ``{that}`` stands for its second text."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()

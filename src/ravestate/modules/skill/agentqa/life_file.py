@@ -31,7 +31,7 @@ NAMED = ("it", "that")
 
 _PARTS = ("facts", "topics", "others")
 _ADDED = ("questions", "remarks", "acts")
-"""Parts of a topic that a user's file adds to those of the module."""
+"""Parts of a topic that a user's file adds to the module's parts."""
 _TOLD = ("phrases", "otherwise", "unnamed")
 """Parts of a topic that a user's file replaces."""
 
@@ -40,7 +40,7 @@ def read_life(own: Path | None = None) -> Life:
     """Read the agent's life from the module's file, with the changes in the user's file `own`.
 
     A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions
-    and remarks to the module's topic, and replaces its phrases; ``~`` removes the topic. All other topics are new.
+    and remarks to the module's topic, and replaces its phrases; ``~`` removes it. Topics with other names are new.
 
     Raises:
         DeclarationError: The file has a mistake; the message names the line.

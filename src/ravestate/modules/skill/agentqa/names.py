@@ -21,7 +21,7 @@ from .router import Match
 
 
 class Settings(rs.Settings):
-    """The agent's life, and when the agent offers to talk about itself."""
+    """The agent's life file, and the delay before the agent offers to talk about itself."""
 
     life: Path | None = None
     """The user's own life file. It changes the facts and topics that it mentions; all others stay."""
@@ -45,8 +45,8 @@ asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; the payload has the topic."""
 
 remarked = module.signal("remarked", payload=Remark)
-"""The user makes a remark that the agent must respond to, such as an insult, or shows distress. This response outranks
-nearly all others. The payload has the topic."""
+"""The user insults the agent, shows distress, or makes another remark that needs a response. The response outranks
+nearly all other answers. The payload has the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
 """The agent's life, read from the files at startup. Facts in the agent's memory override them."""

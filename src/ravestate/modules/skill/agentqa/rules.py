@@ -1,4 +1,4 @@
-"""The rules: when the agent talks about itself."""
+"""The rules of agentqa. The agent answers questions and remarks, and offers to talk about itself."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ async def heed_act(ctx: rs.RuleContext) -> rs.Resign | None:
     when=remarked,
     reads=(life, mood, clock),
     writes=verbaliser.intent,
-    weight=25.0,  # outranks nearly all rules of other modules, even those that answer a question
+    weight=25.0,  # this rule outranks nearly all rules of other modules, even those that answer a question
 )
 async def respond(ctx: rs.RuleContext) -> None:
     """Answer the remark."""
@@ -141,7 +141,7 @@ async def respond(ctx: rs.RuleContext) -> None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
-@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # outranks everything except a remark
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # this rule outranks everything except a remark
 async def keep_quiet(ctx: rs.RuleContext) -> None:
     """Promise to be quiet; `idle` keeps the promise."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)
@@ -151,7 +151,7 @@ async def keep_quiet(ctx: rs.RuleContext) -> None:
     when=asked,
     reads=(life, mood, clock, ontology.memory),
     writes=verbaliser.intent,
-    weight=1.5,  # outranks other modules that answer the same question
+    weight=1.5,  # this rule outranks other modules that answer the same question
 )
 async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer the question."""
@@ -170,11 +170,11 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(
     when=idle.bored.min_age(Settings.prompt_after).max_age(None),
     reads=(prompted, turns, idle.unanswered),
-    # Takes the output as well, so that no other rule speaks at the same time.
+    # The rule also takes the output, so that no other rule speaks at the same time.
     writes=(verbaliser.intent, rawio.output, prompted),
     weight=0.9,
-    # Starts a causal group of its own: in the group of `bored`, this rule takes `rawio.output`, so the verbaliser could
-    # not write it.
+    # The intent starts a causal group of its own. In the group of `bored`, this rule has taken `rawio.output`, so the
+    # verbaliser could not write it.
     detached=True,
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -196,8 +196,7 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with phrases whose placeholders have been filled. Any braces that are left belong to facts,
-    so they are escaped."""
+    """Return an intent with filled phrases. Braces that are left belong to facts, so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

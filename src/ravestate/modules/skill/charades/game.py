@@ -1,7 +1,7 @@
 """The state of a game, and its transitions.
 
-A game passes from step to step. Each step has the moves that the user may make in it (`MOVES`); `play` maps a state and
-a move to the next state, and to what the agent says, feels and does. Nothing here knows rules, slots or a clock.
+`MOVES` lists the moves that the user may make in each step. `play` maps a state and a move to the next state, and to
+the agent's words, feelings and actions. This file knows no rules, slots or clock.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Step = Literal[
 WAITING = frozenset({"offered", "choosing", "guessed", "asked", "unseen", "blind", "between", "riddle"})
 """The steps in which the agent waits for the user."""
 GUESSES = 2
-"""The maximum number of guesses, of the agent and of the user."""
+"""The maximum number of guesses of each player."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Game:
     ranked: tuple[str, ...] = ()
     """The agent's guesses in this round, best first."""
     guess: int = 0
-    """The number of guesses in this round before this one, of the agent or of the user."""
+    """The number of earlier guesses in this round, by the player who guesses."""
     doubts: int = 0
     """The number of unclear answers to this guess."""
     blank: int = 0
@@ -50,15 +50,15 @@ class Game:
     """The time when the agent began to watch, in seconds since the context began."""
     end: float = 0.0
     riddle: str = ""
-    """The activity that the user shall guess."""
+    """The activity that the user must guess."""
     shown: bool = False
-    """Whether the agent's body performed it."""
+    """Whether the agent's body performed this activity."""
     posed: frozenset[str] = frozenset()
     """The riddles of this game so far."""
 
     @property
     def is_on(self) -> bool:
-        """Whether a game is on, or has been offered."""
+        """Whether a game is on, or the agent has offered a game."""
         return self.step != "off"
 
     @property
@@ -105,7 +105,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """All that a transition depends on beside the state and the move."""
+    """The surroundings of the game: all inputs of a transition except the state and the move."""
 
     chance: random.Random
     gestures: frozenset[str] = frozenset()
@@ -117,7 +117,7 @@ class World:
 def play(game: Game, move: Move, world: World) -> Outcome:
     """Return the result of a move.
 
-    A move that the step does not know leaves the state as it is, and repeats the agent's question.
+    If the move is impossible in this step, the state stays as it is, and the agent repeats its question.
     """
     found = MOVES.get((game.step, move.kind)) or ANYWHERE.get(move.kind) or _repeat
     out = found(game, move, world)
@@ -316,7 +316,7 @@ MOVES: Mapping[tuple[Step, str], Transition] = {
     ("riddle", "gives_up"): _reveal,
     ("riddle", "swap"): _repeat,
 }
-"""Step and move → the transition. A move that is in neither table has no effect but a repeated question."""
+"""Step and move → the transition. If a move is in neither table, the agent repeats its question."""
 
 ANYWHERE: Mapping[str, Transition] = {
     "rules": _explain,

@@ -23,9 +23,9 @@ class Settings(rs.Settings):
     count: Seconds = 1.0
     """Seconds from one number of the countdown to the next."""
     patience: Seconds = 12.0
-    """Seconds of silence after which the agent asks again; after as long again, it ends the game."""
+    """Seconds of silence after which the agent asks again. After a second silence of this length, it ends the game."""
     aside: Seconds = 4.0
-    """Seconds after a remark on something else until the agent returns to the game."""
+    """Seconds from the user's remark on something else until the agent returns to the game."""
 
 
 module = rs.Module(
@@ -38,13 +38,13 @@ game: rs.Slot[Game] = module.slot("game", Game(), type=Game)
 """The state of the game, with the score."""
 
 sightings: rs.Slot[tuple[tuple[bool, activity.Activity], ...]] = module.slot("sightings", ())
-"""The activities recognised in this round, each with whether the agent was watching by then, or still counting."""
+"""The activities recognised in this round. A flag is true if the agent was watching, and false if it was counting."""
 
 gestures: rs.Slot[frozenset[str]] = module.slot("gestures", frozenset(), type=frozenset, input=True)
 """The activities that the agent's body can perform. A platform with a body writes this slot."""
 
 perform: rs.Signal[str] = module.signal("perform", payload=str)
-"""The agent's body shall perform this activity, for the user to guess. Only for names in `gestures`."""
+"""The agent's body shall perform an activity for the user to guess. The payload is a name in `gestures`."""
 
 moved: rs.Signal[Move] = module.signal("moved", payload=Move)
 """The user's words are a move in the game."""
@@ -53,7 +53,7 @@ invited: rs.Signal[Move] = module.signal("invited", payload=Move)
 """The user wants to play something, or is bored."""
 
 strayed: rs.Slot[float] = module.slot("strayed", 0.0, always=True)
-"""The time of the user's last words during a game that were no move in it, in seconds since the context began."""
+"""The time of the user's last words during a game that were no move, in seconds since the context began."""
 
 prompted: rs.Signal[int] = module.signal("prompted", payload=int, keep="latest")
 """The agent waits for the user's next move. The payload is `Game.turn` at that time."""

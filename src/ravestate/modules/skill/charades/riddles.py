@@ -10,7 +10,7 @@ from ravestate.yaml_text import load_yaml
 
 @dataclass(frozen=True, slots=True)
 class Riddle:
-    """An activity that the user shall guess."""
+    """An activity that the user must guess."""
 
     name: str
     text: str

@@ -1,4 +1,4 @@
-"""The rules: when the agent offers the game, what counts as a move, and what each move does."""
+"""The rules of charades. The agent offers the game, recognises the user's moves, and carries them out."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
     "sad": emotion.sad,
 }
 PRIORITY = 40.0
-"""The weight of the answers in a game: above all others, such as agentqa's answer to "stop"."""
+"""The weight of the answers in a game, which outrank all other answers, such as agentqa's answer to "stop"."""
 JUST = 0.1
 """Seconds for which the end of the agent's speech counts as the end of its last word."""
 SPEAKING = 6.0
@@ -53,7 +53,7 @@ SPEAKING = 6.0
 
 
 def is_on(now: Game) -> bool:
-    """Return whether a game is on, or offered."""
+    """Return whether a game is on, or the agent has offered a game."""
     return now.is_on
 
 
@@ -63,7 +63,7 @@ def is_empty(users: Mapping[str, object]) -> bool:
 
 
 def is_waiting(now: Game) -> bool:
-    """Return whether the agent waits for a move, or no game is on: a countdown has been called off."""
+    """Return whether a countdown is called off: the agent waits for a move, or no game is on."""
     return now.is_waiting or not now.is_on
 
 
@@ -145,10 +145,10 @@ async def answer(ctx: rs.RuleContext) -> None:
     writes=EFFECTS,
     emits=EMITTED,
     detached=True,
-    weight=2.5,  # outranks small talk about boredom
+    weight=2.5,  # this rule outranks small talk about boredom
 )
 async def propose(ctx: rs.RuleContext) -> None:
-    """Offer the game to a user who wants to play, or is bored. A skill that knows the game they name goes first."""
+    """Offer the game to a user who wants to play, or is bored. If they name a game, a skill for it goes first."""
     carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
 
 
@@ -307,7 +307,7 @@ def ranked(seen: Iterable[activity.Activity]) -> tuple[str, ...]:
     detached=True,
 )
 async def remind(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a silence, ask again; after another, end the game. A silent chooser gets the countdown."""
+    """After a silence, ask again; after a second, end the game. In the step ``choosing``, start the countdown."""
     if ctx[game].turn != ctx.payload(prompted):
         return rs.Resign("the game has gone on")
     carry_out(ctx, play(ctx[game], Move("silence"), world_of(ctx)))
@@ -340,7 +340,7 @@ async def be_patient(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Return to the game after words on something else, when all that was asked is answered."""
+    """Return to the game after the user's words on something else, once no other rule has anything to do."""
     turn = ctx[game].turn
     await ctx.quiet()
     now = ctx[game]

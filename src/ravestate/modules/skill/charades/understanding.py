@@ -19,15 +19,15 @@ from .riddles import RIDDLES
 WORDS = 5
 """The maximum number of words in the name of an activity."""
 SHORT = 3
-"""Up to this number of words, an utterance that is no question is an unclear answer, and no remark on something else."""
+"""The maximum number of words in an unclear answer. A longer utterance is a remark on something else."""
 OF_ACT = (("repeat", "repeat"), ("play", "play"), ("play", "wanted"), ("bored", "play"))
-"""Act in ``acts.yaml`` → the move, where the step has this move."""
+"""Pairs of an act in ``acts.yaml`` and its move. The first move that the step has counts."""
 ANY_GAME = word_set("game round")
 """Nouns after *play* that name no game."""
 SURE = 2
-"""The strength of a yes or no that is more than *I think so*."""
+"""The strength of a sure yes or no; *I think so* is weaker."""
 SURE_NAME = 0.65
-"""The least confidence that the user means a known activity. A wrong one would be taught a wrong movement."""
+"""The least confidence that the user means a known activity. Otherwise, the recogniser would learn a wrong movement."""
 FRAMES = ("{}", "it was {}", "I was {}", "is it {}", "are you {}", "you are {}", "no it was {}")
 """Sentences in which the user names an activity."""
 
@@ -110,8 +110,8 @@ def _names_a_game(seen: Analysis) -> bool:
 def name_of(seen: Analysis, known: Iterable[str] = ()) -> str:
     """Return the activity that an utterance names; empty for none.
 
-    The name is one that the agent knows, if there is one of this meaning. Otherwise, it is the user's own: the words
-    from the verb in *-ing* on, or else the words after *it was*.
+    If the agent knows a name with this meaning, return that name. Otherwise, return the user's own words: from the verb
+    in *-ing* on, or else the words after *it was*.
 
     Args:
         seen: The analysis of the utterance.
@@ -169,7 +169,7 @@ NO_NAMES = tuple(
     )
     for frame in FRAMES[:4]
 )  # fmt: skip
-"""Names of activities that are none of the agent's own."""
+"""Sentences with activities that the agent does not know. In `names`, they are the examples of no class."""
 
 
 def load() -> None:

@@ -11,7 +11,7 @@ from ravestate.modules import idle, rawio, verbaliser
 
 
 class Settings(rs.Settings):
-    """How long the agent waits before a filler."""
+    """The delays of a filler, and of the answer after it."""
 
     unanswered_after: Annotated[float, Field(gt=0)] = 2.0
     """If the agent says nothing for this many seconds after the user's words, the answer counts as slow."""

@@ -42,7 +42,7 @@ def _silent(speaking: bool) -> bool:
     writes=(verbaliser.intent, filled, promised),
 )
 async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Say a filler while nothing else is said."""
+    """Say a filler if the user waits for an answer, and the agent has not said a filler lately."""
     if not ctx[waiting]:
         return rs.Resign("the user waits for no answer")
     last = ctx[filled]

@@ -31,7 +31,7 @@ less after the first few passages."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages from a document that the thread is about. They need no words of the question."""
+"""The maximum number of passages from a document that the thread is about. These need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON, COMMON_KIND = 20_000, 2_000
@@ -75,7 +75,7 @@ class Answer:
 
 
 class Answerer:
-    """An index with a reader. It opens the file at the first question, and again if another file replaces it.
+    """An index with a reader. The answerer opens the index at the first question, and again if its file is replaced.
 
     Thread-safe.
 
@@ -102,7 +102,7 @@ class Answerer:
         self._stems: Stems | None = None
 
     def load(self) -> None:
-        """Open the index, add the collection, and load the reader, if this has not happened yet. `answer` also does so.
+        """Open the index, add the collection, and load the reader, unless this has happened. `answer` does the same.
 
         Raises:
             PlatformError: The index cannot be opened, or the reader is not installed.

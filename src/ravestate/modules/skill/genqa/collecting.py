@@ -14,7 +14,7 @@ from .index import Index, IndexedFile
 from .reading import Unreadable, kind_of, read
 
 Reading = Callable[[Path, int], object]
-"""A callback for each document that is read: the file, and the number of its documents before this one."""
+"""A callback for each document. Its arguments are the file, and the number of earlier documents in the file."""
 
 Kind = Literal["added", "replaced", "unchanged", "removed", "unreadable"]
 
@@ -27,7 +27,7 @@ class Outcome:
     kind: Kind
     passages: int = 0
     why: str = ""
-    """Why the file is unreadable; empty if it is readable."""
+    """The reason why the file is unreadable; empty if it is readable."""
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Found:
     """The files under some paths, before they are read."""
 
     files: list[tuple[Path, str]] = field(default_factory=list[tuple[Path, str]])
-    """The files, each with the source that answers name."""
+    """The files, each with its source. An answer names this source."""
     roots: list[Path] = field(default_factory=list[Path])
     """The folders under these paths. The index may still have files that were deleted from these folders."""
     unreadable: list[Outcome] = field(default_factory=list[Outcome])

@@ -23,7 +23,7 @@ from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
 CLEAR = 0.9
-"""An answer of this confidence ends the search."""
+"""An answer of at least this confidence ends the search."""
 AGAIN = 5
 """The maximum number of words in an utterance that repeats a sum with another number: *and how about 300?*."""
 MOST = 8
@@ -33,7 +33,7 @@ MOST = 8
 def answer_in(
     answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float
 ) -> tuple[Answer, Turn | None]:
-    """Return the best supported answer to an utterance, and the turn to keep if there is one.
+    """Return the best supported answer to an utterance, and the turn to add to the thread, if any.
 
     Args:
         answerer: The documents.
@@ -115,7 +115,7 @@ def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answe
 
 @cache
 def _warn(error: str) -> None:
-    """Say once that a library is missing."""
+    """Log once that a library is missing."""
     _log.warning("sums, units and dates are not worked out (%s): pip install 'ravestate[genqa]'", error)
 
 

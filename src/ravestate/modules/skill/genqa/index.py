@@ -42,7 +42,7 @@ _RANK = "bm25(passages, 1.0, 1.0, 0.7)"
 
 @dataclass(frozen=True, slots=True)
 class IndexedFile:
-    """A file, as it was when it was read."""
+    """The state of a file at the time when it was read."""
 
     path: str
     size: int
@@ -65,7 +65,7 @@ class Found:
 
 
 class Index:
-    """Passages on disk. Any number of threads and processes may read while one writes.
+    """Passages on disk. Any number of threads and processes may read while one thread writes.
 
     Each file is added, replaced or removed as a whole, in one transaction. If Ctrl-C, ``kill -9`` or a full disk
     interrupts the transaction, the index stays as it was before.
@@ -173,7 +173,7 @@ class Index:
         return self.search_all([words], limit, without=without)
 
     def search_all(self, groups: Sequence[Sequence[str]], limit: int, *, without: Sequence[str] = ()) -> list[Found]:
-        """Return passages as `search` does, but only those that have a word of each group."""
+        """Return passages as `search` does, but only passages with a word of each group."""
         query = " AND ".join(f"({any_of})" for group in groups if (any_of := _any_of(group)))
         if not query:
             return []

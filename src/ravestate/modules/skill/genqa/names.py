@@ -33,7 +33,7 @@ class Settings(rs.Settings):
     sentences that were found, and an answer with any other name or number is dropped."""
     reader: Path | None = None
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
-    bundled one."""
+    bundled cross-encoder."""
 
     rates: Mapping[str, float] = Field(default_factory=dict[str, float])
     """Currency (``dollar``, ``euro``, ``sterling``...) → its value; only currencies with a value are converted."""

@@ -29,7 +29,7 @@ _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", 
 
 
 _ABOUT_DEEDS = (QuestionWord.REASON, QuestionWord.FORM)
-"""Kinds of questions that need more than a name."""
+"""Kinds of questions that ask nothing if their only words are a name: *how is Rome?*."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +203,7 @@ def _is_anybody(heard: Parse, word: Word) -> bool:
 
 
 def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
-    """Return the words that a passage needs, and those that it must not have."""
+    """Return the words that a passage must have, and the words that it must not have."""
     needs: list[tuple[str, ...]] = []
     avoids: list[str] = []
     tree, ranks = heard.tree, words_of("ranks")
@@ -239,7 +239,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
-    """Return whether a word is a superlative. The *most* in *most people* is not one."""
+    """Return whether a word is a superlative. The *most* in *most people* is no superlative."""
     before = tree.before(word)
     quantity = (
         word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")

@@ -61,7 +61,7 @@ class Quantity:
     """The unit as the text has it."""
 
     def beside(self, other: Quantity) -> tuple[float, float] | None:
-        """Return this value and the other one, both in this unit; None if they measure different things."""
+        """Return the values of both quantities in this unit; None if they measure different things."""
         if self.unit == other.unit:
             return self.value, other.value
         if not _alike(self.unit, other.unit):
@@ -151,7 +151,7 @@ def _times(spoken: str, told: Sequence[str]) -> str:
 
 
 def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
-    """Return the numbers of a text; those with a unit before those without.
+    """Return the numbers of a text; numbers with a unit come first.
 
     Args:
         text: The text.
@@ -175,7 +175,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
 
 def focused(question: str, answer: str) -> str:
-    """Return the parts of an answer, those with most words of the question first. Names do not count.
+    """Return the parts of an answer; parts with most words of the question come first. Names do not count.
 
     Example:
         >>> focused("How high is it?", "The bridge is 512 metres long and 63 metres high.")

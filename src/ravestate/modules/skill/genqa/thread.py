@@ -146,7 +146,7 @@ def things_of(seen: Parse) -> list[Thing]:
         if not own or any(other.tag in WH for other in own):
             continue
         if word.dep == "attr" and any(child.low in ("a", "an") for child in seen.tree.children(word, "det")):
-            continue  # the noun only says what something is
+            continue  # the noun only names a kind of thing: "Lima is a city"
         entity = next((e for e in seen.entities if e.start < word.end and word.start < e.end), None)
         label = entity.label if entity else ""
         text = entity.text.removesuffix("'s") if entity and label == "PERSON" else seen.tree.phrase(own)

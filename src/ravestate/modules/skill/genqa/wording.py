@@ -18,7 +18,7 @@ from .names import module as genqa
 TOLD = 3
 """The maximum number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""A passage in the prompt has a score at most this far below the best score."""
+"""A passage is in the prompt only if its score is at most this far below the best score."""
 FAMILIAR = 0.6
 """The minimum share of the model's words that must also be in the passages or in the question."""
 
@@ -41,8 +41,8 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
     """Return a rule that lets the language model word the answer. The rule resigns if the model adds something.
 
-    It is for a context with wildtalk. It outranks the rule `say`, which answers with the document's own sentence. If it
-    resigns or fails, `say` answers.
+    The rule is for a context with wildtalk. It outranks `say`, the rule that answers with the document's own sentence.
+    If the rule resigns or fails, `say` answers.
     """
     from ravestate.modules import wildtalk
     from ravestate.modules.skill.wildtalk.backend import Message

@@ -1,4 +1,4 @@
-"""Greetings and goodbyes: when users come and go, and when they say hello or goodbye."""
+"""Greet users who come or say hello, and say goodbye to users who leave or say goodbye."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rules: when to greet, and when to say goodbye."""
+"""The rules of hibye. The agent greets users, and says goodbye to them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ GENERAL = 0.15
 @module.rule(
     when=interloc.users.added | interloc.recognised,
     writes=(verbaliser.intent, greeted),
-    weight=1.1,  # outranks a simultaneous goodbye
+    weight=1.1,  # this rule outranks a simultaneous goodbye
 )
 async def greet_who_comes(ctx: rs.RuleContext) -> None:
     """Greet a user who comes, or whom a platform has recognised."""

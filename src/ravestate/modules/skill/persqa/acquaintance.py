@@ -87,7 +87,7 @@ class Acquaintance:
         return now
 
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
-        """Return the user under another name, because the agent misunderstood the first one.
+        """Return the user under another name, because the agent misunderstood the first name.
 
         If this conversation created the person, rename them. If the person comes from memory, restore their old facts;
         the facts of this conversation then go to a person with the new name.
@@ -120,7 +120,7 @@ class Acquaintance:
     def rebased(self, base: Acquaintance, after: Acquaintance) -> Acquaintance:
         """Return this state of the user with the changes from `base` to `after`.
 
-        Parts of this state that already differ from `base` stay: the user has spoken in the meantime."""
+        Parts of this state that already differ from `base` stay, because the user has spoken in the meantime."""
         facts = unless_changed(self.facts, base.facts, after.facts)
         if (self.who, self.talk.met) != (base.who, base.talk.met):  # by now, this is another user
             return replace(self, facts=facts)

@@ -39,7 +39,7 @@ def acts() -> Matcher:
 
 
 def likeness(value: str, kind: str) -> float:
-    """Return how much better a value fits `kind` than it fits any other kind: about -1 to 1; 0 if unsure."""
+    """Return the fit of a value to `kind`, minus its best fit to another kind: about -1 to 1; 0 if unsure."""
     ranked = nouns().ranked(value)
     fitting = [match.margin for match in ranked if match.name in FITTING[kind]]
     return max(fitting, default=-1.0 if ranked and ranked[0].name else 0.0)

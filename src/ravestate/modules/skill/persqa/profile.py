@@ -1,4 +1,4 @@
-"""The change of the facts when the user tells something. The functions here save nothing."""
+"""Change the known facts when the user tells something. The functions here save nothing."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
 
 
 def merged(remembered: Facts, told: Facts) -> Facts:
-    """Merge remembered facts with those of this conversation, which take precedence."""
+    """Merge remembered facts with facts of this conversation. The facts of this conversation take precedence."""
     found = dict(remembered)
     for topic, values in told.items():
         before = remembered.get(topic, ()) if TOPICS[topic].many and values else ()

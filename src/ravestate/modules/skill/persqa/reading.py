@@ -115,8 +115,10 @@ class Reader:
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
     def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
-        """Return whether a negation covers a phrase. In *I live in Ulm, not in Bonn* and *I don't live in Bonn, but in
-        Ulm*, it covers *Bonn*."""
+        """Return whether a negation covers a phrase.
+
+        It covers *Bonn* in *I live in Ulm, not in Bonn*, and in *I don't live in Bonn, but in Ulm*.
+        """
         text, turn = self.tree.text, _TURN.search(self.tree.text)
         if not _NOT.search(_OPENING_NO.sub("", text)):
             return False
@@ -126,7 +128,7 @@ class Reader:
         return (phrase.text in text[turn.end() :]) == bool(turn[1])
 
     def asks(self) -> Fact | None:
-        """Return the fact that the user asks for; it has values if the user wants them confirmed."""
+        """Return the fact that the user asks for. It has values if the user wants these values confirmed."""
         kinds = nlp.QuestionWord
         for said in self.seen.statements:
             if not said.question or said.conditional:
@@ -287,12 +289,12 @@ class Reader:
         return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
     def _has(self, said: nlp.Statement) -> bool:
-        """Return whether the user says what they have: *I have*, *I've got*."""
+        """Return whether the user says that they have something: *I have*, *I've got*."""
         got = said.verb == "get" and any(word.low == "got" for word in self.tree.words)
         return said.subject.person == "I" and (said.verb in ("have", "own") or got)
 
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
-        """Yield what *I am ...* tells: an age, an occupation, studies, or a name."""
+        """Yield the links of *I am ...*: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
         years = re.fullmatch(r"([\w -]+?)(?: years?(?: old)?| old)?", text.lower())
         if years and not object.preposition and (number := number_in(years[1])):  # not *for six years*

@@ -55,7 +55,7 @@ def asks_for_words(seen: nlp.Analysis) -> bool:
 
 
 def recollect(question: str, sentences: Sequence[str]) -> str:
-    """Return what answers a question: a sentence, or two that follow each other; empty if none clearly does.
+    """Return the words that answer a question: one sentence, or two adjacent sentences; empty if no answer is clear.
 
     Takes about 3 ms per sentence.
     """

@@ -17,7 +17,7 @@ MOST = 200
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name. Among several people, take the one with the most relations, then the oldest."""
+    """Return the person of this name. If there are several, return the person with most relations, then the oldest."""
     people = namesakes(graph, name)
     return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
 
@@ -45,13 +45,13 @@ def known(graph: ontology.Graph, person: ontology.Node) -> dict[str, tuple[str, 
 def note(graph: ontology.Graph, person: ontology.Node, facts: Facts, once: Facts) -> None:
     """Save the facts about a person. Saving them twice is harmless.
 
-    If a topic may have several values, keep those that other rules have saved in the meantime.
+    If a topic may have several values, keep the values that other rules have saved in the meantime.
 
     Args:
         graph: The memory.
         person: The person; their node is saved as well.
         facts: Values by topic.
-        once: Values that earlier calls may have saved. This call removes those that are missing in `facts`.
+        once: Values that earlier calls may have saved. This call removes such values if `facts` lacks them.
     """
     graph.save(person)
     related = _related(graph, person)

@@ -1,4 +1,4 @@
-"""The rules: when the agent asks, how it learns, and when it replies."""
+"""The rules of persqa. The agent asks the user about themselves, learns from their words, and replies."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ from .understanding import understand
 from .wording import asking, memorable, stating
 
 HELLO = 3.0
-"""Seconds after the first hello until the agent asks for the name, unless the user goes on talking."""
+"""Seconds from the user's first hello to the agent's question for their name. If the user goes on
+talking, the agent does not ask."""
 
 T = TypeVar("T")
 
@@ -33,10 +34,10 @@ T = TypeVar("T")
 @module.rule(
     when=idle.bored,
     reads=(who, facts, told),
-    writes=(verbaliser.intent, rawio.output, talk),  # takes the output, so that no other rule speaks at the same time
+    writes=(verbaliser.intent, rawio.output, talk),  # the output is here so that no other rule speaks at the same time
     weight=1.2,
     cooldown=20.0,
-    detached=True,  # starts a causal group of its own: in the group of `bored`, no rule could put the intent into words
+    detached=True,  # a new causal group, because no rule in the group of `bored` could put the intent into words
 )
 async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
     """Ask the user about themselves, or show that the agent remembers them."""
@@ -86,7 +87,7 @@ def learn(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Ask for the name after the first hello, once."""
+    """Ask for the user's name once, after their first hello."""
     settings: Settings = ctx.settings
     now = ctx[talk]
     if ctx[who] is not None or NAME not in settings.topics or NAME in now.closed or now.tries.get(NAME):
@@ -164,7 +165,7 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
 @module.rule(
     when=reply,
     writes=verbaliser.intent,
-    weight=1.6,  # outranks `agentqa` for "what have you learnt about me?"
+    weight=1.6,  # this rule outranks `agentqa` for "what have you learnt about me?"
 )
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
@@ -182,7 +183,7 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.heard.changed.max_age(None).detached(), reads=rawio.output, writes=talk, background=True)
 async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Withdraw a spoken question that the user has interrupted. Their words do not answer it."""
+    """Withdraw a spoken question that the user has interrupted. The user's words do not answer this question."""
     said, heard, now = ctx[rawio.output].strip(), ctx.payload(rawio.heard.changed).strip(), ctx[talk]
     if now.question is None or not now.question.fresh:
         return rs.Resign("no question waits for its first answer")
@@ -234,7 +235,7 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def item_of(user: Acquaintance) -> str | None:
-    """Return the item of a user in `interloc.users`: their name, with their node if it is certain who they are."""
+    """Return the item for a user in `interloc.users`: their name, and also their node if their identity is certain."""
     return user.name if user.who is None or user.talk.doubt else interloc.Recognised(user.who[NAME], user.who)
 
 

@@ -15,7 +15,7 @@ CONFIRM = "confirm"
 """The topic of the question that tests whether the user is the person of the same name in memory."""
 
 ENOUGH = 1_000
-"""The count of tries that is recorded for a topic so that the agent never asks about it again."""
+"""A number of tries that is so great that the agent never asks about the topic again."""
 
 TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
@@ -119,7 +119,7 @@ class Talk:
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self) -> Talk:
-        """Note that the agent has spoken. The first time, this is the question itself; after that, something else."""
+        """Note that the agent has spoken: first the question itself, and in later calls something else."""
         question = self.question
         if question is None or (question.heard and question.turns):
             return self
@@ -134,7 +134,7 @@ class Talk:
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:
-        """Note the topics that the user told about. They may then correct `latest`, the values of the topic `last`."""
+        """Note the topics that the user told about. The user may correct `latest`, the values of the topic `last`."""
         answered = self.question is not None and self.question.topic in topics
         told = replace(self, question=None if answered else self.question, told=self.told | set(topics))
         return told.mentioning(last, latest)

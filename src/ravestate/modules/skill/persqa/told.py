@@ -77,7 +77,7 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return two lists: the free statements of an utterance, and all its statements. *He* is the person named last."""
+    """Return the free statements of an utterance, and all its statements. In them, *he* means the person named last."""
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")

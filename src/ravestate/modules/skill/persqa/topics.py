@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 from ravestate.yaml_text import load_yaml
 
 Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "people", "thing", "number"]
-"""The kind of a value. It decides how the value is read and written."""
+"""The kind of a value. Each kind has its own rules for reading and writing a value."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,7 +75,7 @@ class Meaning:
 def understand(
     seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: Iterable[Told] = ()
 ) -> Meaning:
-    """Return the meaning of an utterance at `now`; a question waits `within` seconds for its answer."""
+    """Return the meaning of an utterance at `now`. A question of the agent waits `within` seconds for its answer."""
     hearing = _Hearing(seen, talk, known, now, within, tuple(told))
     touched = touched_by([word.lemma for word in seen.tree.words])
     relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
@@ -171,7 +171,7 @@ class _Hearing:
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
 
     def is_known(self, topic: str) -> bool:
-        """Return whether a question about a topic can be answered from the facts, if only by the nearest fact."""
+        """Return whether a question about a topic can be answered from the facts, or at least from the nearest fact."""
         if topic in ("", EVERYTHING, *self.known):
             return True
         near = {*TOPICS[topic].besides, *(["origin"] if topic == "home" else [])}
@@ -308,7 +308,7 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether to note a denial. It must deny a known fact, or all values of a topic: *I have no hobby*."""
+        """Return whether to note a denial: it must deny a known fact, or all values of a topic (*I have no hobby*)."""
         if fact.values or fact.topic == NAME:
             return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))

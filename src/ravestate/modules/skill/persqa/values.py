@@ -1,4 +1,4 @@
-"""The values of topics: which words can be a value, and how memory spells it."""
+"""The values of topics: the words that can be a value, and memory's spelling of a value."""
 
 from __future__ import annotations
 

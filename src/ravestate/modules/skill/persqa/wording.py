@@ -143,7 +143,7 @@ def learned(topic: str, values: tuple[str, ...], known: Facts) -> Intent:
 
 
 def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> Intent:
-    """Return a reply that states the values of a topic; its phrases have them, as a clause, in ``{fact}``."""
+    """Return a reply that states the values of a topic. In its phrases, ``{fact}`` is a clause with these values."""
     return say(intent, known, fact=clause(topic, values))
 
 

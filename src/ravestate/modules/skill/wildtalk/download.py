@@ -79,7 +79,7 @@ def _fetch(model: CatalogueModel, part: BinaryIO) -> None:
         raise PlatformError("fetching a model needs huggingface_hub: pip install 'ravestate[wildtalk]'") from error
     hub = os.environ.get("HF_ENDPOINT", "").strip().rstrip("/") or "https://huggingface.co"
     public = hub.rpartition("@")[2]  # without a password
-    # A token goes only to an encrypted hub, or to one on this machine.
+    # A token goes only to an encrypted hub, or to a hub on this machine.
     token = get_token() if hub.startswith(("https://", "http://localhost", "http://127.")) else None
     if part.tell() > model.size:
         part.truncate(0)

@@ -12,7 +12,7 @@ from .gguf_header import read_header
 from .model_store import folder
 
 LEAST = 450_000_000
-"""The smallest number of parameters: half a billion, as rounded in models' names."""
+"""The minimum number of parameters. The names of such models round it up to half a billion."""
 
 FLUENT = 4_500_000_000
 """The maximum number of parameters of a model that answers fluently without a graphics card."""

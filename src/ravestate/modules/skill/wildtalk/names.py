@@ -29,7 +29,7 @@ class Settings(rs.Settings):
 
     backend: Literal["auto", "openai", "gguf", "transformers", "listen"] = "auto"
     """``openai``: a server that speaks OpenAI's protocol; ``gguf``: a model file on this machine; ``transformers``: a model in
-    the format of Hugging Face; ``listen``: no model. ``auto`` takes the best that this machine has."""
+    the format of Hugging Face; ``listen``: no model. ``auto`` chooses by what this machine has."""
     search: bool = True
     """Whether to look for servers on this machine's usual ports, and for models in the user's folders."""
     model: str | None = None

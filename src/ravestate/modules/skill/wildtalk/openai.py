@@ -139,7 +139,8 @@ class OpenAIBackend:
             raise PlatformError(
                 "wildtalk: api_key has characters that no key has: check the environment variable it is read from"
             )
-        anyio.run(anyio.sleep, 0)  # imports here what the client's first request would import on the event loop
+        # Import here what the first request would otherwise import on the event loop.
+        anyio.run(anyio.sleep, 0)
         return make_client(self._base_url, self._key, httpx2.Timeout(self._read_timeout, connect=self._connect_timeout))
 
     async def _pieces(self, answer: httpx2.Response) -> AsyncGenerator[str, None]:
@@ -165,7 +166,7 @@ class OpenAIBackend:
             )
 
     def _parsed(self, payload: bytes) -> tuple[str, bool]:
-        """Return the text in a document, and whether it is the last one."""
+        """Return the text in a document, and whether this document is the last."""
         try:
             document = _Answer.model_validate_json(payload)
         except ValidationError:

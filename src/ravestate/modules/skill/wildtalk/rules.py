@@ -1,4 +1,4 @@
-"""The rules: when the model talks, and with which prompt."""
+"""The rules of wildtalk. They choose the model, keep the history of the conversation, and make small talk."""
 
 from __future__ import annotations
 
@@ -240,7 +240,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed & listening.holds(is_open),
     reads=(interloc.users, overheard, history),
     writes=(rawio.output, listening),
-    weight=8.0,  # outranks modules that would mistake a move in a game for a question
+    weight=8.0,  # this rule outranks modules that would mistake a move in a game for a question
 )
 async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     """Continue a game, or react to the user's answer to a question of the listening skill."""
@@ -256,7 +256,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed.where(is_known) | nlp.analysis.changed.where(needs_comfort),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
-    weight=4.0,  # outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
+    weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
     """Console a sad user, or answer well-known words, before any rule answers a fact in the same words."""
@@ -294,7 +294,7 @@ def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
 
 
 def make_backend(settings: Settings) -> Backend:
-    """Return the backend that the settings describe. They must be complete, like those from `choose`.
+    """Return the backend that the settings describe. The settings must be complete, as `choose` returns them.
 
     Raises:
         PlatformError: The server's address is malformed.

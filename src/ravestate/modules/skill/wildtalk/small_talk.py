@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from dataclasses import replace
 from functools import cache
 
@@ -13,6 +14,8 @@ from ravestate.modules.meta.nlp.pipeline import pipeline
 from .facts import facts_matcher
 from .gate import Gate, persona_matcher
 from .listening import Heard, Listener, Overheard, State
+from .listening.asking import SHORT
+from .listening.grave import is_crisis
 from .listening.state import Pending
 from .names import clock, history, listening, notes, overheard
 
@@ -34,9 +37,17 @@ _TONES = {
 """Advice for the model, by the tone of the talk."""
 
 
-@cache
+_making = threading.Lock()
+
+
 def listener() -> Listener:
-    """Return the listening skill, which all contexts share."""
+    """Return the listening skill, which all contexts share. The first call reads the phrases (0.7 s)."""
+    with _making:  # two threads would make two, and only one of them learns
+        return _listener()
+
+
+@cache
+def _listener() -> Listener:
     return Listener()
 
 
@@ -59,14 +70,19 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 
 def needs_comfort(seen: nlp.Analysis | None) -> bool:
     """Return whether the user is in sorrow: both the feeling and the likely move say so."""
-    if seen is None or seen.question is not None or seen.move is None:
-        return False
+    if seen is None or seen.question is not None or seen.move is None or is_crisis(seen.normal.text):
+        return False  # a module with explicit answers to distress comes first
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
 
 
 def is_known(seen: nlp.Analysis | None) -> bool:
-    """Return whether the listening skill has a reply to almost the same words. Other skills answer hello and goodbye."""
+    """Return whether the listening skill has a reply to almost the same words.
+
+    Other skills answer hello and goodbye. A short *yes* or *no* belongs to the module that asked.
+    """
     if seen is None or seen.question is not None or {"greeting", "farewell"} & seen.acts.keys():
+        return False
+    if seen.yesno and len(seen.text.split()) <= SHORT:
         return False
     return listener().knows(seen)
 
@@ -80,12 +96,14 @@ async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
 
 
 def is_open(state: State) -> bool:
-    """Return whether the skill waits for the user's turn in a game, or for an answer."""
-    return state.game is not None or state.pending is not None
+    """Return whether the skill waits for the user's turn in a game, or for an answer, or for a follow-up."""
+    if state.game is not None or state.pending is not None:
+        return True
+    return bool(state.moment or state.thread) and listener().expects(state)  # a new talk must not wait for the phrases
 
 
 async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
-    """Return the skill's reply to a turn in a game or to a short answer; an empty string for other utterances."""
+    """Return the skill's reply to a turn in a game or to an answer; an empty string for other utterances."""
     skill = await asyncio.to_thread(listener)
     return await listen(ctx, heard) if skill.continues(heard, up_to_date(ctx, heard.text)) else ""
 
@@ -112,7 +130,7 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
 
 
 def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
-    """Return the tone and person of each of the last utterances, newest last, whichever module answers."""
+    """Return the tone and person of each of the last utterances, newest last. Any module may have answered them."""
     return (*ctx[overheard][1 - OVERHEARD :], listener().overhear(seen, ctx[listening].being))
 
 

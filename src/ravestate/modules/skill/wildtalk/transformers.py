@@ -220,7 +220,7 @@ def transcript(messages: Sequence[Message]) -> str:
 
 
 def cut(text: str, stops: Sequence[str], *, last: bool) -> tuple[str, bool]:
-    """Return the part of a growing text to show, and whether one of `stops` has ended it.
+    """Return the part of a growing text that may be shown, and whether one of `stops` has ended the text.
 
     Unless the text is complete (`last`), hold back an end that may be the beginning of one of `stops`.
 

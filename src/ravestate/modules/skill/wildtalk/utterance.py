@@ -118,7 +118,7 @@ class Utterance:
         return sure
 
     def _past_thoughts(self, text: str) -> int:
-        """Return where the answer begins, after the thoughts of a reasoning model."""
+        """Return the position where the answer begins, after the thoughts of a reasoning model."""
         start = len(text) - len(text.lstrip())
         if not text.startswith("<think>", start):
             return start

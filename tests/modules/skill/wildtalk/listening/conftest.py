@@ -12,6 +12,8 @@ from ravestate.language.moves import bundled_moves
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
+from ravestate.modules.skill.wildtalk.listening.bank import Bank
+from ravestate.modules.skill.wildtalk.listening.material import Material, material
 
 
 class Talk:
@@ -32,6 +34,14 @@ class Talk:
 def seen(text: str) -> Analysis:
     """Return the analysis of a text."""
     return analyse(text, pipeline(""), ("Ravestate",))
+
+
+def listener_with(bank: Bank) -> Listener:
+    """Return a listener with the built-in phrases and another bank."""
+    phrases = object.__new__(Material)
+    phrases.__dict__.update(material().__dict__)
+    phrases.bank = bank
+    return Listener(phrases)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -18,7 +18,7 @@ ROLES = {"who", "they", "them", "their", "are", "were", "have", "do", "user"}
 
 
 def entries() -> list[Moment]:
-    return material().bank.moments
+    return list(material().bank.named.values())
 
 
 def test_every_entry_has_a_reply_that_needs_no_role() -> None:
@@ -33,7 +33,7 @@ def test_replies_use_known_roles_and_agree_with_them() -> None:
 
 
 def test_no_utterance_stands_twice() -> None:
-    said = Counter(plain(text) for one in entries() for text in one.examples)
+    said = Counter(plain(text) for one in material().bank.moments for text in one.examples)
     assert not [text for text, times in said.items() if times > 1]
 
 
@@ -52,10 +52,36 @@ def test_until_the_model_is_loaded_only_equal_words_are_found() -> None:
     assert bank.similar(["the kettle is singing"], "the kettle is singing") == []
 
 
-@pytest.mark.parametrize("row", ["happy\ta\tb", "-\tonly two columns", "-\ta\t"])
+@pytest.mark.parametrize(
+    "row",
+    [
+        "happy\ta\tb",
+        "-\tonly two columns",
+        "-\ta\t",
+        "-\t*\tb",
+        ">\ta\tb",
+        ">>>>\ta\tb",
+        "> >\ta\tb",
+    ],
+)
 def test_a_broken_row_is_refused_with_its_place(row: str) -> None:
     with pytest.raises(DeclarationError, match=r"own\.tsv:7"):
         Bank([("own.tsv:7", row)])
+
+
+@pytest.mark.parametrize(("file", "row"), [("own.tsv", ">>\ta\tb"), ("other.tsv", ">\ta\tb")])
+def test_a_follow_up_without_its_entry_is_refused_with_its_place(file: str, row: str) -> None:
+    with pytest.raises(DeclarationError, match=rf"{file}:7"):
+        Bank([("own.tsv:6", "-\ta\tb"), (f"{file}:7", row)])
+
+
+def test_follow_ups_stand_below_the_nearest_line_with_one_mark_less() -> None:
+    rows = ["sad\ta\tA.", ">\tb | c\tB.", ">>\td\tD.", ">\t*\tE.", "-\tf\tF."]
+    first, second = Bank([(f"own.tsv:{number}", row) for number, row in enumerate(rows)]).moments
+    assert [one.examples for one in first.follows] == [("b", "c"), ("*",)]
+    assert [one.examples for one in first.follows[0].follows] == [("d",)]
+    assert {one.tone for one in (*first.follows, *first.follows[0].follows)} == {"sad"}
+    assert (second.examples, second.follows) == (("f",), ())
 
 
 def test_the_tones_are_those_of_a_talk() -> None:

@@ -1,15 +1,16 @@
 """The vision worker: the process that takes pictures from a camera, and finds faces and poses in pictures.
 
-It runs in an environment of its own, and imports nothing from Ravestate. A request is a record and the bytes of a picture:
+It runs in its own environment, and imports nothing from Ravestate. A request is a record and the bytes of a picture:
 
     {"do": "open", "stream": "a", "source": "/dev/video0" | "walk.mp4" | "photos/", "loop": false}
     {"do": "look", "stream": "a", "want": ["faces", "pose"], "at": 1.5, "known": [{"track": 3, "box": [x, y, w, h], "fresh": true}]}
     {"do": "close", "stream": "a"}
 
-An answer has ``fault`` if a camera or a picture fails; then nothing was seen. Without a new picture it has no ``picture``.
-A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``. With bytes, it
-looks at them: an encoded picture (JPEG, PNG), or raw pixels if the record has ``"shape": [height, width]``. It may then have
-``"encoding"`` (``rgb8``) and ``"step"``, the bytes of a row.
+An answer has ``fault`` if a camera or a picture has a fault. An answer without a new picture has no ``picture``. A look
+without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``.
+
+The bytes of a look are an encoded picture (JPEG, PNG), or raw pixels. For raw pixels, the record has
+``"shape": [height, width]``, and may have ``"encoding"`` (``rgb8``) and ``"step"``, the bytes of a row.
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from .cameras import open_camera
 
 
 def load(config: dict[str, Any]):
-    """Load the models that are always wanted; return the function that handles a request.
+    """Load the shared models, and return the function that handles a request.
 
     Args:
-        config: ``want``: what will be asked for, ``faces`` or ``pose`` or both.
+        config: ``want`` names the things that requests will ask for: ``faces``, ``pose`` or both.
     """
     with contextlib.suppress(OSError):
         os.nice(10)  # the conversation comes first
@@ -45,7 +46,7 @@ class Worker:
         self._streams: dict[str, Stream] = {}
 
     def load(self, what: str) -> None:
-        """Load the models that find faces; those of poses belong to a stream."""
+        """Load the models that find faces. Each stream loads its own models that find poses."""
         if what == "faces" and self._faces is None:
             from .faces import Faces
 
@@ -83,14 +84,14 @@ class Worker:
 
 
 class Stream:
-    """The pictures of one agent: its camera, if it has one here, and what is known from its earlier pictures."""
+    """The pictures of one agent: its camera, if the worker has one, and the body from earlier pictures."""
 
     def __init__(self) -> None:
         self._camera: Any = None
         self._pose: Any = None
 
     def open(self, source: str, *, loop: bool) -> dict[str, Any]:
-        """Open a camera; the answer has the fault if it cannot be opened."""
+        """Open a camera. If it cannot be opened, the answer has the fault."""
         self.close()
         try:
             self._camera = open_camera(source, loop=loop)
@@ -99,7 +100,7 @@ class Stream:
         return {"live": self._camera.live}
 
     def picture(self, at: float) -> tuple[picture.Picture | None, dict[str, Any]]:
-        """Return the camera's newest picture at a time, if there is a new one, and the answer so far."""
+        """Return the camera's newest picture at a time, or None, and the beginning of the answer."""
         if self._camera is None:
             return None, {"closed": True}
         before = time.monotonic()
@@ -120,7 +121,7 @@ class Stream:
         return self._pose.find
 
     def close(self) -> None:
-        """Let go of the camera."""
+        """Release the camera."""
         if self._camera is not None:
             self._camera.close()
             self._camera = None

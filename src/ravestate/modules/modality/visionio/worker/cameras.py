@@ -11,10 +11,10 @@ from . import picture
 from .picture import Picture
 
 EACH = 1.0
-"""The seconds for which a folder's pictures are shown."""
+"""The seconds for which each picture of a folder is shown."""
 SUFFIXES = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".tif", ".tiff"}
 BEHIND = 1.0
-"""The seconds for which one look may skip pictures of a video."""
+"""The maximum number of seconds that one look may spend on skipping pictures of a video."""
 WHOLE = 0.9
 """The share of a video's pictures below which it counts as damaged."""
 SILENT = 5.0
@@ -29,7 +29,7 @@ def open_camera(source: str, *, loop: bool = False):
         loop: Whether a file or a folder begins again at its end.
 
     Raises:
-        OSError, ValueError: It cannot be opened; the message says why.
+        OSError, ValueError: The camera cannot be opened; the message says why.
     """
     if source.isdecimal():
         source = f"/dev/video{source}"
@@ -49,7 +49,7 @@ def open_camera(source: str, *, loop: bool = False):
 
 
 class Device:
-    """A camera of this machine. A thread takes its pictures, and keeps the newest."""
+    """A camera of this machine. A thread takes its pictures, and keeps the newest picture."""
 
     live = True
     ended = False
@@ -71,7 +71,7 @@ class Device:
         threading.Thread(target=self._take, daemon=True).start()
 
     def picture(self, _at: float) -> Picture | None:
-        """Return the newest picture that has not been given; wait for it for a moment.
+        """Return the newest picture. If it was already returned, wait for the next picture.
 
         Raises:
             OSError: The camera gives no more pictures.
@@ -84,7 +84,7 @@ class Device:
             return Picture(pixels[:, :, ::-1], self._time)
 
     def close(self) -> None:
-        """Let go of the device."""
+        """Release the device."""
         self._closed = True
 
     def _take(self) -> None:
@@ -117,7 +117,7 @@ class Video:
         self._open()
 
     def picture(self, at: float) -> Picture | None:
-        """Return the newest picture up to a time (seconds since the beginning); None if it has been given.
+        """Return the newest picture up to a time (seconds since the beginning); None if it was already returned.
 
         Raises:
             ValueError: The file is damaged.
@@ -125,7 +125,7 @@ class Video:
         newest, begun = None, time.monotonic()
         while self._waiting is not None and self._waiting[0] <= at:
             if newest is not None and time.monotonic() - begun > BEHIND:
-                break  # so large a video is shown late, rather than never
+                break  # show a large video late rather than never
             self.skipped += newest is not None
             newest = self._waiting
             self._forward()
@@ -191,10 +191,10 @@ class Folder:
         self._given = -1
 
     def picture(self, at: float) -> Picture | None:
-        """Return the picture of a time (seconds since the beginning); None if it has been given.
+        """Return the picture at a time (seconds since the beginning); None if it was already returned.
 
         Raises:
-            ValueError: The file is no picture.
+            ValueError: The file is not a picture.
         """
         place = int(at / EACH)
         self.ended = not self._loop and place >= len(self._files)
@@ -212,4 +212,4 @@ class Folder:
         return shown
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing, because nothing is open."""

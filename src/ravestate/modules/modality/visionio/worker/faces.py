@@ -1,4 +1,4 @@
-"""Faces in a picture: where they are, how well they can be seen, and their vectors."""
+"""Faces in a picture: their boxes, their visibility, and their vectors."""
 
 from __future__ import annotations
 
@@ -16,28 +16,29 @@ from .picture import Picture
 SURE = 0.5
 """The confidence above which MediaPipe's finding counts as a face."""
 SAME = 0.3
-"""The overlap (intersection over union) above which two boxes are the same face."""
+"""The overlap (intersection over union) above which two boxes belong to the same face."""
 MOST = 3
-"""The greatest number of vectors that a look computes, unless the request says otherwise."""
+"""The maximum number of vectors that a look computes, unless the request says otherwise."""
 WITHIN = 0.6
-"""The share of a box that lies in another box above which it is a part of the same face."""
+"""The minimum share of a box inside another box for the two to belong to the same face."""
 LAP = 0.2
-"""The share of a tile that it has in common with the next one."""
+"""The share of a tile that overlaps with the next tile."""
 HOG = 960
-"""The longer side (pixels) of the picture for dlib's detector, which finds faces of 80 pixels; twice that if it is thorough."""
+"""The longer side (pixels) of the picture for dlib's detector, which finds faces of 80 pixels. A thorough look doubles
+this side."""
 FACE = 110
 """The width (pixels) to which a face is scaled when its box is refined."""
 
 
 class Faces:
-    """The models: MediaPipe's detector where it is there, dlib's detector, landmarks and vectors.
+    """The models: MediaPipe's detector if it is installed, dlib's detector, landmarks and vectors.
 
     Raises:
         ImportError: A package is missing.
     """
 
     def __init__(self) -> None:
-        spec = find_spec("face_recognition_models")  # importing it needs a module that new setuptools lack
+        spec = find_spec("face_recognition_models")  # its import needs a module that new setuptools lack
         if spec is None or not spec.submodule_search_locations:
             raise ImportError("No module named 'face_recognition_models'")
         models = Path(spec.submodule_search_locations[0]) / "models"
@@ -58,8 +59,8 @@ class Faces:
 
         Args:
             picture: The picture.
-            header: The request. ``known``: the tracks with their last boxes; a track that is ``fresh`` needs no vector.
-                ``thorough``: 1 or 2 to look for small faces as well. ``most``: the greatest number of vectors.
+            header: The request. ``known`` has the tracks with their last boxes; a ``fresh`` track needs no vector. With
+                ``thorough`` 1 or 2, also look for small faces. ``most`` is the maximum number of vectors.
         """
         boxes = self._boxes(picture, thorough=int(header.get("thorough", 0)))
         boxes.sort(key=lambda box: -box[2] * box[3])
@@ -100,12 +101,12 @@ class Faces:
                     box = [left + part.xmin * across, top + part.ymin * down, part.width * across, part.height * down]
                     if any(is_part(box, other) for other in boxes):
                         continue
-                    if count == 1 or self._refined(pixels, box)[0]:  # in tiles, MediaPipe takes other things for faces
+                    if count == 1 or self._refined(pixels, box)[0]:  # in tiles, MediaPipe finds false faces
                         boxes.append(box)
         return boxes
 
     def _encode(self, pixels: np.ndarray, box: list[float]) -> tuple[float, list[float]]:
-        """Return how well a face can be seen (0 to 1), and its vector."""
+        """Return the visibility of a face (0 to 1), and its vector."""
         frontal, rectangle = self._refined(pixels, box)
         shape = self._landmarks(pixels, rectangle)
         chip = dlib.get_face_chip(pixels, shape, 150, 0.25)
@@ -135,10 +136,10 @@ class Faces:
 
 
 def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
-    """Return how well a face can be seen (0 to 1): its size, direction, sharpness and light.
+    """Return the visibility of a face (0 to 1), from its size, direction, sharpness and light.
 
     Args:
-        landmarks: dlib's five: the corners of one eye, of the other eye, and the nose; (5, 2), pixels.
+        landmarks: dlib's five landmarks: the corners of one eye, of the other eye, and the nose; (5, 2), pixels.
         chip: The face, upright, 150 x 150 pixels, RGB.
     """
     one, other, nose = landmarks[:2].mean(0), landmarks[2:4].mean(0), landmarks[4]
@@ -150,7 +151,7 @@ def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
     grey = cv2.cvtColor(chip, cv2.COLOR_RGB2GRAY)
     sharp = float(cv2.Laplacian(grey, cv2.CV_64F).var())
     parts = (
-        (distance - 8) / 22,  # 30 pixels between the eyes are as good as any
+        (distance - 8) / 22,  # more than 30 pixels between the eyes are no better
         (0.45 - aside) / 0.3,  # 0: the nose is in the middle; 0.5: a profile
         sharp / 40,
         (float(grey.std()) - 8) / 20,
@@ -159,7 +160,10 @@ def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
 
 
 def assign(boxes: list[list[float]], known: list[list[float]]) -> list[int | None]:
-    """Return for each box the number of the known box that overlaps it most, each at most once; None for a new face."""
+    """Return for each box the number of the known box with the greatest overlap; None for a new face.
+
+    Each known box is taken at most once.
+    """
     pairs = [(overlap(box, other), i, j) for i, box in enumerate(boxes) for j, other in enumerate(known)]
     taken: dict[int, int] = {}
     for share, i, j in sorted(pairs, key=lambda pair: -pair[0]):
@@ -169,7 +173,7 @@ def assign(boxes: list[list[float]], known: list[list[float]]) -> list[int | Non
 
 
 def is_part(one: list[float], other: list[float]) -> bool:
-    """Return whether two boxes are of one face, of which one box may have only a part."""
+    """Return whether two boxes belong to one face. One box may show only a part of the face."""
     shared = _shared(one, other)
     return overlap(one, other) >= SAME or shared >= WITHIN * min(one[2] * one[3], other[2] * other[3])
 

@@ -1,4 +1,4 @@
-"""A picture in the worker: pixels of a size that is quick to search, and the size that it had."""
+"""A picture in the worker: pixels of a size that is quick to search, and the size of the original."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 cv2.setNumThreads(1)
 
 LARGEST = 1280
-"""The longer side (pixels) above which a picture is scaled down. Faces of 40 pixels in it can be recognised."""
+"""The longer side (pixels) above which a picture is scaled down. Faces of 40 pixels are still recognisable."""
 DARK = 6.0
 """The mean brightness (0 to 255) below which a picture counts as black."""
 
@@ -24,12 +24,12 @@ class Picture:
         pixels: RGB, (height, width, 3), uint8, scaled down.
         scale: The factor from these pixels to those of the original.
         width, height: The size of the original (pixels).
-        dark: Whether it is black.
-        time: The time at which it was taken (seconds), which never goes back for one camera.
+        dark: Whether the picture is black.
+        time: The time at which it was taken (seconds). For one camera, it never goes back.
     """
 
     def __init__(self, pixels: np.ndarray, time: float = 0.0) -> None:
-        """Scale the pixels (RGB) down where they are too many."""
+        """Scale the pixels (RGB) down if the picture is too large."""
         self.height, self.width = pixels.shape[:2]
         self.scale = max(1.0, max(self.width, self.height) / LARGEST)
         if self.scale > 1.0:
@@ -60,7 +60,7 @@ def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb
         step: The bytes of a row of raw pixels; 0 if no bytes follow its last pixel.
 
     Raises:
-        ValueError: The bytes are no picture.
+        ValueError: The bytes are not a picture.
     """
     if shape is not None:
         height, width = shape

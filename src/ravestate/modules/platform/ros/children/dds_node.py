@@ -1,6 +1,6 @@
-"""The bridge process of ROS 2 without ROS 2: DDS itself (cyclonedds). It carries topics alone.
+"""The bridge process for the network of ROS 2 without an installed ROS 2, by DDS (cyclonedds). It carries only topics.
 
-DDS-RPC tells the answer to a call by metadata of a sample, which the library does not give; so there are no services.
+There are no services: DDS-RPC finds the answer to a call by a sample's metadata, which the library does not offer.
 """
 
 # pyright: basic, reportMissingImports=false
@@ -15,7 +15,7 @@ BASE, NAME, ARRAY = 1, 2, 3  # kinds of fields
 
 
 class DdsNode:
-    """A DDS participant that does what the agent says; see `pipe.serve`."""
+    """A DDS participant that carries out the agent's orders; see `pipe.serve`."""
 
     def __init__(self, pipe: Pipe, config):
         os.environ.update({key: value for key, value in config["environment"].items() if value})
@@ -70,7 +70,7 @@ class DdsNode:
                         outlet.put(sample.wire)
             except (BrokenPipeError, ConnectionError):
                 os._exit(0)  # the agent is gone
-            except Exception as error:  # the thread goes on with the next message
+            except Exception as error:  # continue with the next message
                 self._pipe.note(0, reason(error), "error")
 
     def message(self, channel, body):
@@ -91,7 +91,7 @@ class DdsNode:
         """Do nothing: no goal is sent."""
 
     def unbind(self, channel):
-        """Remove what `bind` has made."""
+        """Remove the reader or writer that `bind` has made."""
         self._channels.pop(channel, None)
 
     def ask(self):
@@ -114,11 +114,11 @@ class DdsNode:
         return {"topics": list(found.values()), "services": [], "actions": []}
 
     def close(self):
-        """End nothing more: the process ends."""
+        """Do nothing, because the process ends next."""
 
 
 def raw_type(name, fields):
-    """Return a class for samples whose bytes are on the wire already.
+    """Return a class for samples that are already in their wire form.
 
     Args:
         name: The type, such as ``std_msgs/msg/String``.

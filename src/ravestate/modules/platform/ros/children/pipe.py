@@ -1,7 +1,7 @@
 """The child's end of the pipe between an agent and its bridge process. The programs beside this file use it.
 
 A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. A body of at least `LARGE` bytes
-travels in shared memory: it is copied into it once, and the pipe carries the file descriptor.
+travels in shared memory: the sender copies it there once, and the pipe carries the file descriptor.
 """
 
 # pyright: basic
@@ -22,14 +22,15 @@ HEAD = struct.Struct("<BBxxIII")
 SHARED = 1  # a flag: the body is in shared memory
 PASSED = 2  # a flag: a socket comes with the frame
 LARGE = 1 << 16
-SEEKING = 0.7  # the part of a call's time-out in which its server must appear; then the agent still hears of it
+SEEKING = 0.7  # the part of a call's time-out in which the server must appear, so that the agent gets a fault in time
 
 OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
 SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 """The kinds of frames.
 
 From the agent: OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE, HANGUP. From the bridge: READY, FEEDBACK, TOLD, NOTE,
-SUBSCRIBER, PUBLISHER. Both: MESSAGE, CALL, ANSWER, FAULT. A socket comes with SUBSCRIBER and PUBLISHER: the connection with another node.
+SUBSCRIBER, PUBLISHER. Both: MESSAGE, CALL, ANSWER, FAULT. A socket, the connection with
+another node, comes with SUBSCRIBER and PUBLISHER.
 """
 
 
@@ -43,7 +44,7 @@ class Pipe:
         self._fds = []
 
     def send(self, kind, channel=0, number=0, body=b""):
-        """Send a frame. It blocks while the agent does not read."""
+        """Send a frame. This call blocks while the agent does not read."""
         size = len(body)
         with self._sending:
             if size >= LARGE and hasattr(os, "memfd_create"):
@@ -109,10 +110,10 @@ class Pipe:
 
 
 class Outlet:
-    """The way of one subscription's messages to the agent.
+    """Carries the messages of one subscription to the agent.
 
-    With `latest`, the next message leaves once the agent has acknowledged the last one, and newer messages replace those
-    that wait.
+    With `latest`, the next message leaves once the agent has acknowledged the last message. Newer messages replace
+    waiting messages.
     """
 
     def __init__(self, pipe, channel, latest):
@@ -122,7 +123,7 @@ class Outlet:
         self._pending = None
 
     def put(self, body: bytes | memoryview) -> None:
-        """Pass a message on."""
+        """Pass on a message."""
         if self._latest:
             with self._lock:
                 if self._busy:
@@ -141,10 +142,10 @@ class Outlet:
 
 
 def serve(open_node):
-    """Connect to the agent, and obey it until it closes the pipe.
+    """Connect to the agent, and carry out its orders until it closes the pipe.
 
     Args:
-        open_node: A function of the pipe and the configuration, which returns an object with the methods ``bind``,
+        open_node: A function that takes the pipe and the configuration. It returns an object with the methods ``bind``,
             ``unbind``, ``message``, ``call``, ``answer``, ``cancel``, ``ask`` and ``close``.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the agent, which closes this process in order
@@ -199,7 +200,7 @@ def _obey(pipe, node):
                 return
         except (EOFError, BrokenPipeError):
             raise
-        except Exception as error:  # the agent gets the reason of any failure, and the process goes on
+        except Exception as error:  # the agent gets the reason, and the process continues
             if kind == ASK:
                 pipe.tell(TOLD, {"error": reason(error)}, 0, number)
             elif kind == CALL:

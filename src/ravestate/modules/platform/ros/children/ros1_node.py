@@ -1,4 +1,4 @@
-"""The bridge process of ROS 1: a rospy node that passes messages on as they are on the wire."""
+"""The bridge process of ROS 1: a rospy node that passes on messages in their wire form."""
 
 # pyright: basic, reportMissingImports=false
 from __future__ import annotations
@@ -15,7 +15,7 @@ PROBE = 1.0  # seconds between two looks at the master
 
 
 def message_class(type_, md5, text=""):
-    """Return a class whose messages are bytes that are on the wire already."""
+    """Return a class whose messages are bytes in their wire form."""
     import genpy
 
     class Raw(genpy.Message):
@@ -52,7 +52,7 @@ def call_class():
             return self.connection
 
         @transport.setter
-        def transport(self, made):  # rospy sets it as soon as it has connected
+        def transport(self, made):  # rospy sets the transport once it has connected
             self.connection = made
             if made is not None and self.ended:
                 made.close()
@@ -65,7 +65,7 @@ def call_class():
 
 
 def transport_class(node):
-    """Return the class of a connection with a publisher, whose messages the agent reads itself unless they are large."""
+    """Return the class of a connection with a publisher. If its messages are small, the agent reads them itself."""
     from rospy.exceptions import TransportTerminated
     from rospy.impl.tcpros_base import TCPROSTransport, recv_buff
 
@@ -77,7 +77,7 @@ def transport_class(node):
                     recv_buff(self.socket, self.read_buff, self.protocol.buff_size)
                 first = self.read_buff.getvalue()[: self.read_buff.tell()]
             except (TransportTerminated, AttributeError):
-                first = b""  # it is closed, which rospy finds out
+                first = b""  # the connection is closed, which rospy notices by itself
             if first and int.from_bytes(first[:4], "little") < LARGE:
                 node.from_publisher(self, first)
             else:
@@ -87,7 +87,7 @@ def transport_class(node):
 
 
 class Ros1Node:
-    """A rospy node that does what the agent says; see `pipe.serve`."""
+    """A rospy node that carries out the agent's orders; see `pipe.serve`."""
 
     def __init__(self, pipe: Pipe, config):
         os.environ.update({key: value for key, value in config["environment"].items() if value})
@@ -110,9 +110,9 @@ class Ros1Node:
         import rospy.topics
 
         self._rospy = rospy
-        rospy.topics.QueuedConnection = self._to_subscriber  # in the place of its own queue and thread
+        rospy.topics.QueuedConnection = self._to_subscriber  # instead of rospy's own queue and thread
         rospy.impl.tcpros_pubsub.TCPROSTransport = transport_class(self)
-        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy takes /clock, which is for the agent
+        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy would follow /clock; only the agent shall
         self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
@@ -127,13 +127,13 @@ class Ros1Node:
     def _master_pid(self):
         try:
             proxy = xmlrpc.client.ServerProxy(self._uri)
-            code, _, pid = proxy.getPid("/ravestate")  # type: ignore[misc]  # its answers have no types
+            code, _, pid = proxy.getPid("/ravestate")  # type: ignore[misc]  # rospy's answers have no types
             return pid if code == 1 else 0
         except (OSError, xmlrpc.client.Error):
             return 0
 
     def _look_at_master(self):
-        """End the process if there is another master than at the start; the next process registers there."""
+        """End the process if a new master has replaced the old one. The next process registers with the new master."""
         pid = self._master_pid()
         if pid == self._pid:
             return
@@ -172,7 +172,7 @@ class Ros1Node:
                 outlet.put(message._buff)
 
         # Subscribers of one topic share rospy's queue. It has no limit; the outlet skips messages.
-        # rospy allocates the buffer anew for each read. A large buffer costs more than to read an image in parts.
+        # rospy allocates a new buffer for each read. Reading an image in parts costs less than a large buffer.
         subscriber = rospy.Subscriber(
             binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 16, tcp_nodelay=True
         )
@@ -181,7 +181,7 @@ class Ros1Node:
         return subscriber
 
     def check(self, topic, header):
-        """Tell the agent about each subscription to a topic that cannot read what a publisher publishes."""
+        """Tell the agent about each subscription to a topic whose type is not the type of a publisher."""
         for channel, binding in list(self._bindings.items()):
             if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
                 self._pipe.note(channel, _mismatch(binding, header))
@@ -191,7 +191,7 @@ class Ros1Node:
         return connection
 
     def from_publisher(self, connection, first):
-        """Give the agent a connection with a publisher, and the bytes that have been read already."""
+        """Give the agent a connection with a publisher, and the bytes that were already read."""
         header = connection.header
         what = {
             "topic": connection.name, "type": header["type"], "md5": header["md5sum"],
@@ -231,7 +231,7 @@ class Ros1Node:
         return service._response_class(bytes(done[1]))
 
     def message(self, channel, body):
-        """Drop a message: the agent sends it here if its topic has no subscriber."""
+        """Drop a message, because its topic has no subscriber if the agent sends it here."""
 
     def call(self, channel, number, body):
         # A persistent proxy keeps its connection, which `cancel` closes.
@@ -254,7 +254,7 @@ class Ros1Node:
             if not call.ended:
                 answer = call(service._request_class(body))
                 self._pipe.send(ANSWER, channel, number, answer.data)
-        except Exception as error:  # the caller gets the reason of any failure
+        except Exception as error:  # the caller gets the reason of each failure
             self._pipe.tell(FAULT, reason(error), channel, number)
         finally:
             self._calls.pop((channel, number), None)
@@ -332,7 +332,7 @@ def _mismatch(binding, header):
 
 
 def service_header(name, uri):
-    """Return the fields with which a service presents itself: its type and MD5 sum; empty if it does not answer."""
+    """Return the header fields of a service, such as its type and MD5 sum; empty if the service does not answer."""
     import rosgraph
     from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 
@@ -345,7 +345,7 @@ def service_header(name, uri):
             fields = {"probe": "1", "md5sum": "*", "callerid": "/ravestate", "service": name}
             write_ros_handshake_header(sock, fields)
             return dict(read_ros_handshake_header(sock, BytesIO(), 2048))
-    except Exception:  # rosgraph raises many kinds for a service that is gone or speaks nonsense: its type is unknown
+    except Exception:  # rosgraph raises many kinds of errors for a service that is gone or broken: its type is unknown
         return {}
 
 

@@ -1,4 +1,4 @@
-"""The bridge process of ROS 2: an rclpy node that passes messages on as they are on the wire (CDR)."""
+"""The bridge process of ROS 2: an rclpy node that passes on messages in their wire form (CDR)."""
 
 # pyright: basic, reportMissingImports=false
 from __future__ import annotations
@@ -18,11 +18,11 @@ STATUS = {4: "succeeded", 5: "cancelled", 6: "aborted"}  # of action_msgs/GoalSt
 
 
 class Ros2Node:
-    """An rclpy node that does what the agent says; see `pipe.serve`."""
+    """An rclpy node that carries out the agent's orders; see `pipe.serve`."""
 
     def __init__(self, pipe: Pipe, config):
         os.environ.update({key: value for key, value in config["environment"].items() if value})
-        if not os.path.exists("DEFAULT_FASTDDS_PROFILES.xml"):  # the user's own
+        if not os.path.exists("DEFAULT_FASTDDS_PROFILES.xml"):  # the user's own file comes first
             os.environ.setdefault(
                 "FASTDDS_DEFAULT_PROFILES_FILE", os.path.join(os.path.dirname(__file__), "fastdds.xml")
             )
@@ -59,7 +59,7 @@ class Ros2Node:
                 return
             except (BrokenPipeError, ConnectionError):
                 os._exit(0)  # the agent is gone
-            except Exception as error:  # the thread goes on with the next message
+            except Exception as error:  # continue with the next message
                 self._pipe.note(0, reason(error), "error")
 
     def bind(self, channel, binding, outlet):
@@ -96,7 +96,7 @@ class Ros2Node:
         self._executor.wake()
 
     def _look_at_types(self):
-        """Name each node that has another type for a topic: ROS 2 lets the two pass each other silently."""
+        """Warn about each node that has another type for a topic. ROS 2 would connect nothing, and say nothing."""
         for channel, binding in list(self._bindings.items()):
             name, type_ = binding["name"], binding["type"]
             if binding["kind"] == "subscriber":
@@ -107,7 +107,7 @@ class Ros2Node:
                 continue
             for info in others:
                 if info.node_name == UNKNOWN:
-                    continue  # its name comes a moment after its topic
+                    continue  # a node's name comes a moment after its topic
                 other = channel, info.node_namespace.rstrip("/") + "/" + info.node_name, info.topic_type
                 if info.topic_type != type_ and other not in self._named:
                     self._named.add(other)
@@ -148,7 +148,7 @@ class Ros2Node:
         act = self._call
         if self._bindings[channel]["kind"] == "action":
             act = self._act
-            self._goals[channel, number] = {"handle": None, "cancelled": False}  # now, so that `cancel` finds it
+            self._goals[channel, number] = {"handle": None, "cancelled": False}  # now, so that `cancel` finds the goal
         else:
             self._calls[channel, number] = {"future": None, "cancelled": False}
         threading.Thread(target=self._careful, args=(act, channel, number, bytes(body)), daemon=True).start()
@@ -181,7 +181,7 @@ class Ros2Node:
         if call["cancelled"]:
             return
         future = call["future"] = client.call_async(deserialize_message(body, cls.Request))
-        if call["cancelled"]:  # meanwhile: `cancel` may have found no future
+        if call["cancelled"]:  # `cancel` may have come before there was a future
             client.remove_pending_request(future)
             return
         future.add_done_callback(done)
@@ -236,7 +236,7 @@ class Ros2Node:
             except Exception as error:  # the caller gets the reason of any failure
                 self._pipe.tell(FAULT, reason(error), channel, number)
 
-        # On the executor's thread: on another one, the server's answer may come before the client expects it.
+        # Send on the executor's thread. On another thread, the answer might come before the client expects it.
         self._executor.create_task(send)
 
     def answer(self, channel, number, body, failed):
@@ -247,7 +247,7 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal, or forget a call: a service that never answers leaves nothing behind."""
+        """Cancel a goal, or forget a call, so that a service that never answers leaves nothing behind."""
         call = self._calls.pop((channel, number), None)
         if call is not None:
             call["cancelled"] = True
@@ -260,14 +260,14 @@ class Ros2Node:
                 self._executor.create_task(goal["handle"].cancel_goal_async)
 
     def unbind(self, channel):
-        """Remove what `bind` has made."""
+        """Remove the entity that `bind` has made."""
         thing = self._channels.pop(channel, None)
         kind = self._bindings.pop(channel, {}).get("kind")
         if thing is None:
             return
         if kind == "action":
             thing.destroy()
-        else:  # the node forgets it first: the executor fails for ever on a destroyed one
+        else:  # the node must forget it first, because the executor keeps failing on a destroyed entity
             forget = {"subscriber": "subscription", "server": "service"}.get(kind, kind)
             getattr(self._node, f"destroy_{forget}")(thing)
         self._executor.wake()
@@ -321,7 +321,7 @@ def interface(name):
     """Return the class of a type such as ``std_msgs/msg/String``.
 
     Raises:
-        LookupError: The ROS 2 installation does not have it.
+        LookupError: The ROS 2 installation does not have the type.
     """
     package, kind, short = name.split("/")
     try:
@@ -346,6 +346,6 @@ def quality(qos):
 
 
 if __name__ == "__main__":
-    import rclpy  # noqa: F401  # its PyPI package starts the interpreter again, and the pipe is to be opened once
+    import rclpy  # noqa: F401  # its PyPI package restarts the interpreter, so import it before the pipe opens
 
     serve(Ros2Node)

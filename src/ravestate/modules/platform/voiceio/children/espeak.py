@@ -1,4 +1,4 @@
-"""The backend of synthesis by the library of espeak-ng. `serve` runs this file."""
+"""The backend of speech synthesis by the library espeak-ng. `serve` runs this file."""
 
 # pyright: basic
 from __future__ import annotations
@@ -14,7 +14,7 @@ NORMAL_RATE = 165  # words a minute
 
 
 class Event(ctypes.Structure):
-    """An event of the library: where a word begins in the text and in the sound."""
+    """An event of the library: the beginning of a word in the text and in the sound."""
 
     _fields_ = (
         ("type", ctypes.c_int),

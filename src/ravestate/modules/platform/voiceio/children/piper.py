@@ -1,4 +1,4 @@
-"""The backend of synthesis by Piper. `serve` runs this file with the interpreter of Piper's own environment."""
+"""The backend of speech synthesis by Piper. `serve` runs this file with the interpreter of Piper's environment."""
 
 # pyright: basic
 from __future__ import annotations
@@ -7,13 +7,13 @@ import importlib
 from typing import Any
 
 STRESS = "ˈˌː"
-"""Marks of stress and length: no sounds of their own."""
+"""Marks of stress and length, which are not sounds."""
 
 
 def load(config: dict[str, Any]) -> Any:
     """Load the voice file ``voice``; return the function that synthesises."""
     importlib.import_module("onnxruntime").set_seed(1)  # the same texts in the same order sound the same
-    piper: Any = importlib.import_module("piper")  # the environment of the rest lacks it
+    piper: Any = importlib.import_module("piper")  # only Piper's environment has this package
     voice = piper.PiperVoice.load(config["voice"], include_alignments=True)
 
     def handle(header: dict[str, Any], _: bytes) -> tuple[dict[str, Any], bytes]:

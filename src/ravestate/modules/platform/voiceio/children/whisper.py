@@ -1,8 +1,8 @@
 """The backend of speech recognition by faster-whisper. `serve` runs this file.
 
-Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So sounds, of at most 25
-seconds, are not filled up with silence: a sentence then takes a fifth of the time. In such a short window, the model often does not
-notice the end, and writes the same words again. The repetition is cut off.
+Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So this backend does not
+fill up sounds, of at most 25 seconds, with silence: a sentence then takes a fifth of the time. In such a short window,
+the model often misses the end, and writes the same words again. The backend cuts the repetition off.
 """
 
 # pyright: basic
@@ -15,13 +15,13 @@ from typing import Any
 TAIL = 5.0
 """The seconds of silence behind the sound. With less silence, the model repeats itself more often."""
 MOST = 8
-"""The maximum number of tokens in a second of speech. People say at most five words."""
+"""The maximum number of tokens in a second of speech. People say at most five words in a second."""
 PHRASE = 3
-"""The words of a phrase that nobody says twice on end. Shorter ones, such as "no, no", may be meant."""
+"""The minimum number of words in a phrase that nobody says twice in a row. People repeat short phrases ("no, no")."""
 PLAUSIBLE = 0.02
 """The probability above which another last word is reported."""
 POOR = -1.0
-"""The mean log probability of a token below which the sound is recognised once more, in the usual window."""
+"""The mean log probability of a token below which the backend recognises the sound again, in the usual window."""
 REPEATED = 2.4
 """The ratio of compression above which a text repeats itself, as a confused model does."""
 
@@ -36,7 +36,7 @@ def load(config: dict[str, Any]) -> Any:
 
     model = WhisperModel(config["path"], device="auto", compute_type="default" if config["exact"] else "int8",
                          cpu_threads=config["threads"], local_files_only=True)  # fmt: skip
-    suppressed: Any = get_suppressed_tokens  # its types are wrong
+    suppressed: Any = get_suppressed_tokens  # the package's types are wrong
     tokenizers: dict[str, Tokenizer] = {}
 
     def tokenizer_of(language: str) -> Tokenizer:
@@ -114,7 +114,7 @@ def load(config: dict[str, Any]) -> Any:
 
 
 def _once(words: list[str], *, at_limit: bool) -> int:
-    """Return the number of words without the repetition of a phrase."""
+    """Return the number of words before a phrase is repeated; without a repetition, the number of all words."""
     for length in range(1 if at_limit else PHRASE, len(words)):
         if all(words[at] == words[at - length] for at in range(length, len(words))):
             return length if at_limit or len(words) >= 2 * length else len(words)
@@ -122,7 +122,7 @@ def _once(words: list[str], *, at_limit: bool) -> int:
 
 
 def _plausible(np: Any, tokenizer: Any, step: Any) -> dict[str, float]:
-    """Return the plausible words at one place with their probabilities."""
+    """Return the plausible words at one place, with their probabilities."""
     likely = [int(token) for token in np.flatnonzero(step > math.log(PLAUSIBLE)) if token < tokenizer.eot]
     found: dict[str, float] = {}
     for token in likely:

@@ -1,12 +1,15 @@
-"""The bank: thousands of single utterances with replies. The listener says a reply of the entry that suits best.
+"""The bank: thousands of utterances with replies. The listener says a reply of the entry that suits best.
 
 Each line of bank/*.tsv has three columns: the tone (``sad``, ``angry``, ``glad``, ``tired`` or ``-``), utterances, and
 replies; a bar separates the alternatives in a column. Replies may have roles, such as ``{they}``.
+
+A line with ``>`` instead of a tone is a *follow-up*: its utterances count only directly after a reply of the nearest line
+above with one mark less. There are three levels. Lines with ``#`` are comments.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -21,7 +24,7 @@ from .suitability import Evidence
 
 LEAST = 0.74
 """The least similarity at which an entry is looked at more closely."""
-CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.3, 0.57
+CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.25, 0.47
 """An entry with the similarity `CLOSE` and the probability `DOUBTFUL`, or more, gets at least the probability `PROBABLE`:
 more than half of such entries suit. Their other sentences may be far from the utterance, which lowers the estimate."""
 ANSWER, EXACTLY = -10.6, -9.5
@@ -29,6 +32,10 @@ ANSWER, EXACTLY = -10.6, -9.5
 another question from the same area of life scores about -11."""
 TONES = ("sad", "angry", "glad", "tired")
 DARK = ("sad", "angry", "tired")
+DEEPEST = 3
+"""The greatest number of marks before a follow-up."""
+REST = "*"
+"""The utterance of a follow-up that stands for any other statement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,18 +56,20 @@ class Bank:
 
     def __init__(self, rows: Sequence[tuple[str, str]]) -> None:
         """Make the entries from `rows`: for each, a place (the file's name and the line's number) and the line."""
-        self.moments: list[Moment] = []
+        self.moments = list(_entries([_row(place, row) for place, row in rows]))
         """The entries. The name of each is its place: file and line."""
+        self.named = {one.name: one for entry in self.moments for one in _below(entry)}
+        """The entries and their follow-ups by name."""
+        self._above = {one.name: entry.name for entry in self.named.values() for one in entry.follows}
+        self._of = [place for place, one in enumerate(self.moments) for _ in one.examples]
+        self._places: dict[str, range] = {}
         examples: list[str] = []
-        self._of: list[int] = []
-        self._places: list[range] = []
-        for place, row in rows:
-            moment = _moment(place, row)
-            self._places.append(range(len(examples), len(examples) + len(moment.examples)))
-            examples += moment.examples
-            self._of += [len(self.moments)] * len(moment.examples)
-            self.moments.append(moment)
-        self.index = Nearest(examples)
+        later = [one for entry in self.moments for one in _below(entry) if one is not entry]
+        for one in (*self.moments, *later):
+            own = [text for text in one.examples if text != REST]
+            self._places[one.name] = range(len(examples), len(examples) + len(own))
+            examples += own
+        self.index = Nearest(examples, searched=len(self._of))
         self._judge = Reranker()
         self._ranked = lru_cache(64)(self._rank)  # several rules ask about the same utterance
 
@@ -85,6 +94,21 @@ class Bank:
         """Return the entries that resemble a sentence of an utterance, the most suitable first. No entry comes twice."""
         return list(self._ranked(tuple(sentences), utterance, most, self.index.loaded))
 
+    def follow_ups(self, name: str) -> tuple[Moment, ...]:
+        """Return the follow-ups of an entry or of a follow-up; none for another name."""
+        return self.named[name].follows if name in self.named else ()
+
+    def thread(self, name: str) -> Iterator[str]:
+        """Yield a name, and the names of the entries above it, the nearest first."""
+        while name:
+            yield name
+            name = self._above.get(name, "")
+
+    def likeness(self, sentences: Sequence[str], follow_up: Moment) -> list[tuple[str, float]]:
+        """Return the utterances of a follow-up, each with its similarity to the most similar of the sentences."""
+        texts = [text for text in follow_up.examples if text != REST]
+        return list(zip(texts, self.index.compared(sentences, self._places[follow_up.name]), strict=True))
+
     def _rank(self, sentences: tuple[str, ...], utterance: str, most: int, _loaded: bool) -> tuple[Found, ...]:
         found: dict[int, Near] = {}
         for near in self.index.nearest(sentences, 2 * most):
@@ -102,13 +126,13 @@ class Bank:
             return [1.0] * len(found)  # their words are equal
         pairs = [(text, utterance) for place, _ in found for text in self.moments[place].examples]
         scores = iter(self._judge.score_pairs(pairs).tolist())
-        meanings = iter(self.index.similarities(utterance, [at for place, _ in found for at in self._places[place]]))
+        places = [at for place, _ in found for at in self._places[self.moments[place].name]]
+        meanings = iter(self.index.similarities(utterance, places))
         whole = plain(utterance)
         fits: list[float] = []
         for place, near in found:
             texts = self.moments[place].examples
-            lengths = [len(text.split()) for text in texts]
-            evidence = Evidence([next(scores) for _ in texts], [next(meanings) for _ in texts], lengths)
+            evidence = Evidence(near.score, [next(meanings) for _ in texts], [next(scores) for _ in texts])
             fit = 1.0 if any(plain(text) == whole for text in texts) else evidence.probability()
             fits.append(max(fit, PROBABLE) if near.score >= CLOSE and fit >= DOUBTFUL else fit)
         return fits
@@ -122,17 +146,60 @@ def read_bank() -> Bank:
         if file.name.endswith(".tsv"):
             lines = file.read_text(encoding="utf-8").splitlines()
             rows += [(f"{file.name}:{number}", line) for number, line in enumerate(lines, 1) if line.strip()]
-    return Bank(rows)
+    return Bank([(place, row) for place, row in rows if not row.startswith("#")])
 
 
-def _moment(place: str, row: str) -> Moment:
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A line of a file."""
+
+    place: str
+    level: int
+    tone: str
+    examples: tuple[str, ...]
+    lines: tuple[Line, ...]
+
+    @property
+    def file(self) -> str:
+        """The name of the file."""
+        return self.place.partition(":")[0]
+
+
+def _row(place: str, row: str) -> _Row:
     columns = row.split("\t")
-    if len(columns) != 3 or columns[0] not in (*TONES, "-"):
+    level = len(columns[0]) if set(columns[0]) == {">"} else 0
+    if len(columns) != 3 or (columns[0] not in (*TONES, "-") and not 0 < level <= DEEPEST):
         raise DeclarationError(
-            f"{place}: a line needs a tone ({', '.join(TONES)} or -), utterances and replies: {row!r}"
+            f"{place}: a line needs a tone ({', '.join(TONES)}, -, or > to >>> for a follow-up), utterances and "
+            f"replies: {row!r}"
         )
     tone, said, replies = columns
     if not all(text.strip() for text in (*said.split("|"), *replies.split("|"))):
         raise DeclarationError(f"{place}: an utterance or a reply is empty: {row!r}")
     lines = tuple(Line(text.strip(), roles_in(text)) for text in replies.split("|"))
-    return Moment(place, {"say": lines}, "" if tone == "-" else tone, examples=tuple(map(str.strip, said.split("|"))))
+    examples = tuple(map(str.strip, said.split("|")))
+    if REST in examples and not level:
+        raise DeclarationError(f"{place}: only a follow-up can have the utterance {REST}: {row!r}")
+    return _Row(place, level, tone if tone in TONES else "", examples, lines)
+
+
+def _entries(rows: Sequence[_Row], level: int = 0, tone: str = "") -> Iterator[Moment]:
+    """Yield the entries of one level, each with its follow-ups, which have its tone."""
+    if rows and rows[0].level > level:
+        raise DeclarationError(f"{rows[0].place}: a follow-up needs a line with one mark less above it")
+    starts = [at for at, row in enumerate(rows) if row.level == level]
+    for start, end in zip(starts, [*starts, len(rows)][1:], strict=True):
+        row, below = rows[start], rows[start + 1 : end]
+        foreign = next((one for one in below if one.file != row.file), None)
+        if foreign is not None:
+            raise DeclarationError(f"{foreign.place}: a file cannot begin with a follow-up")
+        own = tone if level else row.tone
+        follows = tuple(_entries(below, level + 1, own))
+        yield Moment(row.place, {"say": row.lines}, own, examples=row.examples, follows=follows)
+
+
+def _below(entry: Moment) -> Iterator[Moment]:
+    """Yield an entry and all its follow-ups."""
+    yield entry
+    for one in entry.follows:
+        yield from _below(one)

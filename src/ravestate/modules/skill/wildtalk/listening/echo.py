@@ -32,15 +32,18 @@ _ADDRESSING = _YOU | word_set("your yours yourself")
 _BE = {"i": {"am": "are", "'m": "'re", "was": "were"}, "you": {"are": "am", "'re": "'m", "were": "was"}}
 """Subject → its form of *be* → the form after the subject is turned."""
 _LEADING = word_set(
-    "and but so or well ok okay anyway also then now yes no yeah nope oh ah um uh hm please because actually honestly"
+    "and but so or well ok okay anyway also then now yes no yeah nope oh ooh ah um uh hm wow haha lol please because"
+    " actually honestly"
 )
 """Words at the beginning that join a sentence to the talk, and say nothing themselves."""
 _TRAILING = word_set("please sorry haha lol look btw too though then honestly")
 _ASIDE = ("intj", "parataxis", "preconj")
 _ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
-_OPINING = word_set("think guess suppose believe hope")
+_OPINING = word_set("think guess suppose believe")
 """Verbs that only wrap a statement of the user's own: *I think I will try*."""
 _DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
+_IMAGINING = word_set("could should would might may maybe perhaps")
+"""Words of a statement about something that may never happen."""
 _HELPING = word_set("have need get start begin stop keep let help seem forget")
 """Verbs that say less than the verb that they govern."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
@@ -58,7 +61,7 @@ class Told:
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
-    """``past``, ``now``, ``plan``, ``once`` for *used to*, or ``not`` for a denied statement."""
+    """``past``, ``now``, ``plan``, ``might`` for what is only imagined, ``once`` for *used to*, or ``not`` if denied."""
 
 
 def told_in(seen: Analysis, living: frozenset[str]) -> Told | None:
@@ -184,9 +187,9 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
             break
     else:
         return None
-    if words[0].tag in ("MD", "VB"):
-        return None
     subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
+    if words[0].tag in ("MD", "VB") or _is_slip(tree, subject, verb):
+        return None
     if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):
         return None
     chain = list(_chain(tree, verb))
@@ -198,6 +201,8 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         if denied
         else "once"
         if verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB"
+        else "might"
+        if _IMAGINING & {word.low for word in tree.children(verb)}
         else "plan"
         if plan or helpers & {"will", "'ll", "shall"}
         else "past"
@@ -211,6 +216,13 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     verbs = ["wish"] * (verb.lemma == "like" and not helpers.isdisjoint(("would", "'d")))
     verbs += [word.lemma.lower() for word in chain]
     return Told(echo(tree, words), tuple(states + verbs), _person(tree, subject, living), tense)
+
+
+def _is_slip(tree: Tree, subject: Word, verb: Word) -> bool:
+    """Return whether verb and subject disagree, as in *she live here*. Nobody likes to hear their own slips."""
+    single = subject.low in ("he", "she", "it") or subject.tag == "NN"
+    both = tree.children(subject, "conj")
+    return single and not both and verb.tag in ("VB", "VBP") and not tree.children(verb, "aux", "auxpass")
 
 
 def _within(tree: Tree, verb: Word, dropped: Sequence[str]) -> list[Word]:

@@ -8,21 +8,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from dataclasses import dataclass, field
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
-from ravestate.language.matcher import Match, bundled_matcher
-from ravestate.language.normal import plain
-from ravestate.language.shape import shape
+from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
-from .asked import Asked, about, asked_in
-from .bank import CLOSE, DARK, Found
-from .echo import Told, told_in, words_of
+from .asked import Asked, asked_in
+from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
+from .bank import CLOSE, Found
+from .echo import Told, told_in
+from .following import follow_up_in, rest_of
+from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
@@ -33,6 +33,10 @@ SURE, MEANT = 0.85, 0.7
 """The least confidence that a moment or an act needs to decide the answer."""
 EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
+CHANGING = frozenset(("no_questions", "another"))
+"""Moments that change the talk. No entry of the bank takes their place."""
+BARE = 2
+"""The maximum number of words of an answer that only says yes or no. Without its question, it resembles nothing."""
 FINER = 0.1
 """The bonus of a moment over feelings and acts, because a moment is more specific."""
 FELT, GLAD, AMAZED, NEVER = 0.65, 0.8, 0.9, 2.0
@@ -43,34 +47,18 @@ CLOUDED = 0.85
 """The least confidence at which a sad moment ends a glad tone."""
 ASKED = 0.8
 """The least confidence at which the agent does what the user requests."""
-FEW_WORDS, FEW, SURE_OF_FEW = 3, 0.75, 0.93
-"""Short sentences resemble many others. The maximum number of words in one, and the confidences that it needs."""
+FEW = 0.75
+"""The confidence that a short sentence needs."""
 BRIEFLY = 5
 """The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
-SHORT = 4
-"""The maximum number of words in a short answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-ALIKE = 0.57
-"""The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
-WHOLE = 30
-"""The maximum number of words of an utterance that is compared with the bank as a whole."""
-CROSSED = 0.5
-"""The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
-BESIDE = 4
-"""The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
-_ASKING = word_set(
-    "who what when where why which how whose do does did is are was can could will would should may have"
-)
-"""Closed-class words that begin a question."""
 _LEAVING = re.compile(
     r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
 )
 """A farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user's offer to tell something."""
-_AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
-"""The end of a statement that astonishes: *he ate it all, can you believe it?*"""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
 """Closed-class words that cannot end an utterance."""
 _SAD = SORROWS | {"tiredness"}
@@ -111,6 +99,12 @@ class Hearing:
     """The statement that the agent can take up."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
+    follow_up: Moment | None = None
+    """The follow-up of the last entry that the utterance resembles."""
+    rest: Moment | None = None
+    """The follow-up of the last entry for any other statement."""
+    sad: bool = False
+    """Whether the utterance has a sad feeling."""
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
@@ -143,15 +137,22 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         feeling = None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
     last = state.said[-1] if state.said else ""
-    advised = state.moment in ADVICE or state.moment.startswith("advice.")
+    entry = phrases.bank.named.get(state.moment)
+    advised = state.moment in ADVICE or (entry is not None and kind_of(entry.examples[0]) in ADVICE)
     roles = roles.having(
         user=heard.user, last="" if last.endswith("?") else last, ground=state.ground if advised else ""
     )
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
+    found.sad = feeling is not None and feeling.tone == "sad"
     found.near = near_in(phrases, seen, asking, state, feeling)
+    dark = is_dark(seen, found.near) or found.sad
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
+    found.follow_up = follow_up_in(
+        phrases.bank, state, seen, asking, nearest if nearest.fit >= ALIKE else None, dark=dark
+    )
+    found.rest = None if dark else rest_of(phrases.bank, state, seen)
     size = sum(word.pos != "PUNCT" for word in seen.tree.words)
     pending, answer, verb = state.pending, seen.yesno, has_verb(seen)
     low = {word.low for word in seen.tree.words}
@@ -159,8 +160,25 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     answering = pending is not None and seen.question is None and size <= 2 * SHORT and not is_request(seen)
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
+    grounded = found.moment == "just_why" and "ground" in roles.values
+    bound = score >= SURE and (found.moment in CHANGING or grounded)
+    bare = kind != "" and size <= BARE
+    alike = (
+        nearest.fit >= ALIKE
+        and not (bound or bare)
+        and (
+            bool(nearest.moment.follows)
+            or nearest.score >= EXACT
+            or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))
+        )
+    )
     tags = {
         kind: True,
+        "followed": found.follow_up is not None,
+        "other": found.rest is not None
+        and not (asking or is_request(seen) or feeling or found.meanings or answer.unsure)
+        and not (alike and (size > SHORT or nearest.score >= CLOSE)),
+        "dark": dark,
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,
@@ -173,8 +191,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "felt": feeling is not None,
         "sorry": not _SAD.isdisjoint(seen.feelings),
         "sure": score >= SURE,
-        "alike": nearest.fit >= ALIKE
-        and (nearest.score >= EXACT or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))),
+        "alike": alike,
         "others": others,
         "asserting": verb and others,
         "called": called != "",
@@ -279,30 +296,6 @@ def _fits(moment: Moment, moves: Sequence[str]) -> bool:
     return not moves or not moment.moves or not moment.moves.isdisjoint(moves)
 
 
-def asking_sentence(seen: Analysis) -> str:
-    """Return the sentence that asks something; empty if the utterance has none."""
-    if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
-        return ""
-    marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
-    opened = [
-        sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING
-    ]
-    if not marked and not opened and (seen.question is QuestionWord.YES_NO or seen.text.rstrip().endswith("!")):
-        return ""  # "I was curious whether you sleep", "oh, we won!"
-    if len(seen.sentences) > 1:  # "What?? The whole roof is gone"
-        marked = [sentence for sentence in marked if len(sentence.split()) > FEW_WORDS - 1]
-        if not marked and not opened and seen.question is QuestionWord.YES_NO:
-            return ""
-        opened = [sentence for sentence in opened if len(sentence.split()) > FEW_WORDS - 1]
-        if not marked and not opened:
-            return ""
-    last = [*seen.sentences, *opened, *marked][-1]
-    place = seen.sentences.index(last)
-    if place and len(last.split()) <= SHORT + 1 and kind_of(last) == "you_think":
-        return seen.sentences[place - 1]  # "I don't know whether I should go. What do you think?"
-    return last
-
-
 def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
     """Return the moment that a sentence resembles most, with the sentence and the confidence.
 
@@ -324,43 +317,6 @@ def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "
         if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
             best, sentence, score = found, match.text, match.score
     return best, sentence, score
-
-
-def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None) -> list[Found]:
-    """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
-
-    If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk.
-    """
-    sentences = seen.sentences[:6]
-    longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
-    texts = [asking] if asking else list(longer or sentences)
-    if len(seen.tree.words) <= WHOLE:
-        texts.append(seen.text)
-    mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
-    bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
-    kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
-    ranked: list[Found] = []
-    for one in phrases.bank.similar(texts, seen.text):
-        tone = one.moment.tone
-        crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
-        examples = one.moment.examples
-        crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
-        crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)
-        crossed = crossed or (persons == (False, True) and all(persons_in(text) == (True, False) for text in examples))
-        ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
-    return sorted(ranked, key=lambda one: -one.fit)
-
-
-def persons_in(text: str) -> tuple[bool, bool]:
-    """Return whether a text mentions the user, and whether it mentions others."""
-    return shape(plain(text))[1:3]
-
-
-@lru_cache(256)
-def kind_of(sentence: str) -> str:
-    """Return the kind of a question or request; empty for a statement."""
-    match = bundled_matcher("asks").match(sentence)
-    return "" if match is None else match.name
 
 
 def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:

@@ -11,10 +11,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ravestate.language.normal import plain
 from ravestate.modules.meta.nlp.analysis import Analysis
 
+from .following import is_answer
 from .games import GUESSER, HOLDER, Played, Turn, named
-from .hearing import ALIKE, ASKED, Heard, Hearing, feeling_of, hear, is_living, near_in
+from .grave import is_crisis
+from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
+from .lookup import ALIKE, is_dark, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .roles import Roles, has_verb, is_request, roles_of
@@ -32,6 +36,10 @@ MORE = re.compile(r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)
 OFFER = re.compile(r"\bI(?:'ve)? (?:have|know|got|ask)\b.*\briddle|\bask you a riddle", re.IGNORECASE)
 """The user's offer to ask the agent a riddle."""
 STANCES = ("like", "curious", "cool")
+KNOWN = 0.57
+"""The least probability that an entry suits at which other modules leave the answer to it."""
+AWAY = 3
+"""The number of answers without an entry of the bank after which its thread is forgotten."""
 
 Groups = Sequence[Sequence[Line]]
 
@@ -79,17 +87,26 @@ class Listener:
         """Return whether the utterance asks for a performance or belongs to it. No language model should answer it."""
         return state.game is not None or self._request(heard) != ""
 
+    def expects(self, state: State) -> bool:
+        """Return whether the last answer has follow-ups."""
+        bank = self._phrases.bank
+        return any(bank.follow_ups(name) for name in (state.moment, *bank.thread(state.thread)))
+
     def continues(self, heard: Heard, state: State) -> bool:
-        """Return whether the utterance belongs to a game, or is a short answer to the skill's own question.
+        """Return whether the utterance belongs to a game, or answers what the skill said last.
 
         Other modules would misunderstand such words: in word chain, *tomato* is no question about vegetables.
         """
         seen, pending = heard.seen, state.pending
-        if seen is None or not heard.text.strip():
+        if seen is None or not heard.text.strip() or is_crisis(seen.normal.text):
             return False
         if state.game is not None:
             turn = Turn(self._phrases.shows, heard.text, seen, state, random.Random(0))
             return "stop" in seen.acts or (("farewell" not in seen.acts or turn.solves()) and turn.move() is not None)
+        feeling, _ = feeling_of(self._phrases, seen, "", state.tone)
+        dark = is_dark(seen, ()) or (feeling is not None and feeling.tone == "sad")
+        if is_answer(self._phrases.bank, state, seen, dark=dark):
+            return True
         if pending is None or not (pending.then or pending.start) or seen.question is not None:
             return False
         size = len(heard.text.split())
@@ -99,7 +116,10 @@ class Listener:
     def knows(self, seen: Analysis) -> bool:
         """Return whether the bank has a reply that probably suits."""
         near = near_in(self._phrases, seen, "", State(), None)
-        return bool(near) and near[0].fit >= ALIKE
+        if is_crisis(seen.normal.text):
+            return False
+        light = bool(near) and near[0].moment.tone != "sad" and is_dark(seen, near)
+        return bool(near) and near[0].fit >= KNOWN and not light and "forget" not in plain(seen.text)
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes some 50 ms, most of them for the bank."""
@@ -165,18 +185,27 @@ class Listener:
             if line is None:
                 continue
             moment = source.moment
-            after = state.toned(moment.tone, moment.lasts) if moment is not None else state.toned("")
+            tone = "" if moment is None else moment.tone or "sad" * hearing.sad
+            after = state.toned(tone, moment.lasts) if moment is not None else state.toned("")
             after = replace(
                 after,
                 being=roles.being or state.being,
                 moment=(source.asked or ("",))[0] if moment is None else moment.name,
             )
+            after = self._threaded(after)
             after = replace(after, asks=after.asks and after.moment != "no_questions")
             after = replace(after, asked=source.asked or after.asked)
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
             return _said(line, roles, after)
         return Answer("Mhm.", state.toned(""))  # all phrases were said lately
+
+    def _threaded(self, state: State) -> State:
+        """Return the state with the thread of its last answer. Some answers without an entry of the bank end a thread."""
+        if state.moment in self._phrases.bank.named:
+            return replace(state, thread=state.moment, away=0)
+        away = state.away + 1
+        return replace(state, thread=state.thread if away < AWAY else "", away=away)
 
     def _choose(self, source: _Source, roles: Roles, state: State, chance: random.Random) -> Line | None:
         """Return a line from the first group with a usable line: its roles are known, and it was not said lately."""
@@ -225,6 +254,16 @@ class Listener:
             if one.fit >= ALIKE:
                 yield _Source(one.moment.lines("say"), one.moment)
 
+    def _follow(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the follow-up that the utterance resembles."""
+        if hearing.follow_up is not None:
+            yield _Source(hearing.follow_up.lines("say"), hearing.follow_up)
+
+    def _other(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the follow-up for any other statement."""
+        if hearing.rest is not None:
+            yield _Source(hearing.rest.lines("say"), hearing.rest)
+
     def _asked(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the answers to a question or request, by its kind and its area of life."""
         asked = hearing.asked
@@ -237,7 +276,9 @@ class Listener:
         told, kinds = hearing.told, self._phrases.told
         if told is None:
             return
-        mood = "sad" if state.tone == "sad" else "glad" if hearing.moves == ("rejoice",) else ""
+        mood = (
+            "sad" if state.tone == "sad" or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
+        )
         for groups, moment in replies(told, kinds, mood, state, chance):
             yield _Source(groups, moment)
 
@@ -277,9 +318,13 @@ def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[
     asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
     later: list[_Source] = []
     for source in sources:
+        quiet = [[line for line in lines if not line.asks] for lines in source.groups]
         if not state.asks or (asked and source.weak):
             later.append(source)
-            source = replace(source, groups=[[line for line in lines if not line.asks] for lines in source.groups])
+            source = replace(source, groups=quiet)
+        elif asked:
+            groups = [lines for pair in zip(quiet, source.groups, strict=True) for lines in pair]
+            source = replace(source, groups=groups)
         yield source
     yield from later
 

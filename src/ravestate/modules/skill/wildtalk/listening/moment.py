@@ -49,6 +49,8 @@ class Moment:
     """The least confidence in a move at which the phrases may be used."""
     heads: str = ""
     """The name of a list in heads.yaml. The utterance must have a word of this list."""
+    follows: tuple[Moment, ...] = ()
+    """The follow-ups: what the user may say directly after one of its phrases."""
 
     def lines(self, *groups: str) -> list[Sequence[Line]]:
         """Return the groups with these names, without the names that it lacks."""

@@ -120,7 +120,8 @@ def has_verb(seen: Analysis) -> bool:
 
 def is_request(seen: Analysis) -> bool:
     """Return whether the user demands something: *prove it*."""
-    first = next((word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")), None)
+    words = [word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")]
+    first = words[0] if len(words) > 1 or (words and (seen.acts or seen.asks)) else None  # "pumpkin" is no verb
     return first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
 
 

@@ -79,6 +79,10 @@ class State:
     """The last thing that the user told, from the agent's view: the reason for the agent's advice."""
     moment: str = ""
     """The name of the feeling, or of the *moment* (a situation in a talk), that the last answer was for."""
+    thread: str = ""
+    """The name of the bank's entry whose reply was said last; empty after some other answers."""
+    away: int = 0
+    """The number of answers since an entry of the bank gave one."""
     pending: Pending | None = None
     being: Being | None = None
     tone: str = ""

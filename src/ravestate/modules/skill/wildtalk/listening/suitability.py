@@ -11,8 +11,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-CONSTANT, MEAN, BEST, MEANING, LENGTH = -3.507, 0.122, 0.12, 6.133, -0.155
-"""The weights of a logistic function (log odds). See `Evidence`."""
+CONSTANT, NEAR, SECOND, MEANING, BEST, MEAN = -9.199, 4.768, 2.046, 5.046, 0.061, 0.081
+"""The weights of a logistic function (log odds), in the order of `Evidence.features`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,22 +20,26 @@ class Evidence:
     """The features of an entry of the bank and an utterance.
 
     Attributes:
+        near: The similarity of the nearest sentences, as `Nearest` gives it: by meaning and by the persons mentioned.
+        meanings: The cosine similarities of the entry's sentences and the whole utterance.
         scores: The cross-encoder's logits, one for each sentence of the entry.
-        meanings: The cosine similarities of these sentences and the whole utterance.
-        lengths: The numbers of words of these sentences. A long sentence may match an utterance in words that do not matter.
     """
 
-    scores: Sequence[float]
+    near: float
     meanings: Sequence[float]
-    lengths: Sequence[int]
+    scores: Sequence[float]
 
-    def features(self) -> tuple[float, float, float, float]:
-        """Return the features: mean and greatest score, mean similarity, mean length."""
+    def features(self) -> tuple[float, float, float, float, float]:
+        """Return nearness, second greatest and mean similarity, greatest and mean score.
+
+        One sentence may be near by chance. If two are near, the utterance belongs to the entry.
+        """
         size = len(self.scores)
-        return sum(self.scores) / size, max(self.scores), sum(self.meanings) / size, sum(self.lengths) / size
+        second = sorted(self.meanings)[-2:][0]
+        return self.near, second, sum(self.meanings) / size, max(self.scores), sum(self.scores) / size
 
     def probability(self) -> float:
         """Return the probability that the replies suit."""
-        mean, best, meaning, length = self.features()
-        odds = CONSTANT + MEAN * mean + BEST * best + MEANING * meaning + LENGTH * length
+        weights = NEAR, SECOND, MEANING, BEST, MEAN
+        odds = CONSTANT + sum(weight * feature for weight, feature in zip(weights, self.features(), strict=True))
         return 1 / (1 + math.exp(-odds))

@@ -41,10 +41,10 @@ def replies(
 
 def _kind(told: Told, kinds: Mapping[str, Moment], mood: str, names: Sequence[str]) -> Moment | None:
     """Return the first kind with a verb or an adjective of a statement, and with questions about its subject."""
-    if told.tense in ("once", "not"):
+    if told.tense in ("once", "not", "might"):
         return None
     found = (one for verb in told.verbs for one in kinds.values() if verb in one.words and one.lines(*names))
-    return next((one for one in found if not mood or (one.tone == "glad") == (mood == "glad")), None)
+    return next((one for one in found if not mood or one.tone == mood), None)
 
 
 def _framed(groups: Sequence[Sequence[Line]], frames: Sequence[Line], state: State, chance: random.Random) -> Groups:

@@ -1,0 +1,53 @@
+"""The sentence of an utterance that asks something, and the kind of a question."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from ravestate.language.contractions import word_set
+from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.question_word import QuestionWord
+
+FEW_WORDS = 3
+"""The maximum number of words of a short sentence. Short sentences resemble many others."""
+SHORT = 4
+"""The maximum number of words in a short answer."""
+_ASKING = word_set(
+    "who what when where why which how whose do does did is are was can could will would should may have"
+)
+"""Closed-class words that begin a question."""
+_AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
+"""The end of a statement that astonishes: *he ate it all, can you believe it?*"""
+
+
+def asking_sentence(seen: Analysis) -> str:
+    """Return the sentence that asks something; empty if the utterance has none."""
+    if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
+        return ""
+    marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
+    opened = [
+        sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING
+    ]
+    if not marked and not opened and (seen.question is QuestionWord.YES_NO or seen.text.rstrip().endswith("!")):
+        return ""  # "I was curious whether you sleep", "oh, we won!"
+    if len(seen.sentences) > 1:  # "What?? The whole roof is gone"
+        marked = [sentence for sentence in marked if len(sentence.split()) > FEW_WORDS - 1]
+        if not marked and not opened and seen.question is QuestionWord.YES_NO:
+            return ""
+        opened = [sentence for sentence in opened if len(sentence.split()) > FEW_WORDS - 1]
+        if not marked and not opened:
+            return ""
+    last = [*seen.sentences, *opened, *marked][-1]
+    place = seen.sentences.index(last)
+    if place and len(last.split()) <= SHORT + 1 and kind_of(last) == "you_think":
+        return seen.sentences[place - 1]  # "I don't know whether I should go. What do you think?"
+    return last
+
+
+@lru_cache(256)
+def kind_of(sentence: str) -> str:
+    """Return the kind of a question or request; empty for a statement."""
+    match = bundled_matcher("asks").match(sentence)
+    return "" if match is None else match.name

@@ -1,0 +1,47 @@
+"""Grave remarks: death, violence, and words of people who may harm themselves. Nobody answers them lightly.
+
+The explicit answers to distress come from another module (`agentqa`). These words only keep the listener from jokes.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from ravestate.language.normal import plain
+from ravestate.yaml_text import load_yaml
+
+FILE = "grave.yaml"
+
+
+def is_grave(text: str) -> bool:
+    """Return whether a text has a grave word or phrase.
+
+    Example:
+        >>> is_grave("My dog died."), is_grave("My dog barked.")
+        (True, False)
+    """
+    return _patterns()[0].search(plain(text)) is not None
+
+
+def is_crisis(text: str) -> bool:
+    """Return whether a text has words of a person who may be in danger.
+
+    Example:
+        >>> is_crisis("I have nothing to live for"), is_crisis("My dog died.")
+        (True, False)
+    """
+    return _patterns()[1].search(plain(text)) is not None
+
+
+@cache
+def _patterns() -> tuple[re.Pattern[str], re.Pattern[str]]:
+    table: Any = load_yaml((files(__package__ or "") / FILE).read_text(encoding="utf-8"), FILE)
+    grave = [*table["words"].split(), *table["phrases"], *table["crisis"]]
+    return _any_of(grave), _any_of(table["crisis"])
+
+
+def _any_of(expressions: list[str]) -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{'|'.join(expressions)})\b")

@@ -1,0 +1,71 @@
+"""The entries of the bank that suit an utterance, with respect to its mood, its kind of question, and its persons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ravestate.language.normal import plain
+from ravestate.language.shape import shape
+from ravestate.modules.meta.nlp.analysis import Analysis
+
+from .asked import about
+from .asking import kind_of
+from .bank import CLOSE, DARK, Found
+from .echo import words_of
+from .grave import is_grave
+from .material import Material
+from .moment import Moment
+from .state import State
+
+BRIEFLY = 5
+"""The maximum number of words of a question that names nothing."""
+ALIKE = 0.45
+"""The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
+WHOLE = 30
+"""The maximum number of words of an utterance that is compared with the bank as a whole."""
+CROSSED = 0.5
+"""The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
+DARKLY = 0.3
+"""The least probability with which a sad entry of the bank makes an utterance dark."""
+LEADING = 0.1
+"""The advantage of an entry with follow-ups: after its reply, the user's next words are understood better."""
+BESIDE = 4
+"""The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
+
+
+def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None) -> list[Found]:
+    """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
+
+    If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk.
+    """
+    sentences = seen.sentences[:6]
+    longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
+    texts = [asking] if asking else list(longer or sentences)
+    if len(seen.tree.words) <= WHOLE:
+        texts.append(seen.text)
+    mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
+    bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
+    kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
+    grave = is_grave(seen.normal.text)
+    ranked: list[Found] = []
+    for one in phrases.bank.similar(texts, seen.text):
+        tone = one.moment.tone
+        crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
+        crossed = crossed or (grave and tone not in DARK and one.score < CLOSE)
+        examples = one.moment.examples
+        crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
+        crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)
+        crossed = crossed or (persons == (False, True) and all(persons_in(text) == (True, False) for text in examples))
+        ranked.append(replace(one, fit=one.fit * (1 - CROSSED * crossed)))
+    return sorted(ranked, key=lambda one: -one.fit - LEADING * bool(one.moment.follows))
+
+
+def is_dark(seen: Analysis, near: Sequence[Found]) -> bool:
+    """Return whether an utterance is grave, by its words or by a sad entry of the bank that it resembles."""
+    return is_grave(seen.normal.text) or any(one.moment.tone == "sad" and one.fit >= DARKLY for one in near)
+
+
+def persons_in(text: str) -> tuple[bool, bool]:
+    """Return whether a text mentions the user, and whether it mentions others."""
+    return shape(plain(text))[1:3]

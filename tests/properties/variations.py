@@ -1,0 +1,57 @@
+"""Variations of random worlds: predicates that raise, several modules, pairs that are added at run time."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+from properties.shrinking import compiles
+from properties.worlds import MODULES, Clause, Gate, Op, RuleOf, Want, World
+
+
+def varied(world: World, seed: int) -> World:
+    """Return a variation of a world, or the world itself. A variation that does not compile is left out."""
+    chance = random.Random(f"variation {seed}")
+    for variation in (_doubtful, _scattered, _extended):
+        if chance.random() < 0.3 and compiles(other := variation(world, chance)):
+            world = other
+    return world
+
+
+def _scattered(world: World, chance: random.Random) -> World:
+    """Deal a world out to several modules."""
+    return replace(world, modules=chance.randint(2, len(MODULES)))
+
+
+def _extended(world: World, chance: random.Random) -> World:
+    """Add pairs, some of them beside live spikes of their signals."""
+    signals = [f"s{n}" for n in range(len(world.signals))]
+    inputs = list(world.inputs)
+    for _ in range(chance.randint(1, 2) if len(signals) > 1 else 0):
+        pair = tuple(Want(signal) for signal in chance.sample(signals, 2))
+        writes = (f"v{chance.randrange(len(world.slots))}",) if world.slots and chance.random() < 0.4 else ()
+        inputs.insert(chance.randint(0, len(inputs)), (0.0, ("add", RuleOf((pair,), writes))))
+    return replace(world, inputs=tuple(inputs))
+
+
+def _doubtful(world: World, chance: random.Random) -> World:
+    """Give conditions predicates that raise."""
+
+    def condition(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
+        return tuple(tuple(part(one) for one in clause) for clause in clauses)
+
+    def part(one: Want | Gate) -> Want | Gate:
+        if chance.random() >= 0.3:
+            return one
+        if isinstance(one, Gate):
+            return replace(one, predicate=chance.choice(("fussy", "choosy")))
+        return replace(one, where=chance.choice(("fussy", "choosy", "odd fussy", "fussy choosy")))
+
+    def rule(one: RuleOf) -> RuleOf:
+        return replace(one, when=condition(one.when), until=condition(one.until))
+
+    def op(one: Op) -> Op:
+        return ("add", rule(one[1])) if one[0] == "add" else one
+
+    rules = tuple(rule(one) for one in world.rules)
+    return replace(world, rules=rules, inputs=tuple((seconds, op(one)) for seconds, one in world.inputs))
