@@ -36,6 +36,11 @@ MODULES = (
 """The modules that are compiled, all together: a compiled module reaches into the objects of another without a look-up."""
 
 
+FLAGS = "-O2 -g0 -w -fno-semantic-interposition -fvisibility=hidden"
+"""The options of the C compiler. Without the last two, each call between the modules is one that another library might
+replace, and so takes longer."""
+
+
 def load_compiled() -> Any:
     """Return the module ``ravestate.compiled`` of this checkout, without an import of the package."""
     spec = importlib.util.spec_from_file_location("compiled", SOURCE / "compiled.py")
@@ -66,7 +71,7 @@ def compile_modules() -> Path:
     os.chdir(ROOT)
     try:
         with tempfile.TemporaryDirectory() as temporary:
-            os.environ["CFLAGS"] = f"{os.environ.get('CFLAGS', '')} -O2 -g0 -w"
+            os.environ["CFLAGS"] = f"{os.environ.get('CFLAGS', '')} {FLAGS}"
             extensions = mypycify(
                 [
                     "--config-file=pyproject.toml",

@@ -42,7 +42,11 @@ SETTLES: Final = 64
 
 ENDED = "the context has ended"
 
-THREAD: Final = get_ident  # the compiled build finds a constant at once, and looks an import up each time
+# The compiled build finds a constant at once, and looks an import up each time.
+THREAD: Final = get_ident
+CURRENT: Final = asyncio.current_task
+ENTER: Final = _enter_task
+LEAVE: Final = _leave_task
 
 log = logging.getLogger("ravestate")
 
@@ -252,9 +256,9 @@ class Runner:
         some = False
         self._pumping = True
         turn_ends = perf_counter() + TURN
-        around = asyncio.current_task(self.loop)
+        around = CURRENT(self.loop)
         if around is not None:  # rules start outside any task
-            _leave_task(self.loop, around)
+            LEAVE(self.loop, around)
         todo = self._todo or []
         try:
             for _ in range(rounds):
@@ -289,7 +293,7 @@ class Runner:
             if not todo:
                 self._todo = None
             if around is not None:
-                _enter_task(self.loop, around)
+                ENTER(self.loop, around)
         return some
 
     def _perform(self, effect: Effect) -> None:
