@@ -64,6 +64,24 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
     assert not observation(world)
 
 
+@pytest.mark.parametrize("order", ["0011", "1100", "110001", "0101"])
+def test_a_rule_that_makes_two_signals_kin_meets_their_pairs_as_the_laws_say(order: str) -> None:
+    """The rule is added after the spikes of one instant, before any pair of these spikes has run (L12)."""
+    for cause, effect in ("s0", "s1"), ("s1", "s0"):
+        added = RuleOf(when=((Want(cause),),), emits=(effect,))
+        world = World(
+            signals=(SignalOf(), SignalOf()),
+            rules=(RuleOf(when=((Want("s0"), Want("s1")),)),),
+            inputs=(
+                *((0.0, ("emit", f"s{number}", place)) for place, number in enumerate(order)),
+                (0.0, ("add", added)),
+            ),
+            together=True,
+        )
+        check(world, 0)
+        assert not observation(world)
+
+
 def check(world: World, seed: int) -> None:
     """Fail with the smallest world in which the engine departs from the laws."""
     if difference(world):

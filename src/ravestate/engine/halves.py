@@ -111,15 +111,15 @@ class Halves:
     def share(self, policy: Policy) -> None:
         """Create the pairs that `_pair` spared, for clauses whose signals are kin only under a new policy.
 
-        Each spike has held the first later counterpart. From now on, an activation that loses a spike takes another one
-        only from the same causal group, so the spared pairs would not follow from the others any more (L12).
+        Until now, an activation that loses a spike has taken the oldest one, so the spared pairs followed from the others.
+        From now on it takes one of the same causal group only (L12). In the spared pairs, each spike holds the first
+        later counterpart.
         """
         for activations in list(self.state.active.values()):
             clause = next(iter(activations)).clause
-            need = clause.needs[0]
-            if need.half is not None and not clause.rule.slots:
-                if policy.clause_plans[clause.index].needs[0].kin != need.kin:
-                    self._share(clause, [one for one in activations if one.state < RUNNING])
+            need, later = clause.needs[0], policy.clause_plans[clause.index].needs[0]
+            if need.half is not None and not clause.rule.slots and later.kin != need.kin:
+                self._share(clause, [one for one in activations if one.state < RUNNING])
 
     def _share(self, clause: Clause, activations: list[Activation]) -> None:
         """Create the spared pairs of a clause; `activations` are all its activations that do not run yet."""
@@ -134,9 +134,13 @@ class Halves:
                 own.setdefault(max(older, key=_birth), activation)
         if len(own) == len(held):
             return  # no pair was spared
+        taken = {activation.id for each in state.active.values() for activation in each}
         for spike in sorted(held.difference(own), key=_birth):
-            state.activations += 1
-            activation = own[spike] = holdings.new_activation(clause, state.activations)
+            number = spike.before + 1  # `offer` left out the number of this activation, so one is free
+            while number in taken:
+                number += 1
+            taken.add(number)
+            activation = own[spike] = holdings.new_activation(clause, number)
             need = _need(clause, spike)
             holdings.acquire(activation, need, spike)
             state.lacking.setdefault(clause.needs[1 - need.index], {})[activation] = None

@@ -74,7 +74,7 @@ class Runs:
             values[view.name] = state.read(view.index)
         if state.tracer is not None:
             ids = tuple([spike.id for spike in activation.spikes if spike is not None])
-            state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids))
+            state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids, activation.number))
         state.acts = True
         state.out.append(Run(activation.number, rule.rule, payloads, values))
 
