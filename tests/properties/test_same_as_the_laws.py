@@ -13,7 +13,7 @@ from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
 from properties.variations import varied
-from properties.worlds import RuleOf, SignalOf, Want, World
+from properties.worlds import Act, Gate, RuleOf, SignalOf, SlotOf, Want, World
 
 SEEDS = 2_000
 PAIR_SEEDS = 400
@@ -62,6 +62,19 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
         together=True,
     )
     assert not observation(world)
+
+
+def test_what_waits_for_a_run_is_no_part_of_a_stalemate_any_more() -> None:
+    """Once `r1` runs for the first s0, its activation for the second waits for that run, and `r3` and `r0` for it."""
+    both = (Want("s0"), Want("s2"))
+    rules = (
+        RuleOf(when=((Want("s0"),),), writes=("v0",)),
+        RuleOf(when=(both,), writes=("v1",), acts=(Act(seconds=2.0),)),
+        RuleOf(when=((*both, Gate("v0")),), writes=("v1",)),
+        RuleOf(when=((Want("s0"),),), writes=("v1", "v0"), weight=2.0),
+    )
+    inputs = tuple((0.0, ("emit", name, 0)) for name in ("s0", "s0", "s2"))
+    check(World((SignalOf(),) * 3, (SlotOf(),) * 2, rules, inputs), 0)
 
 
 @pytest.mark.parametrize("order", ["0011", "1100", "110001", "0101"])
