@@ -41,6 +41,8 @@ class Runs:
         activation.step(GRANT)
         if activation.refusal is not None:
             self.holdings.waits.end(activation)
+            if state.tracer is not None:
+                self.holdings.waits.tell_followers()
         activation.pressed = NOTHING
         activation.stands_on = activation.firm_spikes()
         if rule.slots:

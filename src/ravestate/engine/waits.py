@@ -45,9 +45,13 @@ class Waits:
         if state.tracer is not None:
             refusal.told = () if before is None else before.told
             if self._tell(activation, refusal) and before is not None:
-                for other in state.waiting:
-                    if other.refusal is not None and other.refusal.leader is not None:
-                        self._tell(other, other.refusal)  # its leader's names may be new
+                self.tell_followers()
+
+    def tell_followers(self) -> None:
+        """Trace the names for which followers wait, where those of their leaders have changed."""
+        for other in self.state.waiting:
+            if other.refusal is not None and other.refusal.leader is not None:
+                self._tell(other, other.refusal)
 
     def _tell(self, activation: Activation, refusal: Refusal) -> bool:
         """Trace the names of a refusal, unless the trace has told the same names; return whether they are new."""
