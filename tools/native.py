@@ -30,7 +30,7 @@ MODULES = (
     *sorted(f"engine/{file.name}" for file in (SOURCE / "engine").glob("*.py") if file.stem not in COLD),
     *(f"policy/{name}.py" for name in ("causes", "components", "model")),
     *(f"runtime/{name}.py" for name in (
-        "async_rules", "blocking", "clock", "eager_task", "listeners", "rule_context", "runner", "spares", "waits",
+        "async_rules", "blocking", "clock", "eager_task", "functions", "listeners", "rule_context", "runner", "spares", "timer", "waits",
     )),
 )  # fmt: skip
 """The modules that are compiled, all together: a compiled module reaches into the objects of another without a look-up."""

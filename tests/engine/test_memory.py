@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import ravestate as rs
-from ravestate.engine.effects import Run
+from ravestate.engine.effects import Failed, Run
 from ravestate.engine.engine import SPARE, Engine
 from ravestate.engine.events import AddRule, Emit, Finish, Start, Write
 from ravestate.engine.explain import explain
@@ -151,6 +151,41 @@ def test_a_rule_that_was_added_stays_after_a_rest() -> None:
     (effect,) = engine.effects()
     assert isinstance(effect, Run)
     assert effect.rule.name == "late:late"
+
+
+def test_spare_parts_do_not_know_when_their_last_engine_got_a_rule() -> None:
+    first = Engine(rs.compile(m))
+    for turn in range(30):
+        serve(first, turn, 10.0 * turn)
+        rest(first, 10.0 * turn + 6)
+
+    async def late(ctx: rs.RuleContext) -> None:
+        """A rule for one engine."""
+
+    first.receive(AddRule(first.policy.with_rule(rs.Module("late").rule(when=other, writes=seen)(late))), 400.0)
+    rest(first, 401.0)
+    assert len(first.policy.spare) == 1
+    second = Engine(first.policy)
+    for _ in range(5):
+        second.receive(Emit("m:go"), 0.0)
+    second.receive(Emit("m:other"), 0.0)
+    plan = second.policy.plan_of["m:both"]
+    assert [len(one.holds) for one in explain(second, plan).activations].count(2) == 1  # one pair stands for five
+
+
+def test_an_engine_does_not_rest_before_it_has_reported_a_predicate_that_raised() -> None:
+    own = rs.Module("m")
+    signal = own.signal("go")
+
+    @own.rule(when=signal.where(lambda payload: payload > 0))
+    async def positive(ctx: rs.RuleContext) -> None:
+        """A rule whose predicate raises on a text."""
+
+    engine = Engine(rs.compile(own))
+    engine.receive(Emit("m:go", "three"), 0.0)
+    (effect,) = engine.effects()
+    assert isinstance(effect, Failed)
+    assert (effect.rule, type(effect.exception)) == ("m:positive", TypeError)
 
 
 def test_a_look_at_an_engine_at_rest_keeps_no_parts() -> None:

@@ -190,8 +190,8 @@ class Model:
         return found
 
     def consent_round(self) -> bool:
-        """L15: ask for those that are ready, older causes first, then the best."""
-        changed = False
+        """L15: ask for those that are ready, older causes first, then the best. Ask again if a rival has given up (L16)."""
+        changed, count = False, len(self.acts)
         written: set[int] = set()
         asking = sorted((a for a in self.acts if a.state == READY and self.asks(a)), key=self.order)
         for act in asking:
@@ -206,7 +206,7 @@ class Model:
                     changed = True
             elif self.consents(act):
                 break  # it reads what a rule of this round is about to write: it asks when that is done
-        return changed
+        return changed or len(self.acts) < count
 
     def order(self, act: Act) -> Any:
         return (min(g.id for g in act.groups()), -self.worth(act.clause), act.clause.index, act.id)

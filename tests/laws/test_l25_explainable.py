@@ -10,6 +10,7 @@ from laws.short import emitter, hearer, output, resigner, writer
 from laws.story import everything, tell
 from ravestate.engine import trace
 from ravestate.engine.explain import ActivationState
+from ravestate.testing import simulate
 from scenarios.driver import Driver
 
 
@@ -257,6 +258,64 @@ def test_births_holdings_and_outcomes_are_traced_with_their_causes(play: Any) ->
         assert (effect.signal, effect.parents) == ("m:out:changed", started.spikes)
         [settled] = [r for r in sim.trace if isinstance(r, trace.Settled)]
         assert (settled.run, settled.outcome, settled.fired) == (started.run, "done", True)
+
+
+def test_the_reason_to_wait_is_traced_again_when_it_changes(play: Any) -> None:
+    """The wait of `better` ends at 1 s, and that of `best` at 2 s; the two fallbacks learn of it at the same time."""
+    m = rs.Module("m")
+    speech, topic, x, y = (m.signal(name) for name in ("speech", "topic", "x", "y"))
+    out = output(m)
+    emitter(m, "classify", speech, topic, after=5.0)
+    writer(m, "best", topic & x, out, patience=2.0)
+    writer(m, "better", topic & y, out, patience=1.0)
+    for name in ("first", "second", "third"):
+        writer(m, name, speech, out)
+    with play(m) as sim:
+        sim.emit(speech)
+        sim.advance(3.0)
+        told = {
+            name: [(r.time, set(r.for_)) for r in sim.trace if isinstance(r, trace.Waits) and r.rule == f"m:{name}"]
+            for name in ("first", "second", "third")
+        }
+        assert told["first"] == [(0.0, {"m:best", "m:better"}), (1.0, {"m:best"})]
+        for name in ("second", "third"):
+            assert told[name][:2] == [(0.0, {"m:best", "m:better", "m:first"}), (1.0, {"m:best", "m:first"})]
+
+
+def test_a_wait_that_is_asked_about_again_for_the_same_reason_is_traced_once(play: Any) -> None:
+    m = rs.Module("m")
+    go, out = m.signal("go"), output(m)
+    writer(m, "first", go, out, after=3.0, weight=2.0)
+    writer(m, "beside", go, output(m, "face"), after=1.0)  # its end makes the group's waiting activations ask again
+    writer(m, "second", go, out)
+    with play(m) as sim:
+        sim.emit(go)
+        sim.advance(2.0)
+        assert sim.fired == ["m:beside"]
+        waits = [(r.time, r.rule, r.for_) for r in sim.trace if isinstance(r, trace.Waits)]
+        assert waits == [(0.0, "m:second", ("m:first",))]
+
+
+def test_a_start_has_the_number_of_the_run_and_of_its_activation() -> None:
+    m = rs.Module("m")
+    go, out, numbers = m.signal("go"), output(m), list[int]()
+    hearer(m, "waits", go & m.signal("other"), go, [])
+
+    @m.rule(when=go, writes=out)
+    async def counts(ctx: rs.RuleContext) -> None:
+        numbers.append(ctx.run)
+        ctx[out] = "done"
+
+    with simulate(m, trace=True) as sim:
+        sim.emit(go)
+        sim.emit(go)
+        started = [record for record in sim.trace if isinstance(record, trace.Started)]
+        assert [record.number for record in started] == numbers == [1, 2]
+        assert [record.run for record in started] != numbers
+        held = {
+            record.activation for record in sim.trace if isinstance(record, trace.Held) and record.rule == "m:counts"
+        }
+        assert {record.run for record in started} == held
 
 
 def test_without_a_listener_no_record_is_made(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,7 +24,7 @@ from properties.worlds import Counted, Endless, Play, World
 from ravestate.declare.core import RuleFailure
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.engine.engine import Engine
-from ravestate.engine.trace import Record, Tracer
+from ravestate.engine.trace import Record, Tracer, Waits
 from ravestate.runtime.journal import Entry, replay
 
 BIRTHS = 2_000
@@ -133,22 +133,47 @@ def observation(world: World) -> str:
     """Return what a tracer changes, in words; an empty text if it changes nothing (L24, L25).
 
     It must not change the effects, even if it comes and goes. A journal written with a tracer must replay without, and
-    the other way round.
+    the other way round. The trace must always have the present reasons of all that wait.
     """
-
+    reasons = Reasons()
     plain = Play(world, budget=4)
-    traced = Play(world, budget=4, traced=True)
+    traced = Play(world, budget=4, before=reasons.compare)
+    traced.engine.tracer = reasons.note
     now_and_then = Play(world, budget=4, before=_switch)
     told = [[*play.heard, *ends] for play in (plain, traced, now_and_then) for ends in [played(play)]]
     for name, lines in zip(("traced", "traced now and then"), told[1:], strict=True):
         for one, other in zip_longest(told[0], lines, fillvalue="nothing more"):
             if one != other:
                 return f"  untraced: {one}\n  {name}: {other}"
+    if reasons.fault:
+        return reasons.fault
     if not _repeats(plain, tracer=_ignore):
         return "  a journal replays otherwise with a tracer"
     if not _repeats(traced, tracer=None):
         return "  a journal written with a tracer replays otherwise without"
     return ""
+
+
+class Reasons:
+    """The reasons to wait that a trace has told, beside those of the engine."""
+
+    def __init__(self) -> None:
+        self.told: dict[int, tuple[str, ...]] = {}
+        """Number of an activation → the names of the rules for which it waits."""
+        self.fault = ""
+        """The first difference, in words, or an empty text."""
+
+    def note(self, record: Record) -> None:
+        """Note the reason in a record."""
+        if isinstance(record, Waits):
+            self.told[record.activation] = record.for_
+
+    def compare(self, play: Play) -> None:
+        """Compare the reasons, before time passes."""
+        for one in play.engine.waiting:
+            told, names = self.told.get(one.id, ()), tuple(one.refusal.all_names)
+            if set(told) != set(names) and not self.fault:
+                self.fault = f"  at {play.now:g} s {one} waits for {names}, but the trace says {told}"
 
 
 def _switch(play: Play) -> None:

@@ -13,7 +13,7 @@ from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
 from properties.variations import varied
-from properties.worlds import RuleOf, SignalOf, Want, World
+from properties.worlds import Act, Gate, RuleOf, SignalOf, SlotOf, Want, World
 
 SEEDS = 2_000
 PAIR_SEEDS = 400
@@ -62,6 +62,50 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
         together=True,
     )
     assert not observation(world)
+
+
+def test_what_waits_for_a_run_is_no_part_of_a_stalemate_any_more() -> None:
+    """Once `r1` runs for the first s0, its activation for the second waits for that run, and `r3` and `r0` for it."""
+    both = (Want("s0"), Want("s2"))
+    rules = (
+        RuleOf(when=((Want("s0"),),), writes=("v0",)),
+        RuleOf(when=(both,), writes=("v1",), acts=(Act(seconds=2.0),)),
+        RuleOf(when=((*both, Gate("v0")),), writes=("v1",)),
+        RuleOf(when=((Want("s0"),),), writes=("v1", "v0"), weight=2.0),
+    )
+    inputs = tuple((0.0, ("emit", name, 0)) for name in ("s0", "s0", "s2"))
+    check(World((SignalOf(),) * 3, (SlotOf(),) * 2, rules, inputs), 0)
+
+
+def test_whoever_waited_is_reconsidered_as_soon_as_a_rival_gives_up() -> None:
+    """At 0.5 s `r0` lets the patience of `r3` run out, so `r2` may run, although it asked earlier in that instant (L16)."""
+    half = Act(seconds=0.5)
+    rules = (
+        RuleOf(when=((Want("s1"), Want("s0")),), writes=("v0",), weight=0.5),
+        RuleOf(when=((Want("s3"),),), emits=("s2",), acts=(half,)),
+        RuleOf(when=((Want("s0"), Want("s3")),), writes=("v0",)),
+        RuleOf(when=((Want("s2"), Want("s1")),), writes=("v0",)),
+    )
+    inputs = tuple((0.0, ("emit", name, 0)) for name in ("s1", "s3", "s0", "s1", "s2"))
+    check(World((SignalOf(),) * 4, (SlotOf(),), rules, inputs, patience=0.5), 0)
+
+
+@pytest.mark.parametrize("order", ["0011", "1100", "110001", "0101"])
+def test_a_rule_that_makes_two_signals_kin_meets_their_pairs_as_the_laws_say(order: str) -> None:
+    """The rule is added after the spikes of one instant, before any pair of these spikes has run (L12)."""
+    for cause, effect in ("s0", "s1"), ("s1", "s0"):
+        added = RuleOf(when=((Want(cause),),), emits=(effect,))
+        world = World(
+            signals=(SignalOf(), SignalOf()),
+            rules=(RuleOf(when=((Want("s0"), Want("s1")),)),),
+            inputs=(
+                *((0.0, ("emit", f"s{number}", place)) for place, number in enumerate(order)),
+                (0.0, ("add", added)),
+            ),
+            together=True,
+        )
+        check(world, 0)
+        assert not observation(world)
 
 
 def check(world: World, seed: int) -> None:

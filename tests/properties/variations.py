@@ -1,4 +1,4 @@
-"""Variations of random worlds: predicates that raise, several modules, pairs that are added at run time."""
+"""Variations of random worlds: predicates that raise, several modules, rules that are added at run time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import random
 from dataclasses import replace
 
 from properties.shrinking import compiles
-from properties.worlds import MODULES, Clause, Gate, Op, RuleOf, Want, World
+from properties.worlds import MODULES, Act, Clause, Gate, Op, RuleOf, Want, World
 
 
 def varied(world: World, seed: int) -> World:
@@ -24,14 +24,39 @@ def _scattered(world: World, chance: random.Random) -> World:
 
 
 def _extended(world: World, chance: random.Random) -> World:
-    """Add pairs, some of them beside live spikes of their signals."""
+    """Add rules, some of them beside live spikes of their signals, or in the instant of these spikes."""
     signals = [f"s{n}" for n in range(len(world.signals))]
     inputs = list(world.inputs)
     for _ in range(chance.randint(1, 2) if len(signals) > 1 else 0):
-        pair = tuple(Want(signal) for signal in chance.sample(signals, 2))
-        writes = (f"v{chance.randrange(len(world.slots))}",) if world.slots and chance.random() < 0.4 else ()
-        inputs.insert(chance.randint(0, len(inputs)), (0.0, ("add", RuleOf((pair,), writes))))
-    return replace(world, inputs=tuple(inputs))
+        rule = _pair(world, chance, signals) if chance.random() < 0.5 else _added(world, chance, signals)
+        inputs.insert(chance.randint(0, len(inputs)), (0.0, ("add", rule)))
+    return replace(world, inputs=tuple(inputs), together=world.together or chance.random() < 0.3)
+
+
+def _pair(world: World, chance: random.Random, signals: list[str]) -> RuleOf:
+    """Return a plain rule that hears two signals."""
+    return RuleOf((tuple(Want(signal) for signal in chance.sample(signals, 2)),), _slot(world, chance))
+
+
+def _added(world: World, chance: random.Random, signals: list[str]) -> RuleOf:
+    """Return a rule that may raise signals, and may hear signals of some age or payload only."""
+    emits = tuple(chance.sample(signals, chance.choice((0, 1, 1, 2))))
+    clauses: list[Clause] = []
+    for _ in range(chance.choice((1, 1, 1, 2))):
+        wants: list[Want] = []
+        for signal in chance.sample(signals, chance.choice((1, 1, 2))):
+            low = chance.choice((0.0, 0.0, 0.0, 0.5, 1.0))
+            where = chance.choice(("", "", "", "odd", "never"))
+            wants.append(Want(signal, low, chance.choice((5.0, 5.0, 1.5, None)), chance.random() < 0.1, where))
+        clauses.append(tuple(wants))
+    steps = tuple((chance.choice((0.0, 0.0, 0.5)), ("emit", name, chance.randint(0, 2))) for name in emits)
+    acts = (Act(steps[: chance.randint(0, len(steps))], chance.choice((0.0, 0.0, 1.0))),)
+    return RuleOf(tuple(clauses), _slot(world, chance), emits, acts, detached=chance.random() < 0.1)
+
+
+def _slot(world: World, chance: random.Random) -> tuple[str, ...]:
+    """Return the slot that an added rule writes, or none."""
+    return (f"v{chance.randrange(len(world.slots))}",) if world.slots and chance.random() < 0.4 else ()
 
 
 def _doubtful(world: World, chance: random.Random) -> World:

@@ -84,7 +84,7 @@ export const VERDICTS = {
   },
 };
 
-/** A spike was born; `source` is the number of the run that raised it, or 0 if code outside the rules did. */
+/** A spike was born; `source` is the activation whose run raised it, or 0 if code outside the rules did. */
 export interface Born {
   kind: "born";
   time: number;
@@ -281,7 +281,7 @@ export interface RuleView {
   background: boolean;
 }
 
-/** A slot got a value; `run` is the number of the run that wrote it, or 0 if code outside the rules did. */
+/** A slot got a value; `run` is the activation whose run wrote it, or 0 if code outside the rules did. */
 export interface Set {
   kind: "set";
   time: number;
@@ -290,7 +290,7 @@ export interface Set {
   run: number;
 }
 
-/** A run has ended; `outcome` is an `Outcome` (L18). */
+/** The run of the activation `run` has ended; `outcome` is an `Outcome` (L18). */
 export interface Settled {
   kind: "settled";
   time: number;
@@ -324,7 +324,11 @@ export interface SlotView {
   writers: string[];
 }
 
-/** A rule's function starts to run (L17). */
+/**
+ * A rule's function starts to run (L17).
+ *
+ * The records number a run by its activation: `run`. Events, effects and `ctx.run` number it by `number`.
+ */
 export interface Started {
   kind: "started";
   time: number;
@@ -332,6 +336,7 @@ export interface Started {
   rule: string;
   clause: number;
   spikes: number[];
+  number?: number;
 }
 
 /**
@@ -345,7 +350,7 @@ export interface Term {
   nats: number;
 }
 
-/** The engine asked a run to end; `reason` is a `StopReason`. */
+/** The engine asked the run of the activation `run` to end; `reason` is a `StopReason`. */
 export interface Told {
   kind: "told";
   time: number;

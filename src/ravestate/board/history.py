@@ -305,7 +305,7 @@ class Rivals:
         return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that wrote one of `rule`'s slots before `time`, and the number of its run."""
+        """Return the first other rule that wrote one of `rule`'s slots before `time`, and the number of its activation."""
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

@@ -23,7 +23,7 @@ from ravestate.engine.line import Line
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
-from ravestate.engine.stalemate import stalemate
+from ravestate.engine.stalemate import loose, stalemate
 from ravestate.engine.state import State
 
 BATCH: Final = 100
@@ -226,6 +226,13 @@ class Agenda:
             if order != state.order(best):
                 heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
                 continue
+            freed = loose(best, stuck)
+            if not found.issuperset(freed):  # something has changed since these were found, so search them again
+                for other in freed:
+                    stuck.discard(other)
+                    state.refused[other] = None
+                if best in freed:
+                    continue
             for group in best.firm_groups():
                 for other in group.interested:  # these waits depend on the group, which this start changes
                     stuck.discard(other)

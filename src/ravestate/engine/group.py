@@ -45,7 +45,7 @@ class Group:
         interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
         pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
         roster: The members of a large group by slot and by rule (``roster.py``), once a question has needed them.
-        answers: Number of a slot → the rule that first finished with it, and the number of its run. The engine notes
+        answers: Number of a slot → the rule that first finished with it, and the number of its activation. The engine notes
             them for the trace, while there is a tracer.
     """
 
@@ -138,12 +138,12 @@ class Group:
         taken = self.taken
         return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
 
-    def note(self, slots: tuple[int, ...], rule: str, run: int) -> None:
-        """Note that a run of `rule` has finished with `slots`; an earlier note about a slot stays."""
-        self.answers = {**dict.fromkeys(slots, (rule, run)), **self.answers}
+    def note(self, slots: tuple[int, ...], rule: str, activation: int) -> None:
+        """Note that the run of an activation of `rule` has finished with `slots`; an earlier note about a slot stays."""
+        self.answers = {**dict.fromkeys(slots, (rule, activation)), **self.answers}
 
     def answer(self, slots: tuple[int, ...]) -> tuple[str, int]:
-        """Return the rule that finished with one of the slots, and the number of its run; or ``""`` and 0."""
+        """Return the rule that finished with one of the slots, and its activation's number; or ``""`` and 0."""
         return next((self.answers[slot] for slot in slots if slot in self.answers), ("", 0))
 
     def concern(self, activation: Activation) -> None:

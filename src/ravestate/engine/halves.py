@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import Final
 
-from ravestate.engine.activation import Activation
+from ravestate.engine.activation import RUNNING, Activation, by_age
 from ravestate.engine.conflict_sets import ConflictSets
 from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
@@ -30,6 +30,7 @@ from ravestate.engine.row import Row
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause, Half, Need, SignalPlan
+from ravestate.policy.policy import Policy
 
 MANY: Final = 8
 """The number of useless spikes that a search may pass before the half gets a `Row`."""
@@ -106,6 +107,57 @@ class Halves:
             for spike in list(state.halves.get(need.half, ())) if need.half is not None else ():
                 if state.keeps(need, spike):
                     self._make(need, spike)
+
+    def share(self, policy: Policy) -> None:
+        """Create the pairs that `_pair` spared, for clauses whose signals are kin only under a new policy.
+
+        Until now, an activation that loses a spike has taken the oldest one, so the spared pairs followed from the others.
+        From now on it takes one of the same causal group only (L12). In the spared pairs, each spike holds the first
+        later counterpart.
+        """
+        for activations in list(self.state.active.values()):
+            clause = next(iter(activations)).clause
+            need, later = clause.needs[0], policy.clause_plans[clause.index].needs[0]
+            if need.half is not None and not clause.rule.slots and later.kin != need.kin:
+                self._share(clause, [one for one in activations if one.state < RUNNING])
+
+    def _share(self, clause: Clause, activations: list[Activation]) -> None:
+        """Create the spared pairs of a clause; `activations` are all its activations that do not run yet."""
+        state, holdings = self.state, self.holdings
+        own: dict[Spike, Activation] = {}  # spike → the activation that began with it
+        held: set[Spike] = set()
+        for activation in sorted(activations, key=by_age):
+            spikes = [spike for spike in activation.spikes if spike is not None]
+            held.update(spikes)
+            older = [spike for spike in spikes if spike.before < activation.id]
+            if older:
+                own.setdefault(max(older, key=_birth), activation)
+        if len(own) == len(held):
+            return  # no pair was spared
+        taken = {activation.id for each in state.active.values() for activation in each}
+        for spike in sorted(held.difference(own), key=_birth):
+            number = spike.before + 1  # `offer` left out the number of this activation, so one is free
+            while number in taken:
+                number += 1
+            taken.add(number)
+            activation = own[spike] = holdings.new_activation(clause, number)
+            need = _need(clause, spike)
+            holdings.acquire(activation, need, spike)
+            state.lacking.setdefault(clause.needs[1 - need.index], {})[activation] = None
+        later: dict[Need, Spike] = {}
+        for spike in sorted(held, key=_birth, reverse=True):
+            need = _need(clause, spike)
+            later[need] = spike
+            other = clause.needs[1 - need.index]
+            activation = own[spike]
+            if other in later and activation.spikes[other.index] is not later[other]:
+                if activation.missing:
+                    holdings.acquire(activation, other, later[other])
+                    holdings.update(activation)
+                else:
+                    holdings.unready(activation)
+                    holdings.swap(activation, other, later[other])
+                holdings.waits.stir(activation)
 
     def unfold_group(self, group: Group) -> None:
         """Create the activations of the spikes of a group."""
@@ -197,3 +249,12 @@ class Halves:
             place = half.places.get(clause.rule.index)
             if place is not None and self.state.keeps(half.needs[place], spike):
                 self.take_over(self._make(half.needs[place], spike), group)
+
+
+def _birth(spike: Spike) -> int:
+    return spike.id
+
+
+def _need(clause: Clause, spike: Spike) -> Need:
+    """Return the need of a pair that a spike meets."""
+    return clause.needs[0] if clause.needs[0].signal is spike.signal else clause.needs[1]

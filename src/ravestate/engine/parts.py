@@ -183,6 +183,7 @@ class Parts:
         if [plan.rule for plan in plans[: len(known)]] != [plan.rule for plan in known]:
             raise EngineError("the new policy does not extend the running one: make it with policy.with_rule(rule)")
         self.halves.unfold_all()
+        self.halves.share(event.policy)
         state.adopt(event.policy)
         state.asking.update(state.waiting)
         for plan in plans[len(known) :]:

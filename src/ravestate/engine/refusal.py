@@ -59,7 +59,7 @@ class Refusal:
         leader = self.leader
         if leader is None or leader.refusal is None:
             return self.names
-        return {**leader.refusal.names, **self.names}
+        return {**leader.refusal.all_names, **self.names}
 
     @property
     def bounded(self) -> bool:

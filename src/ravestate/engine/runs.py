@@ -41,6 +41,8 @@ class Runs:
         activation.step(GRANT)
         if activation.refusal is not None:
             self.holdings.waits.end(activation)
+            if state.tracer is not None:
+                self.holdings.waits.tell_followers()
         activation.pressed = NOTHING
         activation.stands_on = activation.firm_spikes()
         if rule.slots:
@@ -74,7 +76,7 @@ class Runs:
             values[view.name] = state.read(view.index)
         if state.tracer is not None:
             ids = tuple([spike.id for spike in activation.spikes if spike is not None])
-            state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids))
+            state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids, activation.number))
         state.acts = True
         state.out.append(Run(activation.number, rule.rule, payloads, values))
 

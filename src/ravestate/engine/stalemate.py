@@ -54,6 +54,26 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             return stuck
 
 
+def loose(one: Activation, stuck: Idle) -> list[Activation]:
+    """Return the members of a stalemate that wait for an activation outside it by now; oldest first.
+
+    Only `one` and the members for which it waits, directly or through others, are searched.
+    """
+    seen: set[Activation] = set()
+    reached = [one]
+    while reached:
+        each = reached.pop()
+        if each in stuck and each not in seen:
+            seen.add(each)
+            for roots in _firm(each):
+                reached += roots
+    left, freed = seen.copy(), seen
+    while freed:
+        freed = {each for each in left if any([left.isdisjoint(roots) for roots in _firm(each)])}
+        left -= freed
+    return sorted(seen - left, key=by_age)
+
+
 def _firm(activation: Activation) -> list[tuple[Activation, ...]]:
     """Return an activation's `Refusal.firm`: for each rival, the activations that will make it ready or rule it out."""
     return [] if activation.refusal is None else activation.refusal.firm

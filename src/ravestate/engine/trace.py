@@ -1,7 +1,7 @@
 """The trace (L25): a closed union of records for the debugger, the recorder and the tests.
 
-The engine makes a record only while it has a tracer. The trace gives a run the number of its activation. Events and effects
-number the runs by themselves, in the order of their `Started` records, so that they are the same without a tracer.
+The engine makes a record only while it has a tracer. The records identify a run by the number of its activation. Events,
+effects and ``ctx.run`` have the run's own number, which is the same without a tracer. `Started` has both.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Born:
-    """A spike was born; ``source`` is the number of the run that raised it, or 0 if code outside the rules did."""
+    """A spike was born; ``source`` is the activation whose run raised it, or 0 if code outside the rules did."""
 
     time: float
     spike: int
@@ -45,7 +45,7 @@ class Merged:
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A slot got a value; ``run`` is the number of the run that wrote it, or 0 if code outside the rules did."""
+    """A slot got a value; ``run`` is the activation whose run wrote it, or 0 if code outside the rules did."""
 
     time: float
     slot: str
@@ -77,7 +77,7 @@ class GaveUp:
     signal: str
     reason: str
     by: str = ""  # the rule that consumed the spike, or resigned; empty if there is none
-    run: int = 0  # the number of that rule's run; 0 if there is none, or if it is unknown
+    run: int = 0  # the number of the activation that ran; 0 if there is none, or if it is unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class Passed:
     signal: str
     reason: str
     by: str = ""  # the rule that had consumed the spike's cause; empty if unknown
-    run: int = 0  # the number of that rule's run; 0 if unknown
+    run: int = 0  # the number of the activation that ran; 0 if unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,18 +121,22 @@ class Pressed:
 
 @dataclass(frozen=True, slots=True)
 class Started:
-    """A rule's function starts to run (L17)."""
+    """A rule's function starts to run (L17).
+
+    The records number a run by its activation: ``run``. Events, effects and ``ctx.run`` number it by ``number``.
+    """
 
     time: float
     run: int
     rule: str
     clause: int
     spikes: tuple[int, ...]
+    number: int = 0  # 0 if the trace is from a release without it
 
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """The engine asked a run to end; ``reason`` is a `StopReason`."""
+    """The engine asked the run of the activation ``run`` to end; ``reason`` is a `StopReason`."""
 
     time: float
     run: int
@@ -142,7 +146,7 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """A run has ended; ``outcome`` is an `Outcome` (L18)."""
+    """The run of the activation ``run`` has ended; ``outcome`` is an `Outcome` (L18)."""
 
     time: float
     run: int

@@ -43,11 +43,26 @@ class Waits:
         if refusal.recheck < NEVER:
             state.deadlines.add(refusal.recheck, RECHECK, activation)
         if state.tracer is not None:
-            refusal.told = tuple(refusal.all_names)
-            if before is None or before.told != refusal.told:
-                until = None if refusal.blockers else patience_of_rivals(state, activation)
-                rule = activation.clause.rule.name
-                state.tracer(trace.Waits(state.now, activation.id, rule, refusal.told, until))
+            refusal.told = () if before is None else before.told
+            if self._tell(activation, refusal) and before is not None:
+                self.tell_followers()
+
+    def tell_followers(self) -> None:
+        """Trace the names for which followers wait, where those of their leaders have changed."""
+        for other in self.state.waiting:
+            if other.refusal is not None and other.refusal.leader is not None:
+                self._tell(other, other.refusal)
+
+    def _tell(self, activation: Activation, refusal: Refusal) -> bool:
+        """Trace the names of a refusal, unless the trace has told the same names; return whether they are new."""
+        state = self.state
+        names = tuple(refusal.all_names)
+        if names == refusal.told or state.tracer is None:
+            return False
+        refusal.told = names
+        until = None if refusal.blockers else patience_of_rivals(state, activation)
+        state.tracer(trace.Waits(state.now, activation.id, activation.clause.rule.name, names, until))
+        return True
 
     def end(self, activation: Activation) -> None:
         """Make an activation stop waiting, so that changes elsewhere do not make it ask again."""

@@ -13,7 +13,7 @@ from ravestate.runtime.rule_context import RuleContext
 from ravestate.runtime.spares import Spares
 
 if TYPE_CHECKING:
-    from ravestate.runtime.runner import Runner
+    from ravestate.runtime.functions import Functions
 
 GRACE = 5.0  # the seconds that a cancelled rule has to clean up before its run counts as ended
 
@@ -26,16 +26,16 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    It tells the runner when the function of a run has ended (`Runner.finish`). If a run does not end within `GRACE`
-    seconds of its cancellation, it tells the runner to drop the run (`Runner.drop`). When the tasks in `cleaning` have
-    ended, or their turns are over, the runner goes on (`Runner.pump`).
+    It says when the function of a run has ended (`Functions.finish`). If a run does not end within `GRACE` seconds of its
+    cancellation, the run is dropped (`Functions.drop`). When the tasks in `cleaning` have ended, or their turns are over,
+    other effects follow (`Functions.go_on`).
     """
 
-    def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, functions: Functions) -> None:
         self.cleaning: tuple[asyncio.Task[Any], ...] = ()
         """The tasks that have just been cancelled. Their last writes come before any other effect."""
         self._loop = loop
-        self._runner = runner
+        self._functions = functions
         spares = Spares.join(loop)
         self._variables = spares.variables()
         self._spares: Spares | None = spares
@@ -56,7 +56,7 @@ class AsyncRules:
             end = task.first_step(ctx)
         except BaseException as exception:  # a rule may raise anything
             self._keep(task)
-            self._runner.finish(ctx, None, exception)
+            self._functions.finish(ctx, None, exception)
             if isinstance(exception, KeyboardInterrupt):
                 raise
             return
@@ -65,7 +65,7 @@ class AsyncRules:
             task.task.add_done_callback(functools.partial(self._done, ctx))
         else:
             self._keep(task)
-            self._runner.finish(ctx, end.result, None)
+            self._functions.finish(ctx, end.result, None)
 
     def _keep(self, task: EagerTask) -> None:
         """Keep a spare task for the next function, unless a function has spoilt it."""
@@ -118,19 +118,19 @@ class AsyncRules:
         if grace is not None:
             grace.cancel()
         exception = asyncio.CancelledError() if task.cancelled() else task.exception()
-        self._runner.finish(ctx, None if exception is not None else task.result(), exception)
+        self._functions.finish(ctx, None if exception is not None else task.result(), exception)
 
     def _wait_for_cleaning(self, turns: int) -> None:
         if turns and not all(task.done() for task in self.cleaning):
             self._loop.call_soon(self._wait_for_cleaning, turns - 1)
         else:
             self.cleaning = ()
-            self._runner.pump()
+            self._functions.go_on()
 
     def _grace_is_over(self, ctx: RuleContext) -> None:
         del self._grace[ctx]
         _warn(ctx.rule)
-        self._runner.drop(ctx, "it did not end in time")
+        self._functions.drop(ctx, "it did not end in time")
 
 
 def _warn(rule: Rule[Any, Any]) -> None:

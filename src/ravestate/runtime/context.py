@@ -340,7 +340,7 @@ class Context:
 
     def plain_functions(self) -> list[str]:
         """Return the names of the rules whose plain functions are running: one name for each run."""
-        return self._running().plain_functions()
+        return self._running().functions.plain_names()
 
     def _running(self) -> Runner:
         if self._runner is None:

@@ -16,18 +16,16 @@ from ravestate.declare.rule import Rule
 from ravestate.declare.wording import said, short
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
-from ravestate.engine.events import AddRule, Emit, Event, Finish, Write
+from ravestate.engine.events import AddRule, Emit, Event, Write
 from ravestate.engine.parts import Parts
 from ravestate.engine.trace import Record
 from ravestate.errors import EngineError, PlatformError, RavestateError, RunEnded
 from ravestate.policy.policy import Policy
-from ravestate.runtime.async_rules import AsyncRules
 from ravestate.runtime.clock import Clock
-from ravestate.runtime.ending import ending
+from ravestate.runtime.functions import Functions
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.listeners import Hooks, Listeners
-from ravestate.runtime.plain_rules import PlainRules
-from ravestate.runtime.rule_context import RuleContext
+from ravestate.runtime.timer import Timer
 from ravestate.runtime.waits import Waits
 
 ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
@@ -90,21 +88,16 @@ class Runner:
         self._home = get_ident()  # the number of the loop's thread
         self._seed = seed
         self._random: random.Random | None = None
-        self._contexts: dict[int, RuleContext] = {}  # the runs that did not end at once
-        self._async = AsyncRules(loop, self)
-        self._plain: PlainRules | None = None  # made for the first plain function
+        self.functions = Functions(loop, self, is_virtual=self._is_virtual)
         self._waits: Waits | None = None  # made for the first task that waits
         self._todo: list[Effect] | None = None  # the effects that are still to be performed, the next one last
         self._due = False  # whether the engine may have effects
         self._scheduled = False  # whether the loop will call `_turn`
         self._settled = 0  # how often `settle` has performed effects since the loop's last turn
         self._pumping = False
-        self._closing = False
         self._instant = -1.0
         self._rounds = 0  # how many rounds of effects there were in the current instant
-        self._last_run: Rule[Any, Any] | None = None
-        self._timer: asyncio.TimerHandle | None = None
-        self._timer_due = 0.0
+        self._timer = Timer(loop, self.clock, self._wake)
 
     # ------------------------------------------------------------------------------------ events in
 
@@ -117,7 +110,7 @@ class Runner:
     def waits(self) -> Waits:
         """The tasks that wait until the engine reaches a certain state."""
         if self._waits is None:
-            self._waits = Waits(self._engine, self._is_busy, self._schedule)
+            self._waits = Waits(self._engine, self._is_busy, self.schedule)
         return self._waits
 
     @property
@@ -134,7 +127,7 @@ class Runner:
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
         """Raise a signal for a run, or for code outside (None). Any thread may call this."""
-        parts = self._short_way()
+        parts = self.short_way()
         if parts is not None:
             parts.emit(signal, payload, run)
         else:
@@ -142,20 +135,20 @@ class Runner:
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
         """Write a slot for a run, or for code outside (None). Any thread may call this."""
-        parts = self._short_way()
+        parts = self.short_way()
         if parts is not None:
             parts.write(slot, value, run)
         else:
             self.receive(Write(slot, value, run))
 
-    def _short_way(self) -> Parts | None:
+    def short_way(self) -> Parts | None:
         """Return the engine's parts for an event that nothing records, or None if the event must go to `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
             return self._engine.parts_at(self._instant)
         parts = self._engine.parts_at(self.clock.now())
-        self._schedule()
+        self.schedule()
         return parts
 
     def receive(self, event: Event) -> None:
@@ -172,12 +165,12 @@ class Runner:
             self._journal(event, now)
         self._engine.receive(event, now)
         if not self._pumping:
-            self._schedule()
+            self.schedule()
 
     def _receive_late(self, event: Event) -> None:
         """Take an event that another thread has sent, unless the event's run has ended in the meantime."""
         run = getattr(event, "run", None)
-        if run is None or run in self._contexts:
+        if run is None or run in self.functions.running:
             try:
                 self.receive(event)
             except Exception:  # no caller could catch this error, but the designer must see it
@@ -200,7 +193,8 @@ class Runner:
 
     # ------------------------------------------------------------------------------------ effects out
 
-    def _schedule(self) -> None:
+    def schedule(self) -> None:
+        """Perform the engine's effects in the loop's next turn."""
         self._due = True
         if not self._scheduled:
             self._scheduled = True
@@ -228,30 +222,25 @@ class Runner:
         if self.closed or self.clock.halted:
             return
         self._work_off(BATCH)
-        self._arm()
+        self._timer.set(self._engine.next_deadline())
         if self._waits is not None and self._waits.futures and not self._is_busy():
             self._waits.check()
 
     def _is_busy(self) -> bool:
         """Return whether some effects have not been performed yet."""
-        return bool(self._due or self._pumping or self._todo or self._async.cleaning)
-
-    def _held(self) -> bool:
-        """Return whether effects must wait, for a plain function in virtual time or for just cancelled rules."""
-        if self._is_virtual and self._plain is not None and self._plain.runs:
-            return True
-        return bool(self._async.cleaning) and not self.clock.halted
+        return bool(self._due or self._pumping or self._todo or self.functions.tasks.cleaning)
 
     def _work_off(self, rounds: int) -> bool:
         """Take and perform the engine's effects, for at most `rounds` rounds; return whether there were any effects."""
-        engine, rules = self._engine, self._async
+        engine, functions = self._engine, self.functions
+        rules = functions.tasks
         began = self.clock.now()
         if began != self._instant:
             self._rounds = 0
         self._instant = began
         if self._hooks.on_endless is not None and (self._rounds > ENDLESS or engine.late_turns > ENDLESS // 20):
             self.closed = True
-            self._hooks.on_endless("" if self._last_run is None else self._last_run.name)
+            self._hooks.on_endless("" if self.functions.last is None else self.functions.last.name)
             return False
         some = False
         self._pumping = True
@@ -262,7 +251,7 @@ class Runner:
         todo = self._todo or []
         try:
             for _ in range(rounds):
-                if (self._is_virtual or rules.cleaning) and self._held():
+                if (self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted):
                     break  # the end of these functions or rules schedules the next call
                 self._rounds += 1
                 if not todo:
@@ -277,15 +266,15 @@ class Runner:
                         break
                     todo.reverse()
                 some = True
-                while todo and not ((self._is_virtual or rules.cleaning) and self._held()):
+                while todo and not ((self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted)):
                     self._perform(todo.pop())
                 if not self._is_virtual and perf_counter() > turn_ends:
-                    self._schedule()
+                    self.schedule()
                     break
             else:
-                self._schedule()
+                self.schedule()
         except BaseException:  # e.g. a rule raised KeyboardInterrupt; other rules continue while the loop runs
-            self._schedule()
+            self.schedule()
             raise
         finally:
             self._pumping = False
@@ -299,14 +288,14 @@ class Runner:
     def _perform(self, effect: Effect) -> None:
         kind = type(effect)
         if kind is Run:
-            self._run(effect)  # type: ignore[arg-type]  # its type has been checked
+            self.functions.start(effect)  # type: ignore[arg-type]  # its type has been checked
         elif kind is Spiked:
             self.listeners.tell(effect)  # type: ignore[arg-type]
         elif isinstance(effect, Ended):
             if self._hooks.on_ended is not None:
                 self._hooks.on_ended(effect)
         elif isinstance(effect, Cancel):
-            self._cancel(effect)
+            self.functions.cancel(effect)
         elif isinstance(effect, Failed):
             self._failed(effect)
 
@@ -355,21 +344,17 @@ class Runner:
         """Start a halted clock again from its present time."""
         if self.clock.halted:
             self.clock.go()
-            if self._timer is not None:
-                self._timer.cancel()
-                self._timer = None
-            self._schedule()  # not at once: the caller may be a task, and rules start outside any task
+            self._timer.clear()
+            self.schedule()  # not at once: the caller may be a task, and rules start outside any task
 
     def drive(self, time: float) -> None:
         """Set the clock forward to `time` (seconds), and keep it from moving by itself; see `Clock.drive`."""
         self.clock.drive(time)
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._timer.clear()
         due = self._engine.next_deadline()
         if due is not None and due <= self.clock.now() and not self.closed and not self.clock.halted:
             self._fall_due(due)
-            self._schedule()
+            self.schedule()
 
     def engine_now(self) -> Engine:
         """Return the engine for inspection, after it has handled all deadlines that are due."""
@@ -384,20 +369,9 @@ class Runner:
         """Call `tracer` with every record of the trace from now on; None stops the calls."""
         self._engine.tracer = tracer
 
-    def _arm(self) -> None:
-        """Set the timer to the engine's next deadline. Leave a timer that fires earlier: it does no harm."""
-        due = self._engine.next_deadline()
-        if due is None or self.clock.driven or (self._timer is not None and self._timer_due <= due):
-            return
-        if self._timer is not None:
-            self._timer.cancel()
-        self._timer_due = due
-        self._timer = self.loop.call_at(self.clock.on_loop(due), self._wake)
-
-    def _wake(self) -> None:
-        self._timer = None
+    def _wake(self, due: float) -> None:
         if not self.closed and not self.clock.halted:
-            self._fall_due(self._timer_due)
+            self._fall_due(due)
             self.pump()
 
     def _fall_due(self, due: float = 0.0) -> None:
@@ -405,61 +379,6 @@ class Runner:
             self._engine.advance(max(self.clock.now(), due))
         except Exception as error:
             self._break(error)
-
-    # ------------------------------------------------------------------------------------ runs
-
-    def _run(self, effect: Run) -> None:
-        if self._closing:
-            return
-        rule = self._last_run = effect.rule
-        ctx = RuleContext(self, effect)
-        if rule.is_async:
-            self._async.start(ctx)
-            if not ctx.ended:
-                self._contexts[effect.run] = ctx
-        else:
-            self._contexts[effect.run] = ctx
-            if self._plain is None:
-                self._plain = PlainRules(self.loop, self.finish)
-            self._plain.start(ctx)
-
-    def finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
-        """Report to the engine how a run has ended (L18)."""
-        if ctx.run in self._contexts:
-            del self._contexts[ctx.run]
-        if not (ctx.ended or self.closed):
-            ctx.ended = "the function has returned"
-            parts = self._short_way() if result is None and exception is None else None
-            if parts is not None:
-                parts.done(ctx.run)
-            else:
-                outcome = result if exception is None else exception
-                if ctx.cancelled and isinstance(outcome, asyncio.CancelledError):
-                    outcome = None
-                self.receive(ending(ctx.run, ctx.rule, outcome, exception is not None))
-        if self._is_virtual and not ctx.rule.is_async:
-            self._schedule()
-
-    def drop(self, ctx: RuleContext, reason: str) -> None:
-        """End a run, for a `reason`, although its function is still running. The function must not act any more."""
-        if self._contexts.pop(ctx.run, None) is not None and not self.closed:
-            ctx.ended = reason
-            self.receive(Finish(ctx.run, "done", reason))
-
-    def _cancel(self, effect: Cancel) -> None:
-        ctx = self._contexts.get(effect.run)
-        if ctx is None:
-            return
-        if ctx.rule.is_async:
-            self._async.cancel(ctx, effect.reason)
-        else:
-            assert self._plain is not None  # the run has started
-            self._plain.abandon(ctx)
-            self.drop(ctx, effect.reason)
-
-    def plain_functions(self) -> list[str]:
-        """Return the names of the rules whose plain functions are running, one for each run."""
-        return [] if self._plain is None else [ctx.rule.name for ctx in self._plain.runs]
 
     # ------------------------------------------------------------------------------------ the end
 
@@ -474,16 +393,10 @@ class Runner:
 
     async def close(self, *, at_once: bool = False) -> None:
         """Cancel all runs and wait until they have cleaned up; with `at_once`, do not wait. No rule starts any more."""
-        self._closing = True
-        await self._async.close(ENDED, at_once=at_once)
+        await self.functions.cancel_all(ENDED, at_once=at_once)
         self.closed = True
-        for ctx in self._contexts.values():
-            ctx.ended = ENDED
-        self._contexts.clear()
-        if self._plain is not None:
-            self._plain.close()
-        if self._timer is not None:
-            self._timer.cancel()
+        self.functions.abandon(ENDED)
+        self._timer.clear()
         self.listeners.fail(lambda signal: EngineError(f"the context ended before there was a {signal}"))
         self.waits.end()
         await asyncio.sleep(0)  # so that the cancelled tasks end

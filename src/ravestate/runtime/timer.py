@@ -1,0 +1,37 @@
+"""The timer of a runner: it fires at the engine's next deadline."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from ravestate.runtime.clock import Clock
+
+
+class Timer:
+    """One timer at a time on a loop, for a time on a clock. It calls `fire` with that time (seconds)."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, clock: Clock, fire: Callable[[float], None]) -> None:
+        self._loop = loop
+        self._clock = clock
+        self._fire = fire
+        self._handle: asyncio.TimerHandle | None = None
+        self._due = 0.0
+
+    def set(self, due: float | None) -> None:
+        """Fire at `due` (seconds), unless another clock drives the clock. Leave a timer that fires earlier: it does no harm."""
+        if due is None or self._clock.driven or (self._handle is not None and self._due <= due):
+            return
+        self.clear()
+        self._due = due
+        self._handle = self._loop.call_at(self._clock.on_loop(due), self._wake)
+
+    def clear(self) -> None:
+        """Do not fire any more, until the next call of `set`."""
+        if self._handle is not None:
+            self._handle.cancel()
+            self._handle = None
+
+    def _wake(self) -> None:
+        self._handle = None
+        self._fire(self._due)
