@@ -49,9 +49,8 @@ def evidence(name: str) -> tuple[list[Evidence], NDArray[Any]]:
     return found, np.array([int(label == "suits") for _, label, _ in rows])
 
 
-def weights() -> NDArray[Any]:
-    """Return the constant and the weights that a logistic regression learns from suits_rows.tsv."""
-    learnt, labels = evidence("suits_rows")
+def weights(learnt: list[Evidence], labels: NDArray[Any]) -> NDArray[Any]:
+    """Return the constant and the weights that a logistic regression learns."""
     features = np.array([one.features() for one in learnt])
     middle, spread = features.mean(axis=0), features.std(axis=0)
     inputs = np.c_[np.ones(len(features)), (features - middle) / spread]
@@ -64,5 +63,7 @@ def weights() -> NDArray[Any]:
 
 
 if __name__ == "__main__":
-    print("CONSTANT, NEAR, SECOND, MEANING, BEST, MEAN =", *np.round(weights(), 3))
+    rows, suit = evidence("suits_rows")
+    print("WEIGHTS =", *np.round(weights(rows, suit), 3))
+    print("ROUGH =", *np.round(weights([Evidence(one.near, one.meanings) for one in rows], suit), 3))
     sys.exit(0)

@@ -113,7 +113,9 @@ class _Learnt:
 
         found: list[Near] = []
         for text, row in zip(texts.values(), self._known.scores(texts), strict=True):
-            order = np.argsort(-row, kind="stable")[:most]
+            least = np.partition(row, -most)[-most] if len(row) > most else -np.inf
+            best = np.flatnonzero(row >= least)
+            order = best[np.argsort(-row[best], kind="stable")][:most]
             found += [Near(float(row[place]), int(place), text) for place in order]
         return sorted(found, key=lambda near: -near.score)[:most]
 

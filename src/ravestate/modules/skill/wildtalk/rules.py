@@ -30,6 +30,7 @@ from .small_talk import (
     learn_all,
     listen,
     listener,
+    may_be_known,
     needs_comfort,
     notes_for,
     traces,
@@ -253,7 +254,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=nlp.analysis.changed.where(is_known) | nlp.analysis.changed.where(needs_comfort),
+    when=nlp.analysis.changed.where(may_be_known) | nlp.analysis.changed.where(needs_comfort),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
     weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
@@ -263,6 +264,8 @@ async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None or not isinstance(ctx[model], ListeningBackend):
         return rs.Resign("a language model answers")
+    if not (needs_comfort(seen) or await is_known(seen)):
+        return rs.Resign("no known reply suits")
     ctx[rawio.output] = await listen(ctx, heard_in(ctx, seen.text, seen))
     return None
 

@@ -75,8 +75,8 @@ def needs_comfort(seen: nlp.Analysis | None) -> bool:
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
 
 
-def is_known(seen: nlp.Analysis | None) -> bool:
-    """Return whether the listening skill has a reply to almost the same words.
+def may_be_known(seen: nlp.Analysis | None) -> bool:
+    """Return whether the listening skill may have a reply to almost the same words. `is_known` looks closer.
 
     Other skills answer hello and goodbye. A short *yes* or *no* belongs to the module that asked.
     """
@@ -84,7 +84,12 @@ def is_known(seen: nlp.Analysis | None) -> bool:
         return False
     if seen.yesno and len(seen.text.split()) <= SHORT:
         return False
-    return listener().knows(seen)
+    return listener().knows(seen, roughly=True)
+
+
+async def is_known(seen: nlp.Analysis) -> bool:
+    """Return whether the listening skill has a reply to almost the same words. Takes some 50 ms, in a thread."""
+    return may_be_known(seen) and await asyncio.to_thread(listener().knows, seen)
 
 
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:

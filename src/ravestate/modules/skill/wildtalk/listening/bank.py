@@ -30,6 +30,8 @@ more than half of such entries suit. Their other sentences may be far from the u
 ANSWER, EXACTLY = -10.6, -9.5
 """The least scores (logits) of an answer: of advice, which is right for many questions, and of what must be exact. An answer to
 another question from the same area of life scores about -11."""
+MOST = 5
+"""The maximum number of entries that are looked at."""
 TONES = ("sad", "angry", "glad", "tired")
 DARK = ("sad", "angry", "tired")
 DEEPEST = 3
@@ -90,9 +92,12 @@ class Bank:
         ranked = sorted(zip(scores, lines, strict=True), key=lambda one: -one[0])
         return [line for score, line in ranked if score >= least]
 
-    def similar(self, sentences: Sequence[str], utterance: str, most: int = 5) -> list[Found]:
-        """Return the entries that resemble a sentence of an utterance, the most suitable first. No entry comes twice."""
-        return list(self._ranked(tuple(sentences), utterance, most, self.index.loaded))
+    def similar(self, sentences: Sequence[str], utterance: str, *, roughly: bool = False) -> list[Found]:
+        """Return the entries that resemble a sentence of an utterance, the most suitable first. No entry comes twice.
+
+        With `roughly`, the cross-encoder is not asked: the answer takes some 5 ms, otherwise some 50 ms.
+        """
+        return list(self._ranked(tuple(sentences), utterance, roughly, self.index.loaded))
 
     def follow_ups(self, name: str) -> tuple[Moment, ...]:
         """Return the follow-ups of an entry or of a follow-up; none for another name."""
@@ -109,30 +114,31 @@ class Bank:
         texts = [text for text in follow_up.examples if text != REST]
         return list(zip(texts, self.index.compared(sentences, self._places[follow_up.name]), strict=True))
 
-    def _rank(self, sentences: tuple[str, ...], utterance: str, most: int, _loaded: bool) -> tuple[Found, ...]:
+    def _rank(self, sentences: tuple[str, ...], utterance: str, roughly: bool, _loaded: bool) -> tuple[Found, ...]:
         found: dict[int, Near] = {}
-        for near in self.index.nearest(sentences, 2 * most):
-            if near.score >= LEAST and len(found) < most:
+        for near in self.index.nearest(sentences, 2 * MOST):
+            if near.score >= LEAST and len(found) < MOST:
                 found.setdefault(self._of[near.place], near)
-        fits = self._fits(list(found.items()), utterance)
+        fits = self._fits(list(found.items()), utterance, roughly)
         ranked = [
             Found(fit, near.score, self.moments[place], near.text)
             for (place, near), fit in zip(found.items(), fits, strict=True)
         ]
         return tuple(sorted(ranked, key=lambda one: -one.fit))
 
-    def _fits(self, found: Sequence[tuple[int, Near]], utterance: str) -> list[float]:
+    def _fits(self, found: Sequence[tuple[int, Near]], utterance: str, roughly: bool) -> list[float]:
         if not self.index.loaded:
             return [1.0] * len(found)  # their words are equal
         pairs = [(text, utterance) for place, _ in found for text in self.moments[place].examples]
-        scores = iter(self._judge.score_pairs(pairs).tolist())
+        scores = iter([] if roughly else self._judge.score_pairs(pairs).tolist())
         places = [at for place, _ in found for at in self._places[self.moments[place].name]]
         meanings = iter(self.index.similarities(utterance, places))
         whole = plain(utterance)
         fits: list[float] = []
         for place, near in found:
             texts = self.moments[place].examples
-            evidence = Evidence(near.score, [next(meanings) for _ in texts], [next(scores) for _ in texts])
+            likeness = [next(meanings) for _ in texts]
+            evidence = Evidence(near.score, likeness, [] if roughly else [next(scores) for _ in texts])
             fit = 1.0 if any(plain(text) == whole for text in texts) else evidence.probability()
             fits.append(max(fit, PROBABLE) if near.score >= CLOSE and fit >= DOUBTFUL else fit)
         return fits

@@ -38,6 +38,8 @@ OFFER = re.compile(r"\bI(?:'ve)? (?:have|know|got|ask)\b.*\briddle|\bask you a r
 STANCES = ("like", "curious", "cool")
 KNOWN = 0.57
 """The least probability that an entry suits at which other modules leave the answer to it."""
+PERHAPS = 0.42
+"""The least rough estimate of that probability at which the listener looks closer: 95 % of the known have it."""
 AWAY = 3
 """The number of answers without an entry of the bank after which its thread is forgotten."""
 
@@ -113,13 +115,13 @@ class Listener:
         short = size < 4 and not has_verb(seen) and not (seen.acts.keys() - {"contradiction"})
         return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
 
-    def knows(self, seen: Analysis) -> bool:
-        """Return whether the bank has a reply that probably suits."""
-        near = near_in(self._phrases, seen, "", State(), None)
-        if is_crisis(seen.normal.text):
+    def knows(self, seen: Analysis, *, roughly: bool = False) -> bool:
+        """Return whether the bank has a reply that probably suits. With `roughly`, a rule can wait for the result."""
+        if is_crisis(seen.normal.text) or "forget" in plain(seen.text):
             return False
+        near = near_in(self._phrases, seen, "", State(), None, roughly=roughly)
         light = bool(near) and near[0].moment.tone != "sad" and is_dark(seen, near)
-        return bool(near) and near[0].fit >= KNOWN and not light and "forget" not in plain(seen.text)
+        return bool(near) and near[0].fit >= (PERHAPS if roughly else KNOWN) and not light
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
         """Return the answer. Takes some 50 ms, most of them for the bank."""

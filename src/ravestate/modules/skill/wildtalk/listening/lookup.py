@@ -34,10 +34,13 @@ BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 
 
-def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None) -> list[Found]:
+def near_in(
+    phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None, *, roughly: bool = False
+) -> list[Found]:
     """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
 
-    If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk.
+    If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk. With
+    `roughly`, the probabilities are estimated without the cross-encoder.
     """
     sentences = seen.sentences[:6]
     longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
@@ -49,7 +52,7 @@ def near_in(phrases: Material, seen: Analysis, asking: str, state: State, feelin
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     grave = is_grave(seen.normal.text)
     ranked: list[Found] = []
-    for one in phrases.bank.similar(texts, seen.text):
+    for one in phrases.bank.similar(texts, seen.text, roughly=roughly):
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
         crossed = crossed or (grave and tone not in DARK and one.score < CLOSE)
