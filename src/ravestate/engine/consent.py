@@ -8,7 +8,7 @@ that a rule of the group may cause.
 If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience ends,
 the activation stops waiting for it. A rival gets its patience once in each group (L16).
 
-A rival may have no activation yet. Its *stand-by* has no spike; a *half* holds first spikes of pairs (``halves.py``).
+A rival may have no activation yet: its *stand-by* holds no spike. A *half* holds spikes without one (``halves.py``).
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ to write one slot, and the group refuses the best one. The group would refuse al
 rival of each. So only the best one, the *leader*, asks in full (``consent.py``). The others *follow*: they wait for the
 leader, and look at no other rival.
 
-An activation cannot follow if the utility of some rival lies between the leader's and its own. The leader did not look
+An activation cannot follow if a rival stands between the leader and the activation in utility. The leader did not look
 at this rival. But the activation would put the rival under pressure, or expect help from it (L16). So the activation
 asks in full, and becomes the leader of the activations behind it.
 
