@@ -1,6 +1,6 @@
 """An index of a trace for one causal group: the group's spikes, and each rule's attempts to run on them.
 
-The board builds a new index for each question about a spike. It needs nothing but the records of the trace.
+The board builds a new index for each question about a spike. The index needs only the records of the trace.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the missing signals; once the attempt has ended, it has the signals that were missing at the end.
-    `complete` is the time at which the attempt had all its spikes (seconds), or None. `started` is None until the run
+    `lacks` has the signals that were without a spike after the latest take, or before the latest loss. `complete` is the
+    time at which the attempt took its last missing spike (seconds), or None before. `started` is None until the run
     starts. `settled` is None until the run ends.
     """
 
@@ -56,7 +56,7 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the attempt's spikes: those of its run or, without a run, all that it took."""
+        """The numbers of the attempt's spikes: those that its run began with or, without a run, all that it ever took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
@@ -70,7 +70,7 @@ class Attempt:
     def lose(self, record: t.GaveUp) -> None:
         """Note a spike that the activation gave up.
 
-        If the activation gives up several spikes in one instant, `lacks` stays as it was before the first of them.
+        If the activation gives up several spikes in one instant, `lacks` keeps the signals from before the first loss.
         """
         if not self.gave_up or self.gave_up[-1].time != record.time:
             self.lacks = self._missing
@@ -81,7 +81,7 @@ class Attempt:
 
 
 class History:
-    """A trace, indexed for questions about the causal group of one spike.
+    """A trace, indexed for questions about the causal group of one spike, *the group*.
 
     Raises:
         LookupError: The trace does not contain the spike, or no longer contains it.
@@ -142,10 +142,11 @@ class History:
         )
 
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
-        """Return the first run that answered the cause of the group; None if no run of the given rules did.
+        """Return the first run of a rule in `hears` that answered the group; None if none did.
 
-        The keys of `hears` are the names of the given rules. Each value has one collection for each clause of the rule:
-        the signals that the clause consumes. A detached constraint consumes no signal (L19).
+        A run answers the group if it fires and consumes one of the group's spikes. `hears` maps the name of a rule to one
+        collection for each of its clauses: the signals that the clause consumes. A detached constraint consumes no
+        spike (L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
@@ -154,9 +155,9 @@ class History:
         return next((a for a in self._answers if a.rule in hears and is_taken(a, hears[a.rule][a.clause])), None)
 
     def before(self, run: int) -> str:
-        """Return the name of the rule that raised a run's input in this group.
+        """Return the name of the rule that raised a spike of the group on which a run stands.
 
-        The name is empty if no rule raised the input, or if the trace does not show the rule.
+        The name is empty if no other rule raised such a spike, or if the trace does not show the rule.
         """
         attempt = self._runs.get(run)
         if attempt is None or attempt.started is None:
@@ -197,7 +198,7 @@ class History:
                 self._attempt(record.run, record).started = record
             case t.GaveUp() | t.Waits():
                 attempt = self._runs.get(record.activation)
-                if attempt is not None:  # if it is None, the attempt began before the trace
+                if attempt is not None:  # None: the attempt began before the first record
                     attempt.records.append(record)
                     if isinstance(record, t.GaveUp):
                         attempt.lose(record)
@@ -234,12 +235,12 @@ class History:
 
 
 class Rivals:
-    """Writes phrases about other rules for an explanation: rules that a rule waited for, and the rule that answered."""
+    """Writes phrases about other rules for an explanation: the rivals of a rule, and the rule that answered instead."""
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
         self._description = description
-        self._first: dict[str, Attempt | None] = {}  # rule that came too late → the run that answered first
+        self._first: dict[str, Attempt | None] = {}  # rule → the run of another rule that answered first
 
     def waited(self, rule: RuleView, attempt: Attempt) -> str:
         """Return a phrase with the rules that the attempt last waited for; empty if it did not wait."""
@@ -248,7 +249,7 @@ class Rivals:
         return f"it was ready and waited for {self.names(rule, attempt, attempt.waits[-1])}"
 
     def names(self, rule: RuleView, attempt: Attempt, wait: Waits) -> str:
-        """Return the names of the rules that the attempt waited for, each with the reason."""
+        """Return the names of the rules that the attempt waited for, each with the reason why it went first."""
         parts: list[str] = []
         for name in wait.for_:
             if name == rule.name:
@@ -262,9 +263,9 @@ class Rivals:
         return join(parts)
 
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
-        """Return a text in brackets with the lead of the rule `name` over `rule` in utility (nats).
+        """Return a text in brackets: by how much effective utility (nats) the rule `name` is ahead of `rule`.
 
-        The text is empty if the rule `name` is not ahead.
+        The text is empty if `rule` is ahead.
         """
         other = self._description.rule(name)
         if other is None or name == rule.name:
@@ -276,18 +277,19 @@ class Rivals:
         return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the name of the rule that answered a lost spike, and that rule's path as text.
+        """Return the name of the rule that answered a lost spike, and its path as text.
 
-        The path is ``raiser → name`` if another rule raised the input of the answering rule, and else only the name.
+        If another rule raised a spike on which the answering rule ran, the path is ``raiser → name``. Otherwise, it is
+        the name.
         """
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Return a phrase about the time at which the patience of `rule` ran out, and about the rule that had waited.
+        """Return a phrase: which rule waited for `rule`, since when, and when the patience of `rule` ran out.
 
-        After several waits, the phrase is about the last wait that ended at or before `end` (seconds).
+        If rules waited for `rule` several times, the phrase is about the last wait that was over by `end` (seconds).
         """
         pressed = self._history.pressed.get(rule.name, [])
         # `pressed` is sorted by `until`, because a rule's patience never changes.
@@ -305,7 +307,7 @@ class Rivals:
         return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that wrote one of `rule`'s slots before `time`, and the number of its activation."""
+        """Return the first other rule that answered the group by `time` with a slot of `rule`, and its activation's number."""
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

@@ -1,7 +1,8 @@
-"""Why a rule did not fire for an input, derived from the trace (L25).
+"""Explanations of why a rule did not fire for an input (L25). They need only the trace.
 
-A question is about a causal group: the spike that a user points at, and every spike with the same cause. The answer
-says how close the rule came to a run, and what stopped it.
+A user asks about one spike and one rule. The answer is about the spike's causal group: all spikes with the same cause.
+An *attempt* is an activation of the rule with spikes of this group (``history.py``). The answer tells the furthest step
+that an attempt reached, and the reason why it stopped there.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ MOST = 200
 """The maximum number of moments in an answer. If there are more, the middle is left out."""
 
 Opens = Callable[[str, int, int, Any], bool | None]
-"""A function that returns whether a slot predicate accepts a value, or None if that is unknown. Its arguments are the
-rule, the clause's number, the predicate's number and the value."""
+"""A function that returns whether a slot predicate accepts a value, or None if it cannot tell. Its arguments are the
+name of the rule, the number of the clause, the number of the predicate, and the value."""
 
 
 def why_not(
@@ -34,12 +35,18 @@ def why_not(
     opens: Opens | None = None,
     whole: bool = True,
 ) -> WhyNot:
-    """Return the explanation of why a rule did not fire for the cause of a spike, or a report of its run.
+    """Return why a rule did not fire for the cause of a spike; if it did fire, return a report of its run.
 
-    For a live policy, `opens` evaluates its slot predicates. The answer may be incomplete unless the trace is `whole`.
+    Args:
+        records: The records of the trace, oldest first.
+        description: The policy.
+        rule: The name of the rule.
+        spike: The number of the spike.
+        opens: A function that evaluates slot predicates; None if the policy is not live.
+        whole: Whether the trace has all records. If not, the answer may be incomplete.
 
     Raises:
-        LookupError: The policy has no such rule, or the trace no such spike.
+        LookupError: The policy does not have this rule, or the trace does not have this spike.
     """
     view = description.rule(rule)
     if view is None:
@@ -49,10 +56,13 @@ def why_not(
 
 
 Reached = tuple[Verdict, str, float | None]
-"""The last step that a rule reached, the reason as text, and the time of the decision (seconds; None without one)."""
+"""The furthest step that an attempt reached, the reason as text, and the time at which it stopped there (seconds).
+
+The time is None if the attempt goes on, or if there was no attempt.
+"""
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""A `Reached`, and the attempt that reached the step; None if there was no attempt."""
+"""The values of a `Reached`, and the attempt that reached the step; None if there was no attempt."""
 
 ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
@@ -63,7 +73,7 @@ class _Inquiry:
         self.description = description
         self.opens = opens
         self.rivals = Rivals(history, description)
-        self.asked: list[str] = []  # the rules whose explanation is in progress; the list ends circular explanations
+        self.asked: list[str] = []  # the rules whose explanation is in progress; none is explained twice
         self._judged: dict[str, Judgement] = {}
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
@@ -80,7 +90,7 @@ class _Inquiry:
     # ------------------------------------------------------------------------------------ the verdict
 
     def judge(self, rule: RuleView) -> Judgement:
-        """Return the last step that a rule reached in this group, from its best attempt."""
+        """Return the furthest step that the rule's attempts in this group reached, and the attempt that reached it."""
         if rule.name not in self._judged:
             tried = [(*self._judge(rule, attempt), attempt) for attempt in self.history.of(rule.name)]
             self._judged[rule.name] = (
@@ -168,7 +178,7 @@ class _Inquiry:
         return Verdict.FIRED, join(parts), at
 
     def _pending(self, rule: RuleView, clause: ClauseView, attempt: Attempt, ripe: float | None) -> Reached:
-        """Return the last step of an attempt that still holds spikes."""
+        """Return the furthest step of an attempt that still holds spikes but does not run."""
         if attempt.lacks or attempt.complete is None:
             held = join(dict.fromkeys(held.signal for held in attempt.held))
             return Verdict.LACKED, f"it has {held} and still lacks {join(attempt.lacks)}", None
@@ -189,7 +199,7 @@ class _Inquiry:
         return shut is True or (shut is None and wait.until is not None and wait.until < last)
 
     def _ripe(self, clause: ClauseView, attempt: Attempt) -> float | None:
-        """Return the time at which all spikes of an attempt are old enough (seconds); None if it never had them all."""
+        """Return when all spikes of an attempt are old enough (seconds); None if the attempt never had all its spikes."""
         if attempt.complete is None:
             return None
         ripe = attempt.complete
@@ -200,7 +210,7 @@ class _Inquiry:
         return ripe
 
     def _shut(self, rule: RuleView, attempt: Attempt, time: float) -> bool | None:
-        """Return whether a slot predicate was false at a time (seconds), or None if that is unknown."""
+        """Return whether a slot predicate of the clause was false at a time (seconds); None if the trace does not show."""
         if self.opens is None:
             return None
         known = True
@@ -215,7 +225,8 @@ class _Inquiry:
     def _was_gated(self, rule: RuleView, attempt: Attempt, ripe: float | None, last: GaveUp) -> bool:
         """Return whether a slot predicate was false when an attempt lost its spikes.
 
-        If the slot's value is unknown, an attempt that never became ready counts as gated.
+        If the trace does not show the slot's value, an attempt counts as gated in two cases: it lost its spikes without
+        an answer by another rule, or its spikes were old enough but it did not wait.
         """
         if not rule.clauses[attempt.clause].gates:
             return False
@@ -235,15 +246,17 @@ class _Inquiry:
         return f"{why_given_up(last)} at {at}"
 
     def _passed(self, rule: RuleView, signal: str = "") -> list[Passed]:
-        """Return the records of the group's spikes that a rule did not take: all, or those of one signal."""
+        """Return the records of the group's spikes that a rule heard but did not take: all, or those of one signal."""
         passed = [p for p in self.history.passed.get(rule.name, ()) if p.spike in self.history.group]
         return [p for p in passed if p.signal == signal] if signal else passed
 
     # ------------------------------------------------------------------------------------ missing signals
 
     def missing(self, rule: RuleView, attempt: Attempt | None) -> tuple[Missing, ...]:
-        """Return the signals that a rule lacked in its best attempt; without an attempt, the signals of all its
-        clauses."""
+        """Return the signals that a rule lacked in its furthest attempt, each with the reason why it was missing.
+
+        Without an attempt, return the signals of all clauses of the rule.
+        """
         if attempt is not None:
             names = dict.fromkeys(attempt.lacks)
         else:
@@ -292,7 +305,7 @@ class _Inquiry:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # also explain why the rule's signals were missing
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # say also why this rule lacked its own signals
             for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
                 lacked = self.description.signal(lack)
                 for raiser in () if lacked is None else lacked.raisers:

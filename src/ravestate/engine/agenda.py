@@ -1,13 +1,13 @@
 """The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
 
 1. Activations that need no consent start at once: their rules write no slot, or all their constraints are detached.
-2. When none of these is left, the other ready activations ask for consent (``consent.py``): older causes first, and the
-   greatest utility first within a cause. By then, rules that never suspend have ended.
+2. When none of these is left, the other ready activations ask for consent (``consent.py``): older causes first, and
+   within a cause the greatest utility first. By then, the rules of step 1 that never suspend have ended.
 3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true comes
    earlier, before step 1 (``parts.py``).
 
-When a rule ends, the activations that wait for it ask again in the same instant, after all other rules that end in this
-instant. So the caller of `Engine.effects` must first give the engine all events of the instant.
+When a rule ends, the activations that wait for it ask again in the same instant. They do so after all rules that end in
+this instant. So the caller of `Engine.effects` must first give the engine all events of the instant.
 """
 
 from __future__ import annotations
@@ -27,10 +27,11 @@ from ravestate.engine.stalemate import loose, stalemate
 from ravestate.engine.state import State
 
 BATCH: Final = 100
-"""The maximum number of activations that start in one go without consent. Then the engine receives their runs' events."""
+"""The maximum number of free activations that start in one go. Then the caller reports the events of these runs."""
 
 Turn = tuple[int, float, int, int, Activation]
-"""A place in the queue of activations that ask: the oldest cause, the sort key (`State.order`), and the activation."""
+"""A place in the queue of activations that ask: the number of its oldest cause (a causal group), its sort key
+(`State.order`), and the activation."""
 
 
 class Agenda:
@@ -46,7 +47,7 @@ class Agenda:
         self.queue = Line()
         """The activations that ask in this instant, the best first."""
         self.places: dict[Activation, Any] = {}
-        """Activation in the queue → its present place. The queue may also hold outdated places of the activation."""
+        """Activation in the queue → its valid place. The queue may also hold earlier places of it, which do not count."""
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
         self.time = 0.0
@@ -55,7 +56,10 @@ class Agenda:
         """The activations that wait for nothing but each other, the best first."""
 
     def start_free(self) -> None:
-        """Start ready activations that need no consent, in the order of their newest spikes, unless a guard is false."""
+        """Start ready activations that need no consent, in the order of their newest spikes.
+
+        An activation whose slot predicates (*guards*) have become false is no longer ready.
+        """
         state = self.state
         free = state.free
         started = 0
@@ -85,8 +89,8 @@ class Agenda:
     def consent_round(self) -> None:
         """Let ready activations ask for consent: older causes first, and the best activation first within a cause.
 
-        If a rule has just started, an activation that reads one of its slots asks in the next round instead. So the
-        activation sees the values that the rule writes before the rule first suspends.
+        If a rule has started in this round, an activation that reads one of the rule's slots asks in the next round. By
+        then, the rule has made the writes that precede its first suspension, and the activation sees them.
         """
         state, queue, places = self.state, self.queue, self.places
         line = queue.line
@@ -112,7 +116,7 @@ class Agenda:
             rule = activation.clause.rule
             if written and not rule.readable.isdisjoint(written):
                 if _is_taken(activation):
-                    later.append(turn)  # by the next round it waits, or has lost its spike
+                    later.append(turn)  # in the next round, the activation waits, or has lost its spike
                 elif self._ask(activation):
                     later.append(turn)
                     break
@@ -166,7 +170,7 @@ class Agenda:
         queue.join(turns)
 
     def _may_ask(self, activation: Activation) -> bool:
-        """Return whether an activation may ask: it is ready or waits, its guards are true, no loop defers it (L23)."""
+        """Return whether an activation may ask: it is ready or waits, its guards are true, and it is not deferred (L23)."""
         if activation.state not in (READY, WAITING):
             return False
         if activation.clause.guards and not self._pass_guards(activation):
@@ -175,7 +179,7 @@ class Agenda:
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _ask(self, activation: Activation) -> bool:
-        """Ask for consent, and return whether it is given. Without consent, the activation waits, and others may ask."""
+        """Ask for consent; return whether the activation has it. If not, it waits, and the next heads of benches queue."""
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
@@ -189,7 +193,7 @@ class Agenda:
         return True
 
     def _pass_guards(self, activation: Activation) -> bool:
-        """Return whether the activation's predicates on slots are true; if not, the activation is no longer ready."""
+        """Return whether the activation's guards are true. If one is false, the activation is no longer ready."""
         if self.state.is_open(activation.clause):
             return True
         self.consent.holdings.unready(activation)
@@ -234,7 +238,7 @@ class Agenda:
                 if best in freed:
                     continue
             for group in best.firm_groups():
-                for other in group.interested:  # these waits depend on the group, which this start changes
+                for other in group.interested:  # the start changes the group, so these may be stuck no more
                     stuck.discard(other)
                     state.refused[other] = None
             self.runs.start(best)
@@ -251,7 +255,7 @@ def _is_taken(activation: Activation) -> bool:
 
 
 def _presses(activations: Iterable[Activation]) -> bool:
-    """Return whether an activation counts for ``core:pressure``: it does unless it hears a built-in flag."""
+    """Return whether one of the activations counts for ``core:pressure``. Those that hear a built-in flag do not."""
     for activation in activations:
         if not activation.clause.reflexive:
             return True

@@ -1,16 +1,16 @@
 """Benches: first spikes of a pair that wait together for the second spike, their *counterpart*.
 
 Suppose that a hundred first spikes wait when a counterpart arrives. The counterpart completes a hundred pairs. Only one
-pair runs, and the first spikes of the other pairs take the next counterpart (L12). So only one pair, the *head*, has an
-activation. The other first spikes sit on a bench, and the whole bench takes the next counterpart.
+pair runs, and the first spikes of the other pairs take the next counterpart (L12). So only the oldest pair gets an
+activation, the *head*. The other first spikes stay on the bench, and the whole bench takes the next counterpart.
 
-Only a clause that no better clause competes with has benches (`Half.sole`). Its activations wait for no rival, so a
-group refuses them only while a slot is taken there. If a group refuses the head, the next spike on the bench gets an
-activation at once, which asks in the same round.
+A clause has benches only if no better clause competes with it (`Half.sole`). Its activations wait for no rival, so a
+group refuses them only while a slot is taken there. If a group refuses the head, the engine makes a head of the next
+spike at once. The new head asks in the same round of consent.
 
-The spikes of a bench ask from the oldest to the youngest, as consent demands: no rule raises their signals, so an older
-spike has an older causal group. Before a group merges, its spikes leave their benches. `Consent` treats each spike on a
-bench with a counterpart as a ready activation, for which activations of lesser utility wait.
+So older spikes ask first. This is the order of consent, because an older spike has an older causal group: no rule raises
+these signals. Before a group merges, its spikes leave their benches. `Consent` treats each spike on a bench with a
+counterpart as a ready activation. Activations with less utility wait for it.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Benches:
         self.state = holdings.state
 
     def seat(self, half: Half, partner: Spike) -> None:
-        """Give a new counterpart to the spikes of a half that lack a counterpart."""
+        """Give a new counterpart to all first spikes of a half that lack one."""
         del self.state.halves[half]
         self._place(self.state.pools.pop(half), partner)
 
     def check(self, partner: Spike) -> None:
-        """Give each bench of a counterpart a head, or another counterpart if the bench has lost this counterpart."""
+        """Give a head to each bench of a counterpart. If the bench can no longer use the counterpart, give it another."""
         state = self.state
         for bench in list(state.benches.get(partner, {}).values()):
             rule = bench.half.needs[0].clause.rule
@@ -53,7 +53,7 @@ class Benches:
                 self._lead(bench, partner)
 
     def rise(self, spike: Spike) -> None:
-        """Create the activations of a spike on benches with counterparts, which are about to lose a spike (L12)."""
+        """Create a spike's activations with its counterparts, because these pairs are about to lose a spike (L12)."""
         state = self.state
         for half in state.halves_of(spike) if state.benches else ():
             bench = state.bench_of(half, spike)
@@ -68,7 +68,7 @@ class Benches:
             self.check(partner)
 
     def next_heads(self, refused: Activation) -> list[Activation]:
-        """Create the next head of each bench whose head was refused consent. Return the new heads that may ask."""
+        """Create the next head of each bench whose head, `refused`, has no consent. Return the new heads that may ask."""
         state = self.state
         heads: list[Activation] = []
         for partner in refused.spikes:
@@ -110,7 +110,7 @@ class Benches:
         self._lead(bench, partner)
 
     def _move(self, bench: Bench) -> None:
-        """Give a bench the oldest live counterpart that fits (L12). Without one, its spikes lack a counterpart again."""
+        """Give a bench the oldest live counterpart that fits (L12). If none fits, its spikes wait for the next one."""
         state, half = self.state, bench.half
         self.holdings.entries.vacate(bench)
         need = other_need(half.needs[0])
@@ -143,7 +143,7 @@ class Benches:
         return longer
 
     def _lead(self, bench: Bench, partner: Spike) -> None:
-        """Create the head of a bench, unless another activation runs with the counterpart, or asks for it first."""
+        """Create a bench's head, unless another activation runs with the counterpart, or will ask before the head."""
         need = bench.half.needs[0]
         first = next(iter(bench.spikes))
         cause = min(first.group.root().id, partner.group.root().id)

@@ -1,12 +1,14 @@
 """Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
 
-A group refuses consent to an activation while one of its runs has taken a slot of the activation. It also refuses while
-the activation has a rival in the group. A rival is another viable clause that writes one of these slots, has greater
-effective utility, and has a stake in the group. A clause has a stake if it holds a spike of the group, or lacks a signal
+The activation asks each causal group of its spikes. A group refuses while a run in the group has taken a slot that the
+activation writes. It also refuses while a *rival* stands in the group: another clause that writes such a slot, has
+greater effective utility, and may still become ready. The rival must also hold a spike of the group, or lack a signal
 that a rule of the group may cause.
 
-Pressure applies to a rival whose readiness is uncertain. When the rival's patience ends, the activation stops waiting for
-the rival. A rival gets its patience once in each group (L16).
+If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience ends,
+the activation stops waiting for it. A rival gets its patience once in each group (L16).
+
+A rival may have no activation yet: its *stand-by* holds no spike. A *half* holds spikes without one (``halves.py``).
 """
 
 from __future__ import annotations
@@ -47,8 +49,8 @@ class Consent:
 
         Args:
             activation: The activation.
-            idle: Activations that count as doing nothing.
-            commit: Whether rivals come under pressure, and are eliminated when their patience has ended.
+            idle: Activations that count as doing nothing, because they wait for nothing but each other.
+            commit: Whether to change rivals: start their patience, and eliminate rivals whose patience has ended.
         """
         clause = activation.clause
         groups = activation.firm_groups()
@@ -64,9 +66,8 @@ class Consent:
         for group in groups:
             refusal.interests[group] = None
         horizon: Horizon | None = None
-        soon: list[
-            tuple[Clause, list[Activation], Group]
-        ] = []  # rivals that are behind now, but will be ahead in the next moment
+        # Rivals that are behind now, but will be ahead in the next moment.
+        soon: list[tuple[Clause, list[Activation], Group]] = []
         eliminated = False
         for group in groups:
             if (group.taken and _note_taken(refusal, group, clause.rule)) or clause.unrivalled:
@@ -112,14 +113,12 @@ class Consent:
         *,
         commit: bool,
     ) -> bool:
-        """Judge the activations of a rival in a group, and the rival's stand-by there.
+        """Judge a rival's activations in a group, and its stand-by. Return whether an activation was eliminated.
 
-        A rival that may still become ready is added to `refusal`, the refusal that `ask` returns.
-
-        Return whether an activation was eliminated.
+        If the rival may still become ready, add it to `refusal`, which `ask` returns.
         """
         eliminated = False
-        apart = False  # whether an activation holds no spike of the group, but waits for such a spike
+        apart = False  # whether a viable activation of the rival holds no spike of the group, but waits for one
         sure: list[Activation] = []
         if self.state.halves and horizon.open_bits(rival, group):
             self.halves.unfold_clause(rival)
@@ -129,7 +128,7 @@ class Consent:
         for member in (*living, None):
             if member is None:
                 if apart:
-                    break  # that activation takes the signal first, so the stand-by is no rival
+                    break  # such an activation takes the signal before the stand-by does, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_still(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)
@@ -156,14 +155,12 @@ class Consent:
     def _judge_half(
         self, refusal: Refusal, horizon: Horizon, best: Need, spike: Spike, clause: Clause, *, commit: bool
     ) -> bool:
-        """Judge the clauses of a half that holds a spike: either by the best clause, or by unfolding the half.
+        """Judge the clauses of a half that holds a spike. Return whether a clause was eliminated.
 
-        The best clause can stand for all clauses if each lacks only a second spike, and all have the same prospects of
-        getting that spike. Otherwise, the half is unfolded, and each clause is judged on its own.
+        Each clause lacks only a second spike. If all have the same prospects of getting it, the verdict on the best
+        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, and `ask` judges it by itself.
 
-        Clauses that may still become ready are added to `refusal`, the refusal that `ask` returns.
-
-        Return whether a clause was eliminated.
+        If a clause may still become ready, add it to `refusal`, which `ask` returns.
         """
         rival, half, group = best.clause, best.half, spike.group.root()
         assert half is not None
@@ -177,7 +174,7 @@ class Consent:
             horizon.judge(rival, None, group)[0] != NO  # the clause's stand-by is a rival as well
             or horizon.open_bits(rival, group)  # activations in other groups may take a spike of this group
             or (strength == FIRM and rival.rule.index in self.state.active)  # an older activation may cover the rival
-            or (strength != NO and self._is_held_beside(half, spike))  # or it may cover another clause
+            or (strength != NO and self._is_held_beside(half, spike))  # it may cover another clause of the half
             or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
             self.halves.unfold(spike, half)  # the horizon stays valid: no derivation rests on the new activations
@@ -189,7 +186,7 @@ class Consent:
         return False
 
     def _is_held_beside(self, half: Half, spike: Spike) -> bool:
-        """Return whether a clause of a half has both an entry and an activation with the same spike."""
+        """Return whether a half holds a spike for a clause that also has an activation with this spike."""
         for holder in spike.holders:
             rank = half.rank.get(holder.clause.index)
             if rank is not None and self.state.keeps(half.best[rank], spike):
@@ -197,14 +194,12 @@ class Consent:
         return False
 
     def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
-        """Put the clauses of a half that are ahead of `clause` under pressure. Eliminate clauses whose patience has ended.
+        """Put the clauses of a half that are ahead of `clause` under pressure. Return whether a clause was eliminated.
 
-        For each spike and half, `State.pressed` has a list of pairs: a count of clauses, and the end of their patience.
-        Each count starts at the half's best clause, so it includes the clauses of earlier pairs.
+        For each spike and half, `State.pressed` has pairs: how many of the half's best clauses have a patience, and when
+        it ends. A later pair counts the clauses of earlier pairs again, but its time applies only to the others.
 
-        Clauses that may still become ready are added to `refusal`, the refusal that `ask` returns.
-
-        Return whether a clause was eliminated.
+        If a clause still has patience, add it to `refusal`, which `ask` returns.
         """
         state = self.state
         pressed = state.pressed.get(spike, {}).get(half, [])
@@ -230,19 +225,17 @@ class Consent:
         return eliminated
 
     def _best(self, half: Half, spike: Spike, clause: Clause) -> Need | None:
-        """Return the need of the best clause, other than `clause`, for which a half holds a spike.
-
-        Return None if `clause` is ahead of that best clause, or if the half holds the spike for no other clause.
-        """
+        """Return the best rival of `clause` for which a half holds a spike (its need); None if there is no rival."""
         for need in half.best:
             if need.clause is not clause and self.state.keeps(need, spike):
                 return need if self.state.standing.is_ahead(need.clause, clause) else None
         return None
 
     def is_contested(self, best: Activation) -> bool:
-        """Return whether a rival may come between the best clause of a conflict set and one of the alternatives.
+        """Return whether a rival's utility may lie between those of the clauses of a conflict set.
 
-        Such a rival waits for the best clause, but the alternative waits for the rival, and puts it under pressure.
+        The clauses of a conflict set compete for each spike (``conflict_sets.py``). Only the best one has an activation;
+        the others are its alternatives. Such a rival waits for the best clause, but an alternative waits for the rival.
         """
         state = self.state
         clauses = state.alternatives[best][0]
@@ -281,7 +274,7 @@ class Consent:
             member: The rival's activation, or None for the rival's stand-by.
             group: The group.
             by: The activation that waits for the rival.
-            commit: Whether the first call puts the rival under pressure (L16).
+            commit: Whether to start the patience if it has not started yet (L16).
         """
         state = self.state
         table: dict[Any, float]
@@ -298,7 +291,7 @@ class Consent:
             return table.get(key, -NEVER)
         patience = rival.rule.patience
         until = table[key] = state.now + (state.patience if patience is None else patience)
-        if until > state.now and member is not None:  # `Refusal.recheck` keeps the time for a stand-by
+        if until > state.now and member is not None:  # for a stand-by, `Refusal.recheck` keeps this time
             state.deadlines.add(until, PATIENCE, (group, member))
         if state.tracer is not None:
             missing = rival.all_bits if member is None else member.missing
@@ -312,14 +305,14 @@ class Consent:
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # else the rule's clauses in this queue would lose the spike too
+                    self.halves.sets.unfold(other)  # else the rule's clauses in this set would lose the spike too
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 
     def _horizon(self, activation: Activation, idle: Sequence[Idle]) -> Horizon:
-        """Return a horizon in which the activation does nothing (L16).
+        """Return the horizon for an activation that asks: the signals that may come while it does nothing (L16).
 
-        Activations that wait for it, or would wait for it, do nothing either.
+        Activations that wait for the asking activation, or would wait for it, do nothing either.
         """
         still = {activation}
         clause = activation.clause
@@ -345,17 +338,17 @@ class Consent:
         return found
 
     def _rivals(self, activation: Activation, group: Group) -> list[tuple[Clause, list[Activation]]]:
-        """Return the clauses that may write one of the activation's slots in the group, in declaration order.
+        """Return the possible rivals of an activation in a group, in declaration order, with their activations there.
 
-        Each clause comes with its activations in the group. A clause without activations there is left out if its
-        utility is less than that of the activation's clause: its stand-by is no rival.
+        A clause that has no activation there, only its stand-by, is left out if it has less utility than the
+        activation's clause.
         """
         clause = activation.clause
         slots = clause.rule.slotset
         worth = self.state.standing.effective(clause)
         found: dict[Clause, list[Activation]] = {}
         causes = self.state.causes
-        alone = group.count == 1  # the activation itself
+        alone = group.count == 1  # the activation is the only member
         for member in () if alone else writers(group, clause.rule.slots, causes):
             theirs = member.clause
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
@@ -379,7 +372,7 @@ def _is_taken(groups: Sequence[Group], rule: RulePlan) -> bool:
 
 
 def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
-    """Return whether one of the rule's slots is taken in a group; note the runs that hold it."""
+    """Return whether one of the rule's slots is taken in a group; note the runs that took it in the refusal."""
     if group.taken.keys().isdisjoint(rule.slotset):
         return False
     for slot in rule.slots:
@@ -398,7 +391,7 @@ def _note_firm(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
 
 
 def _is_covered(younger: Activation, older: Sequence[Activation]) -> bool:
-    """Return whether one of the older activations holds all spikes of a younger one. The older ones are still to run."""
+    """Return whether one of some older activations, which will be ready first, holds all spikes of a younger one."""
     spikes = younger.firm_spikes() if older else ()
     return any([all([spike in one.spikes for spike in spikes]) for one in older])
 

@@ -1,19 +1,22 @@
-"""Halves: spikes that wait, without an activation, for the second spike of a clause that has two needs.
+"""Halves: first spikes that wait, without an activation, for a second spike.
 
+A clause with two constraints, its *needs*, takes two spikes. A *half* is a record of such needs for one signal (`Half`).
 A thousand rules `input & topic` would need a thousand activations for each input, although only a few of the topics
-occur. If a hundred first spikes wait for a counterpart, a new spike fits them all, but only the oldest will get it. So a
-first spike is an entry in a table (``entries.py``). The engine makes activations when a second spike arrives:
+occur. So the half holds the first spike as an *entry* in a table (``entries.py``), without activations.
+
+The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
+number of activations depends on the rule:
 
 - for a rule that writes no slot: one activation, with the oldest first spike
-- for the best writer of a slot: also one activation, but all first spikes hold the second (``benches.py``)
-- for any other rule: one activation with each first spike, because consent chooses
-- for a rule that was added beside a live spike of its signals: also one with each first spike, because an activation
-  may take the live spike in the place of a lost one
+- for the best writer of a slot: also one activation, but all first spikes share the counterpart (``benches.py``)
+- for any other rule: one activation with each first spike, because consent chooses one of them
+- for a rule that was added while an older spike of its signals was live: also one activation with each first spike,
+  because an activation that loses a spike may take the older spike
 
-Entries are *unfolded* into ordinary activations for a tracer, to merge groups, and to retire or add a rule. `Consent`
-unfolds an entry to judge each of its clauses by itself. As in a conflict set, the numbers of these activations are
-fixed from the start, and no rival depends on them (`find_halves`). So it does not matter when an entry unfolds. An
-explanation unfolds nothing.
+To *unfold* an entry is to make its activations. All entries unfold for a tracer, and when a rule retires or is added.
+The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge each of its clauses by itself.
+The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no rival
+depends on the activations (`find_halves`). An explanation unfolds nothing.
 """
 
 from __future__ import annotations
@@ -33,7 +36,7 @@ from ravestate.policy.model import Clause, Half, Need, SignalPlan
 from ravestate.policy.policy import Policy
 
 MANY: Final = 8
-"""The number of useless spikes that a search may pass before the half gets a `Row`."""
+"""A search may pass this many spikes that do not fit. If it passes more, the half gets a `Row`, an index."""
 
 
 class Halves:
@@ -48,7 +51,7 @@ class Halves:
         self.sets = sets
 
     def offer(self, signal: SignalPlan, spike: Spike) -> list[Need]:
-        """Offer a new spike to the halves of its signal; return the needs to which it must be offered one by one."""
+        """Offer a new spike to the halves of its signal. Return the needs to which the caller must still offer it."""
         state = self.state
         group = spike.group.root()
         if group.interested:
@@ -85,7 +88,7 @@ class Halves:
         return []
 
     def unfold_all(self) -> None:
-        """Create the activations of all alternatives and entries."""
+        """Create the activations of all entries, and of all alternatives of conflict sets (``conflict_sets.py``)."""
         self.sets.unfold_all()
         for half, spikes in list(self.state.halves.items()):
             for spike in list(spikes):
@@ -160,13 +163,13 @@ class Halves:
                 holdings.waits.stir(activation)
 
     def unfold_group(self, group: Group) -> None:
-        """Create the activations of the spikes of a group."""
+        """Create the activations of all entries of a group."""
         for spike in list(group.entries):
             for half in self.state.halves_of(spike):
                 self.unfold(spike, half)
 
     def take_over(self, activation: Activation, group: Group) -> None:
-        """Put a new activation under the pressure that its clause's stand-by had in a group, if there was any (L16)."""
+        """Put a new activation under pressure in a group, if its clause's stand-by was under pressure there (L16)."""
         until = (group.pressed or {}).get(activation.clause.index)
         if until is not None:
             self.holdings.put_under_pressure(activation, group, until)
@@ -187,7 +190,10 @@ class Halves:
         return activation
 
     def _pair(self, need: Need, spike: Spike, group: Group) -> bool:
-        """Make the activations that a new spike completes; return whether the spike needs no entry for the clause."""
+        """Make the activations for which a new spike is the counterpart. Return whether the clause needs no entry for it.
+
+        A clause whose rule writes no slot needs no entry: its activation with the oldest first spike takes the new spike.
+        """
         state = self.state
         partner = need.clause.needs[1 - need.index]
         waiting = state.halves.get(partner.half) if partner.half is not None else None
@@ -209,9 +215,9 @@ class Halves:
         return one and bool(found)
 
     def _has_elder(self, clause: Clause) -> bool:
-        """Return whether a live spike that fits a clause may be older than the clause's rule.
+        """Return whether a live spike that fits a clause may have been born before the rule was added.
 
-        No half holds such a spike, but an activation that loses another spike takes it (L12).
+        No half holds such a spike, but an activation that loses another spike may take it (L12).
         """
         state = self.state
         for need in clause.needs:
@@ -223,7 +229,7 @@ class Halves:
         return False
 
     def _find(self, need: Need, waiting: OrderedDict[Spike, int], *, one: bool) -> list[Spike]:
-        """Return the spikes that a half holds for a need, oldest first; if `one`, only the oldest."""
+        """Return the spikes that the need's half holds for the need, oldest first; with `one`, only the oldest."""
         state, half, found, passed = self.state, need.half, list[Spike](), 0
         assert half is not None
         row = state.rows.get(half)
@@ -243,7 +249,7 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """Create the activations of the clauses whose stand-by was under pressure. They take this pressure over."""
+        """If the stand-by of a clause was under pressure, create the clause's activation, and put it under the same."""
         for number in group.pressed or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)

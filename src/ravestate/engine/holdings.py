@@ -40,7 +40,7 @@ class Holdings:
         self.benches = Benches(self)
 
     def new_activation(self, clause: Clause, number: int) -> Activation:
-        """Create an activation of a clause; it is about to take its first spike."""
+        """Create an activation of a clause. The caller gives it its first spike."""
         state = self.state
         activation = Activation(number, clause)
         rule = clause.rule
@@ -55,7 +55,7 @@ class Holdings:
         return activation
 
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
-        """Give a new activation a patience in a group. The patience began before the activation was created (L16)."""
+        """Give a new activation a patience in a group: its stand-by or entry was already under pressure there (L16)."""
         activation.pressed = {group: until}
         if until > self.state.now:
             self.state.deadlines.add(until, PATIENCE, (group, activation))
@@ -92,14 +92,17 @@ class Holdings:
                 self.update(activation)
 
     def is_coherent(self, activation: Activation, need: Need, spike: Spike) -> bool:
-        """Return whether a spike belongs to the causal group from which the activation meets the kin needs (L12)."""
+        """Return whether a spike may join the spikes that an activation holds for the `kin` of a need.
+
+        Kin needs of a clause may only hold spikes of one causal group (L12).
+        """
         if need.kin == need.bit:
             return True
         held = activation.held(need.kin & ~need.bit)
         return held is None or held.group.root() is spike.group.root()
 
     def look(self, activation: Activation, needs: Iterable[Need]) -> None:
-        """For each detached need without a spike, take the newest live spike that fits, old enough if possible."""
+        """For each detached need without a spike, take the newest spike that fits. Prefer spikes that are old enough."""
         state = self.state
         for need in needs:
             if not need.detached or not need.bit & activation.missing:
@@ -133,7 +136,7 @@ class Holdings:
     # ------------------------------------------------------------------------------------ becoming ready
 
     def update(self, activation: Activation) -> None:
-        """After an activation's spikes have changed or aged, complete it, or else set its deadlines (L14)."""
+        """Judge an activation whose spikes have changed or aged: make it ready, or set its deadlines (L14)."""
         state = self.state
         clause = activation.clause
         if not activation.missing:
@@ -163,7 +166,7 @@ class Holdings:
     def complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it: a writer asks for consent, and any other activation just starts.
 
-        If the activation's loop has had too many turns (L23), only a second call, with `late`, queues the activation.
+        If the activation is a turn of a loop that must wait (L23), a second call, with `late`, queues it.
         """
         state = self.state
         if not late:
@@ -187,7 +190,7 @@ class Holdings:
         self.state.gated.pop(activation, None)
 
     def _unhead(self, activation: Activation) -> None:
-        """If an activation was the head of benches, note that these need another head."""
+        """If an activation was the head of a bench (``benches.py``), note that the bench needs another head."""
         state = self.state
         if state.benches:
             for spike in activation.spikes:
@@ -218,9 +221,10 @@ class Holdings:
     # ------------------------------------------------------------------------------------ giving up
 
     def lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
-        """Make an activation give up the spikes of `needs`; end it if no spike that keeps it alive is left.
+        """Make an activation give up the spikes of `needs`, and end it if nothing keeps it alive.
 
-        `by` is the run that is the reason, or None.
+        A non-detached spike keeps it alive. In a clause with detached needs only, any spike does. `by` is the run
+        because of which it gives the spikes up, or None.
         """
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
@@ -241,7 +245,7 @@ class Holdings:
         kin = 0
         for need in needs:
             kin |= need.kin
-        # The lost spike may have kept out spikes of other groups. Those may now meet the kin needs.
+        # A lost spike tied its kin needs to one causal group. Spikes of other groups may meet these needs now.
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
@@ -257,9 +261,9 @@ class Holdings:
         self.lose(activation, needs, reason, by)
 
     def give_up(self, run: Activation, reason: str) -> None:
-        """Make the run's rule give up the run's non-detached spikes for good, in all its other activations."""
+        """Make the rule of a run give up the run's non-detached spikes for good, in all other activations of the rule."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # mark all first: an activation that loses a spike takes another at once
+        for spike in run.stands_on:  # refuse all first: an activation that loses a spike takes another at once
             self.benches.rise(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:
@@ -270,7 +274,7 @@ class Holdings:
                     self.lose(other, [n for n in _of_spike(other, spike) if not n.detached], reason, run)
 
     def end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
-        """End an activation and remove every reference to it. With a `reason`, trace that it gave its spikes up."""
+        """End an activation and remove every reference to it. With a `reason`, record in the trace each spike it gives up."""
         state = self.state
         before = activation.state
         self._unhead(activation)
@@ -310,9 +314,9 @@ class Holdings:
             state.busy -= 1
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
-        """Take the spike of a need from an activation; `by` is the run that is the reason, or None.
+        """Take the spike of a need from an activation; `by` is the run because of which it does so, or None.
 
-        The activations that wait in the spike's causal group ask again: the group becomes dirty (`Waits.wake`).
+        The spike's causal group becomes *dirty*: the activations that wait in it ask again (`Waits.wake`).
         """
         state = self.state
         spike = activation.spikes[need.index]
@@ -352,7 +356,7 @@ class Holdings:
             if holder.state < RUNNING:
                 self.lose(holder, _of_spike(holder, spike), "withdrawn")
             else:
-                state.alternatives.pop(holder, None)  # each alternative would have given the spike up
+                state.alternatives.pop(holder, None)  # the run's alternatives (`ConflictSets`) lose the spike
 
     def withdraw(self, signal: SignalPlan, reason: str) -> None:
         """Withdraw all live spikes of a signal, for a `reason`."""

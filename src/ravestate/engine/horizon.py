@@ -1,27 +1,26 @@
 """The horizon (L16): whether the missing constraints of a rival may yet be met.
 
-A signal is in the horizon of a group if some rule of the group may yet cause it. A rule may
-cause a signal if it runs, or if its own constraints are met or may yet be met. This is a least fixed point over an and-or graph. Few signals matter at a time,
-so the engine derives each one backwards, from its causes to live activations. A static closure (`Causes.ancestors`)
-cuts off the causes that no live rule of the group can reach.
+The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the rule
+runs, or if its constraints are met or may yet be met. So a signal depends on other signals: the horizon is a least fixed
+point over an and-or graph. The engine derives single signals, backwards from a signal to live activations, because few
+signals matter at a time. It skips the causes that no live rule of the group can reach (`Causes.ancestors`).
 
-A derivation has one of three strengths:
+The result of a derivation is a *strength*:
 
-``FIRM``         it rests on work in progress: runs, ripening spikes, ready activations
-``SPECULATIVE``  a step needs an input, or a live rule of another group: the signal may never come, and
-                 only patience ends the wait
+``FIRM``         work in progress may raise the signal: runs, ripening spikes, ready activations
+``SPECULATIVE``  a step needs an input, or a live rule of another group: only patience ends the wait
 ``NO``           nothing leads to the signal
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
-An activation that waits for the asking activation cannot help until the asking activation has had its turn. So it
-counts as *still*: it does nothing.
+The asking activation cannot help either, nor can an activation that waits for it. These count as *still*: doing nothing.
 
-A derivation may have as many steps as the policy has signals. So each of its steps is a generator, a `Step`, which
-yields the steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack of its own.
+A chain of causes may be too long for recursion. So each step of a derivation is a generator, a `Step`, which yields the
+steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack.
 
-A derivation that needs itself reads its own *bound*: the strength that is proven so far, at first `NO`. All strengths
-that rest on a bound are open. If a bound has risen when the oldest derivation of a cycle ends, the cycle is derived again.
-Otherwise, its strengths are final. A strength rises at most twice, so a cycle of n signals takes at most 2n turns.
+In a cycle of causes, a derivation needs its own result. It reads its *bound* instead: the strength proven so far, at
+first `NO`. A strength that rests on a bound is *open*. If a bound has risen when the oldest derivation of the cycle ends,
+the engine derives the cycle again. Otherwise, the open strengths are final. A strength rises at most twice, so a cycle
+of n signals takes at most 2n turns.
 """
 
 from __future__ import annotations
@@ -43,11 +42,11 @@ FIRM: Final = 2
 
 SlotNumbers = frozenset[int]
 Place = tuple[int, Group, SlotNumbers]
-"""The goal of a derivation: a signal (its number) arises in a group, without rules that write the excluded slots."""
+"""The goal of a derivation: a signal (its number), the group that may cause it, and slots that no helping rule writes."""
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
-"""Special depths. `FINAL` marks a final strength. `STALE` marks a bound that no step may read any more."""
+"""Special depths. `FINAL` marks a final strength. `STALE` marks a strength that the engine must derive again."""
 
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
@@ -65,10 +64,10 @@ class Horizon:
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
-        visited: The groups on whose state the latest results depend.
-        hopes: Pair of a kind and the number of a rule or signal → a count. A change to that rule or signal may change
-            the results. For `OUTSIDE`, it counts only if the rule that raises it has at most that many other activations.
-        recheck: The earliest time (seconds) at which a spike under the results reaches its maximum age.
+        visited: The groups on whose state the results depend.
+        hopes: A kind (``refusal.py``) and the number of a rule or signal → a count. If this rule or signal changes, the
+            results may change. For `OUTSIDE`, a rule's change matters if it has at most so many other activations.
+        recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
     """
 
     __slots__ = (
@@ -94,7 +93,7 @@ class Horizon:
         self.still = still
         self.idle = idle
         self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
-        # For each place: its strength, its roots if it is firm, and the depth of the oldest open derivation beneath it.
+        # For each place: its strength, its roots if it is firm, and the depth of the oldest open derivation it rests on.
         self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
         self._depth = 0  # how many derivations are in progress
         self._since = FINAL  # the depth of the oldest derivation whose bound the present derivation has read
@@ -115,9 +114,9 @@ class Horizon:
         return any([activation in idle for idle in self.idle])
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
-        """Return how viable a clause is in a group (a strength), and the live activations on which a firm result rests.
+        """Return the strength with which a clause may become ready in a group, and the `roots` of a firm result.
 
-        `activation` is None for the clause's stand-by. An activation without a spike of the group has a stake there only
+        `activation` is None for the clause's stand-by. An activation without a spike of the group is a rival there only
         if it lacks a signal of the group's horizon.
         """
         self.roots.clear()
@@ -135,9 +134,9 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return a clause's needs (as bits) that this group may meet for activations in other groups."""
+        """Return the needs of a clause (as bits) for which a group may give spikes to activations of other groups."""
         if clause.apart:
-            return 0  # any spike that it lacks must come from the group that it stands on
+            return 0  # an activation of this clause takes all its spikes from one group
         reach = self._rules(group).keys()
         ancestors = self.state.causes.ancestors
         bits = 0
@@ -163,10 +162,7 @@ class Horizon:
         ]
 
     def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: SlotNumbers) -> Step:
-        """Return the strength with which a clause may become ready in a group; `activation` is None for its stand-by.
-
-        Rules that write one of `slots` cannot help.
-        """
+        """Derive how a clause may become ready, for `judge`. Rules that write one of `slots` cannot help."""
         rule = clause.rule
         if rule.index in self.state.retired:
             return NO
@@ -187,7 +183,7 @@ class Horizon:
                     self.visited[home] = None
             if not missing:
                 self.roots.append(activation)  # the activation is ready, or will be when its spikes are old enough
-        # For each need, or set of kin needs: how firmly this group may meet it, and how firmly any group may.
+        # For each need, or set of kin needs (their spikes must share a group): its strength in this group, and in any.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -218,7 +214,7 @@ class Horizon:
             here.append(mine)
             best.append(max(mine, other))
         strength = min(best, default=FIRM)
-        if not member:  # this group must meet one need itself: help from other groups creates no stake
+        if not member:  # the clause is a rival here only if this group itself may meet one of its needs
             strength = max((min(mine, *best[:k], *best[k + 1 :], FIRM) for k, mine in enumerate(here)), default=NO)
         if strength == NO or (clause.guards and not (yield from self._guards(clause, group, slots))):
             del self.roots[mark:]
@@ -267,7 +263,7 @@ class Horizon:
         return known[0]
 
     def _derive(self, place: Place, bound: int) -> Step:
-        """Return the strength of a place; `bound` is proven already."""
+        """Derive the strength of a place. It is at least `bound`, which an earlier derivation has proven."""
         known, mark = self._known, len(self.roots)
         depth, first, before = self._depth, len(self._open), self._since
         self._depth += 1
@@ -297,13 +293,13 @@ class Horizon:
             return best
 
     def _close(self, first: int, since: int) -> None:
-        """Mark the strengths of the open places as final or stale, from the index `first` on."""
+        """Mark the strengths of the open places as final or stale (`since`), from the index `first` on."""
         for place in self._open[first:]:
             self._known[place] = self._known[place][0], (), since
         del self._open[first:]
 
     def _caused(self, signal: int, group: Group, slots: SlotNumbers) -> Step:
-        """Return the strength with which one of the rules that may raise a signal will do so."""
+        """Return the strength of the firmest way in which a rule may raise a signal in a group."""
         mark = len(self.roots)
         by_rule, retired = self._by_rule[group], self.state.retired
         best = NO
@@ -348,7 +344,7 @@ class Horizon:
         return found
 
     def _is_far(self, signal: int, group: Group) -> bool:
-        """Return whether a live rule of another group might raise a signal, and note the hope."""
+        """Return whether a live rule of another group might raise a signal. Note in `hopes` that the answer may change."""
         causes = self.state.causes
         wide = causes.wide_ancestors(signal)
         if wide:
@@ -366,7 +362,7 @@ class Horizon:
         return False
 
     def _apart(self, rule: int, group: Group, *, near: bool) -> int:
-        """Return how many activations of a rule do nothing. With `near`, also count the rule's other activations in a group."""
+        """Count the activations of a rule that are no help from other groups: still ones, and with `near`, those here."""
         if self._still is None:
             self._still = {}
             for activation in self.still:
@@ -385,8 +381,8 @@ class Horizon:
 def _solve(step: Step) -> int:
     """Run a derivation with all its steps, and return its strength.
 
-    A recursion as deep as a long chain of causes might exceed Python's limit. So each step towards another cause is
-    yielded to this loop (`_comes`, `_caused`). A ``yield from`` only divides one step into several functions.
+    Each step towards another cause comes to this loop by ``yield`` (`_comes`, `_caused`). A ``yield from`` only divides
+    one step into several functions.
     """
     waiting: list[Step] = []
     strength: Any = None

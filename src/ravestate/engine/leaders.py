@@ -1,15 +1,16 @@
-"""Leaders: a refused activation speaks for the activations behind it.
+"""Leaders: the refusal of one activation saves the questions of the activations behind it.
 
-Suppose that a thousand fallbacks are ready, and the best fallback is refused. All others are refused as well, because
-the best fallback is ahead of them. So only the best fallback, the *leader*, asks in full (``consent.py``). The others
-*follow*: they wait for the leader, and look at no other rival.
+An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are ready
+to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one is a
+rival of each. So only the best one, the *leader*, asks in full (``consent.py``). The others *follow*: they wait for the
+leader, and look at no other rival.
 
-A rival whose utility lies between those of the leader and another activation prevents this. The other activation
-would put this rival under pressure, or expect help from it, but the leader did not (L16). So the other activation asks
-in full, and leads the activations after it.
+An activation cannot follow if a rival stands between the leader and the activation in utility. The leader did not look
+at this rival. But the activation would put the rival under pressure, or expect help from it (L16). So the activation
+asks in full, and becomes the leader of the activations behind it.
 
-If a follower asked in full, it would also count on the effects of the leader. So an activation can lead only if its
-effects help no rule that writes a slot.
+A question in full also counts on the effects of the leader. So an activation can lead only if its effects help no rule
+that writes a slot.
 """
 
 from __future__ import annotations
@@ -27,21 +28,21 @@ class Leader:
 
     Attributes:
         activation: The activation.
-        next: The best clause behind the activation that prevents others from following; None if there is none.
-        recovering: More such clauses, of rules that recover. Their places in the order change with time.
+        next: The best rival behind the leader. Activations behind this rival cannot follow. None without such a rival.
+        recovering: The rivals behind the leader whose rules recover from a run. Their places in the order change.
     """
 
     __slots__ = ("activation", "known", "next", "recovering")
 
     def __init__(self, activation: Activation) -> None:
         self.activation = activation
-        self.known = False  # whether the attributes below are known: they are computed for the first follower
+        self.known = False  # whether the two attributes below are known: the first follower needs them
         self.next: Clause | None = None
         self.recovering: list[Clause] = []
 
 
 class Leaders:
-    """The leaders of one round of questions; `found` maps a causal group and the slots asked for to the leader."""
+    """The leaders of one round of consent; `found` maps a causal group and a set of slots to their leader."""
 
     __slots__ = ("found", "state")
 
@@ -50,13 +51,13 @@ class Leaders:
         self.found: dict[tuple[Group, frozenset[int]], Leader] = {}
 
     def add(self, activation: Activation) -> None:
-        """Make a refused activation a leader, if it can be one."""
+        """Make a refused activation the leader for its group and slots, if it can lead."""
         groups, rule = activation.firm_groups(), activation.clause.rule
         if len(groups) == 1 and self.state.causes.helpful.isdisjoint(rule.raises):
             self.found[groups[0], rule.slotset] = Leader(activation)
 
     def refuse(self, activation: Activation) -> Refusal | None:
-        """Return the refusal of an activation that follows a leader, or None if there is no such leader."""
+        """Return the refusal of an activation that follows a leader; None if it must ask in full."""
         groups, clause, standing = activation.firm_groups(), activation.clause, self.state.standing
         slots = clause.rule.slotset
         leader = self.found.get((groups[0], slots)) if len(groups) == 1 else None
@@ -81,7 +82,7 @@ class Leaders:
         return refusal
 
     def _look_behind(self, leader: Leader, group: Group) -> None:
-        """Find the clauses that prevent activations from following a leader."""
+        """Find the rivals behind a leader: activations behind such a rival cannot follow."""
         state, first = self.state, leader.activation.clause
         causes, slots = state.causes, first.rule.slots
         found: dict[Clause, None] = {}

@@ -1,12 +1,13 @@
 """Endless loops (L23): rules that trigger each other without time passing.
 
-An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant the engine notes, for each
-new spike, which rules led to it. If a run's own rule led to it, the run is another turn of a loop. After `TURNS` turns
-of all loops together, each further turn waits until nothing else is ready. Once a single loop has had `TURNS` turns,
-the engine names it in an error.
+An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant, the engine notes for each
+new spike which rules led to the spike. A run is a further *turn* of a loop if its rule also led to one of its spikes.
+After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. Once a
+single loop has had `TURNS` turns, the engine names the loop's rules in an error.
 
-A rule that triggers two runs of itself turns one loop into thousands. So the turns of all loops count together. The
-engine judges a turn twice: when it becomes ready, and just before it starts. Thousands may have become ready in between.
+The turns of all loops count together, because a rule that triggers two runs of itself soon makes thousands of loops.
+The engine decides twice whether to defer an activation: when it becomes ready, and just before it starts. Many turns
+may have run in between.
 """
 
 from __future__ import annotations
@@ -24,14 +25,14 @@ if TYPE_CHECKING:
     from ravestate.policy.model import RulePlan
 
 MANY: Final = 500
-"""The number of runs in one instant before the engine traces further runs; most instants have fewer."""
+"""The number of runs in one instant after which the engine notes which rules led to a spike. Most instants have fewer."""
 
 TURNS: Final = 500
-"""The number of turns in one instant that the engine does not defer. `MANY` and `TURNS` make the 1,000 runs of L23."""
+"""The number of turns in one instant before the engine defers turns. `MANY` and `TURNS` make the 1,000 runs of L23."""
 
 
 class Loop:
-    """All runs that one run has triggered within an instant.
+    """A run and all the runs that it has led to within an instant.
 
     Attributes:
         instant: The number of the instant.
@@ -48,14 +49,14 @@ class Loop:
 
 
 class Lineage(NamedTuple):
-    """The numbers of the rules that led to a spike within an instant, and the loop to which the spike may belong."""
+    """The origin of a spike or a run: the numbers of the rules that led to it within an instant, and its loop."""
 
     rules: frozenset[int]
     loop: Loop
 
 
 class Loops:
-    """The runs of the present instant, and the deferred turns of loops. `memory` notes rules that an error has named.
+    """The runs of the present instant, and the deferred turns of loops. `memory` keeps the rules that an error has named.
 
     Attributes:
         runs: How many runs there have been in this instant.
@@ -78,7 +79,7 @@ class Loops:
         return self._turns >= TURNS
 
     def rest(self) -> None:
-        """End the instant: nothing is left to do."""
+        """End the instant, because nothing is left to do."""
         self.runs = self.late = self._turns = 0
         self._next = None
         self._instant += 1
@@ -106,13 +107,13 @@ class Loops:
         return None
 
     def lineage(self, run: Activation) -> Lineage | None:
-        """Return the rules that led to the next spike of a run; None if the instant has few runs so far."""
+        """Return the lineage of the spikes that a run raises; None if the instant has few runs so far."""
         if run.lineage is None and self.runs > MANY:
             run.lineage = Lineage(frozenset((run.clause.rule.index,)), Loop(self._instant))
         return run.lineage
 
     def trace(self, run: Activation) -> Sequence[RulePlan]:
-        """Note the rules that led to a run. Return the rules of its loop if an error must name them now, else none."""
+        """Note the lineage of a run that starts. If an error must name the run's loop now, return the loop's rules."""
         lines = self._lines(run)
         if not lines:
             return ()  # `lineage` begins a loop if the run raises a spike

@@ -13,24 +13,28 @@ if TYPE_CHECKING:
 RULE: Final = 0
 OUTSIDE: Final = 1
 SEEN: Final = 2
-"""Kinds of hope: an activation in another group; a live rule that may raise a signal; a new spike to look at."""
+"""Kinds of *hope*. A hope is a thing outside an activation's groups whose change may lift the activation's refusal.
+
+`RULE`: the activations of a rule in other groups. `OUTSIDE`: the live rules of other groups that may raise a signal.
+`SEEN`: the next spike of a signal, at which a detached need looks.
+"""
 
 
 class Refusal:
     """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
 
     Attributes:
-        names: Name of a rule that the activation waits for → the best of its clauses that compete.
+        names: Name of a rule that the activation waits for → the best of the rule's clauses that are rivals.
         blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
-        firm: For each rival that work in progress will make ready or rule out: the activations at work.
-        taken: Whether a slot is taken.
-        pressed: Whether a rival may never be ready, so that only its patience ends the wait.
-        hopes: Things outside its groups on which the refusal depends (`Horizon.hopes`).
+        firm: For each rival that work in progress makes ready or rules out: the activations that do this work.
+        taken: Whether a run has taken one of the activation's slots.
+        pressed: Whether a rival may never be ready, so that only the end of its patience ends the wait.
+        hopes: The hopes of the activation → a count for each (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
         leader: The activation that speaks for this one (``leaders.py``), or None.
-        told: The names that the trace has told, if there is a tracer.
-        recheck: The earliest time at which recovering utilities, the patience of a rival without an activation, or the
-            age of a spike may lift it (seconds).
+        told: The names in the trace's record of this wait, if there is a tracer.
+        recheck: The earliest time (seconds) at which time alone may lift the refusal. Causes are a rule that recovers, a
+            spike that grows too old, and the end of the patience of a rival without an activation.
     """
 
     __slots__ = ("blockers", "firm", "hopes", "interests", "leader", "names", "pressed", "recheck", "taken", "told")
@@ -48,14 +52,14 @@ class Refusal:
         self.told: tuple[str, ...] = ()
 
     def name(self, rival: Clause) -> None:
-        """Note that the activation waits for a clause."""
+        """Note that the activation waits for a rival."""
         known = self.names.get(rival.rule.name)
         if known is None or known.base < rival.base:
             self.names[rival.rule.name] = rival
 
     @property
     def all_names(self) -> dict[str, Clause]:
-        """The names, with those for which the leader waits."""
+        """The names of the rules that the activation waits for, and those that its leader waits for."""
         leader = self.leader
         if leader is None or leader.refusal is None:
             return self.names
@@ -63,7 +67,7 @@ class Refusal:
 
     @property
     def bounded(self) -> bool:
-        """Whether the wait is for a taken slot, or for a rival whose patience ends the wait."""
+        """Whether the wait ends in any case: when a run frees its slot, or when a rival's patience ends."""
         return self.taken or self.pressed
 
     def __bool__(self) -> bool:
@@ -71,4 +75,4 @@ class Refusal:
 
 
 CONSENT: Final = Refusal()
-"""The empty refusal of an activation that has no rival."""
+"""The refusal without reasons: the activation has consent."""

@@ -12,13 +12,14 @@ from ravestate.engine.idle import Idle
 def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | None = None) -> set[Activation]:
     """Return activations that wait for nothing but each other.
 
-    Two ready rules may each wait for a rival whose missing signal the other rule may cause. Both would wait for ever.
-    So the rule with the greater effective utility goes first; if they are equal, the rule declared first does.
+    Suppose that two rules are ready, and each waits for a rival. Each rival lacks a signal that only the other rule may
+    cause, so both rules would wait for ever. The engine starts the rule with the greater effective utility. If both
+    utilities are equal, it starts the rule declared first.
 
     Args:
         consent: The part of the engine that asks for consent.
         refused: The activations that were refused since the last search. Each new stalemate has at least one of these.
-        known: The activations that earlier searches found.
+        known: The activations that earlier searches found. They count as doing nothing.
     """
     waiting = consent.state.waiting.keys()
     seen: set[Activation] = set()
@@ -29,7 +30,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             if one in seen or not _hangs(one):
                 continue
             if any([waiting.isdisjoint(roots) for roots in _firm(one)]):
-                continue  # none of these activations waits, so this wait will end
+                continue  # the activations that decide on one rival do not wait, so this wait will end
             seen.add(one)
             for roots in _firm(one):
                 reached += roots
@@ -48,7 +49,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             if not moved:
                 break
             stuck -= {one for one, _ in moved}
-            for _, refusal in moved:  # search these activations too: they may wait for the first ones
+            for _, refusal in moved:  # these depend on further activations, which may wait for the first ones
                 reached += [root for roots in refusal.firm for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck
@@ -80,9 +81,6 @@ def _firm(activation: Activation) -> list[tuple[Activation, ...]]:
 
 
 def _hangs(activation: Activation) -> bool:
-    """Return whether an activation waits only for other activations, not for a taken slot or a rival's patience.
-
-    Such a wait might never end.
-    """
+    """Return whether an activation's wait might never end: no taken slot and no rival's patience ends it."""
     refusal = activation.refusal
     return refusal is not None and bool(refusal.firm) and not refusal.bounded

@@ -1,22 +1,23 @@
-"""The state of an engine: its tables, and the questions that they answer. No decision is made here.
+"""The state of an engine: its tables, and the questions that they answer. This file makes no decision.
 
-Each table is indexed by what an event concerns: live spikes by signal, activations by rule, and incomplete activations
-by the need that they lack. So the cost of an event does not grow with the number of rules.
+An event finds its spikes and activations without a search: live spikes by signal, activations by rule, and incomplete
+activations by the need that they lack. So the cost of an event does not grow with the number of rules.
 
-The other parts of the engine share one state. Beside `State.adopt`, these files change its tables:
+The parts of the engine share one state. Only `State.adopt` and these files change its tables:
 
-- `active`: ``holdings.py``; `lacking`: also ``matching.py`` and ``halves.py``; `gated`: also ``slots.py``
+- `active`: ``holdings.py``
+- `lacking`: ``holdings.py``, ``matching.py`` and ``halves.py``; `gated`: ``holdings.py`` and ``slots.py``
 - `live`: ``matching.py`` and ``entries.py``; `busy`: ``holdings.py`` and ``entries.py``
 - `halves`, `pools`, `seats`, `benches`: ``entries.py`` and ``benches.py``
 - `rows`: ``halves.py`` and ``entries.py``
 - `headless`: ``holdings.py`` and ``benches.py``
 - `pressed`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
-- `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: also ``agenda.py``
-- `running`, `ran`, `watches`: ``runs.py``; `watched_by`: also ``holdings.py``; `retired`: ``parts.py``
-- `values`: ``slots.py``; a first read also adds the default
+- `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: ``waits.py`` and ``agenda.py``
+- `running`, `ran`, `watches`: ``runs.py``; `watched_by`: ``runs.py`` and ``holdings.py``; `retired`: ``parts.py``
+- `values`: ``slots.py``; the first read of a slot adds its default
 
-Any part may add to the work that is still to be done: `asking`, `dirty`, `stirred`, `free`, `errors`, `out`. The first
-three are emptied by `Waits.wake`, `free` by ``agenda.py``, `errors` and `out` by ``parts.py``.
+Any part may add to the work that is left: `asking`, `dirty`, `stirred`, `free`, `errors`, `out`. `Waits.wake` empties
+the first three, ``agenda.py`` empties `free`, and ``parts.py`` empties `errors` and `out`.
 """
 
 from __future__ import annotations
@@ -46,9 +47,9 @@ from ravestate.policy.policy import Policy
 
 
 class State(Memory):
-    """The memory, live spikes and activations of an engine, and the work that is still to be done.
+    """The memory, live spikes and activations of an engine, and the work that is left to do.
 
-    It takes the memory over from an engine that begins to work.
+    An engine at rest has a `Memory` only. When it begins to work, a state takes this memory over (`begin`).
 
     Args:
         policy: A policy from ``rs.compile``.
@@ -106,7 +107,7 @@ class State(Memory):
         self.pressure = policy.slot_of["core:pressure"]
         self.tracer: Tracer | None = None
         self.deadlines = Deadlines(self)
-        # Many engines never need some of the following tables. Each of these is `NOTHING` until its owner first writes it.
+        # Most engines need only some of these tables. A table that begins as `NOTHING` is made at its first entry.
         self.live: dict[int, dict[Spike, None]] = {}
         """Number of a signal → its live spikes, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
@@ -114,20 +115,21 @@ class State(Memory):
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but none for this need."""
         self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING
-        """Half → the spikes that it holds without an activation, oldest first (``halves.py``), each with the number just
-        before those of its activations."""
+        """Half → the spikes that it holds without an activation, oldest first (``halves.py``). Each spike has a number
+        *n*: if its activations are made, they get the numbers from *n* + 1 on."""
         self.rows: dict[Half, Row] = NOTHING
-        """Half that holds many spikes, each for only some of its clauses → these spikes in a row (``row.py``)."""
+        """Half that holds many spikes, each for only some of the half's clauses → an index of these spikes (``row.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
         """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
         self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
-        """Spike → half → the bench whose counterpart it is."""
+        """Spike → half → the half's bench that has this spike as counterpart."""
         self.seats: dict[Half, dict[Spike, Bench]] = NOTHING
-        """Half with benches → spike that it holds → the spike's bench."""
+        """Half with benches → each spike that the half holds → the spike's bench."""
         self.headless: dict[Spike, None] = NOTHING
         """The counterparts of benches whose heads may have gone."""
         self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
-        """Spike → half that holds it → pairs: how many of its best clauses are pressed, and until when (seconds; L16)."""
+        """Spike → half that holds it → pairs: how many of the half's best clauses have a patience, and when it ends
+        (seconds; L16). A later pair counts the clauses of earlier pairs again."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.free = Free()
@@ -135,25 +137,26 @@ class State(Memory):
         self.asking: dict[Activation, None] = {}
         """The ready or waiting activations that are about to ask for consent."""
         self.reordered = False
-        """Whether the order of the asking activations has changed: groups have merged, or a rule must recover."""
+        """Whether the order of the asking activations may have changed: groups have merged, or a cooldown has begun."""
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
         """The activations refused since the last search for a stalemate."""
         self.stuck: Idle | None = None
-        """The activations found in a stalemate since they were refused; made on first use."""
+        """The activations that wait for nothing but each other (``stalemate.py``); made on first use."""
         self.dirty: dict[Group, None] = {}
-        """The groups in which a run or a patience has ended, or a member has come, changed or gone. The activations that
-        wait there ask again (`Waits.wake`)."""
+        """The groups that have changed: a run or a patience has ended, or a member has come, changed or gone. The
+        activations whose refusals depend on these groups ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
-        """Thing outside their groups on which waiting activations depend (`Horizon.hopes`) → these activations."""
+        """Hope, that is, a thing outside an activation's groups that may lift its refusal (``refusal.py``) → the waiting
+        activations that have this hope."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
-        """The same keys → the greatest count in `Horizon.hopes`."""
+        """Hope → its greatest count in the refusals of these activations (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING
-        """The keys of `hoping` that have changed."""
+        """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
-        """Activation with a queue of alternatives (``conflict_sets.py``) → the clauses of its conflict set; how many of
-        the clauses have had an activation; the number just before those of the activations."""
+        """Activation that stands for a conflict set (``conflict_sets.py``) → three values: the clauses of the set, how
+        many of them have had an activation, and a number *n*. Their activations get the numbers from *n* + 1 on."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.standing = Standing(self.ran)
@@ -168,12 +171,13 @@ class State(Memory):
         self.errors: tuple[tuple[RuleFailure, Lineage | None], ...] = ()
         """Failures that ``core:error`` has not reported yet, each with the rules that led to it."""
         self.faults: dict[int, tuple[Clause, Any, Exception]] = NOTHING
-        """`id` of a predicate that has raised and is not reported yet → the first declared clause, it, and the exception."""
+        """`id` of a predicate that has raised and is not reported yet → the first declared clause with the predicate, the
+        predicate, and the exception."""
         self.loops = Loops(self)
         self.busy = 0
         """How many activations count for ``core:activity``."""
         self.added = 0
-        """The number of the newest spike when a rule was last added; older spikes may still be live."""
+        """The number of the newest spike at the time when a rule was last added."""
 
     def begin(self, memory: Memory) -> None:
         """Take over the memory of an engine that begins to work."""
@@ -188,11 +192,11 @@ class State(Memory):
 
     @property
     def at_rest(self) -> bool:
-        """Whether nothing is live, no effect is to be taken, and nobody traces what happens."""
+        """Whether nothing is live, the runtime has taken all effects, and no tracer listens."""
         if self.live or self.active or self.out or self.errors or self.faults or self.tracer is not None:
             return False
         if self.values.get(self.activity.index) or self.values.get(self.pressure.index):
-            return False  # a write from outside: the flags are still to be settled
+            return False  # code outside has set a built-in flag, which the engine must settle
         return self.deadlines.next() is None
 
     def adopt(self, policy: Policy) -> None:
@@ -235,7 +239,7 @@ class State(Memory):
         return None
 
     def fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: age and payload fit, and the rule has not lost it for good."""
+        """Return whether a live spike may meet a need: age and payload fit, and the rule has not given it up for good."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and (need.max_age or spike.born < self.now):
             return False
@@ -271,7 +275,7 @@ class State(Memory):
         return held is not None and not (spike.parted and need.clause.index in spike.parted)
 
     def entry_number(self, need: Need, spike: Spike) -> int:
-        """Return the number of the activation for which the need's half holds a spike."""
+        """Return the number that an activation gets if the need's half unfolds a spike into activations."""
         half = need.half
         assert half is not None
         held = self.entries(half, spike)
@@ -279,7 +283,7 @@ class State(Memory):
         return held[spike] + half.places[need.clause.rule.index] + 1
 
     def stand_in(self, need: Need, spike: Spike) -> Activation:
-        """Return the activation for which the need's half holds a spike. It is in no table."""
+        """Return a copy of the activation that the need's half would make of a spike. No table has the copy."""
         activation = Activation(self.entry_number(need, spike), need.clause)
         activation.spikes[need.index] = spike
         activation.missing &= ~need.bit
@@ -289,7 +293,10 @@ class State(Memory):
         return activation
 
     def entry_patience(self, need: Need, spike: Spike) -> float | None:
-        """Return when a clause's patience ends (seconds), if a half holds a spike for it; None without pressure."""
+        """Return when the patience of the need's clause ends (seconds), if a half holds the spike for this clause.
+
+        Return None if the clause is not under pressure.
+        """
         half = need.half
         if half is None or spike not in self.pressed:
             return None
@@ -302,21 +309,21 @@ class State(Memory):
     # ------------------------------------------------------------------------------------ slots and predicates
 
     def is_open(self, clause: Clause) -> bool:
-        """Return whether the clause's predicates on slots are true. A predicate that raises is false, and is reported."""
+        """Return whether the clause's slot predicates are true. A predicate that raises counts as false, and is reported."""
         for slot, guard in clause.guards:
             if not self.test(guard.predicate, self.read(slot.index), clause):
                 return False
         return True
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
-        """Return whether a predicate on a slot is true. A predicate that raises is false, but is not reported."""
+        """Return whether a slot predicate is true. A predicate that raises counts as false, without a report."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
         except Exception:  # the designer's predicate may raise anything
             return False
 
     def test(self, predicate: Any, value: Any, clause: Clause) -> bool:
-        """Return the result of a clause's predicate. A predicate that raises is false, and is reported once."""
+        """Return the result of a clause's predicate. A predicate that raises counts as false, and is reported once."""
         try:
             return bool(predicate(value))
         except Exception as exception:  # a predicate is the designer's code: it may raise anything
@@ -333,7 +340,7 @@ class State(Memory):
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:
-        """Return whether a need's predicates are true of a payload. The first that is false spares the others."""
+        """Return whether all predicates of a need accept a payload. The first that does not spares the others."""
         for predicate in need.predicates:
             if not self.test(predicate, payload, need.clause):
                 return False

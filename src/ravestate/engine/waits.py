@@ -1,9 +1,13 @@
 """Waiting: the changes after which an activation that was refused consent asks again (L15, L16).
 
-An activation waits for a reason: a `Refusal`. It asks again when a group of the refusal's `interests` changes, or
-a thing outside these groups, a *hope*. Its recheck time, a change of the rules, a cooldown, or a write of a slot with
-predicates also makes it ask. While there are hopes, each change of an activation is compared with all of them
-(`Waits.stir_rule`).
+Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of these changes:
+
+- a causal group on which the refusal depends (`Refusal.interests`)
+- a *hope*: a thing outside these groups that may lift the refusal, such as a live rule elsewhere (``refusal.py``)
+
+It also asks again at its recheck time, and when its rule or a rival begins a cooldown. A change of the rules, or a write
+of a slot with predicates, makes all waiting activations ask again. The engine compares each change of an activation
+with all hopes (`Waits.stir_rule`).
 """
 
 from __future__ import annotations
@@ -26,7 +30,7 @@ class Waits:
         self.state = state
 
     def begin(self, activation: Activation, refusal: Refusal) -> None:
-        """Make an activation wait, for the reasons in `refusal`."""
+        """Make an activation wait for the reasons in `refusal`, and note the changes after which it asks again."""
         state = self.state
         before = activation.refusal
         activation.step(REFUSE)
@@ -65,7 +69,7 @@ class Waits:
         return True
 
     def end(self, activation: Activation) -> None:
-        """Make an activation stop waiting, so that changes elsewhere do not make it ask again."""
+        """Make an activation stop waiting: forget the changes after which it would ask again."""
         state = self.state
         refusal = activation.refusal
         if refusal is None:
@@ -93,7 +97,7 @@ class Waits:
             self.stir_rule(activation.clause.rule)
 
     def stir_rule(self, rule: RulePlan) -> None:
-        """Note that an activation of a rule has come, changed or gone: activations in other groups may depend on it."""
+        """Note that an activation of a rule has come, changed or gone. Activations that hope for the rule ask again."""
         state = self.state
         others = len(state.active.get(rule.index, ())) - 1
         for hope in state.hoping:
@@ -109,14 +113,14 @@ class Waits:
                 state.stirred[hope] = None
 
     def stir_half(self, half: Half) -> None:
-        """Note that a half has taken a spike: rivals in stand-by now hold a spike of another group."""
+        """Note that a half has taken a spike. Activations that hope for one of its rules ask again."""
         state = self.state
         for hope in state.hoping:
             if hope[0] == RULE and hope[1] in half.places:
                 state.stirred[hope] = None
 
     def wake(self) -> dict[Activation, None]:
-        """Return the activations that ask for consent now: new ones, and waiting ones whose refusal may be lifted."""
+        """Return the activations that ask for consent now: those newly ready, and those whose refusal may be lifted."""
         state = self.state
         asking = state.asking
         state.asking = {}
@@ -130,14 +134,14 @@ class Waits:
         return asking
 
     def pass_time(self) -> None:
-        """Judge stalemates again, because with time the reasons to wait may change."""
+        """Let the next search for a stalemate begin with all stuck activations, because time may change their reasons."""
         if self.state.stuck:
             self.state.refused.update(dict.fromkeys(self.state.stuck))
             self.state.stuck.clear()
 
 
 def patience_of_rivals(state: State, activation: Activation) -> float | None:
-    """Return when the patience of all pressured rivals of a waiting activation has ended (seconds), or None."""
+    """Return when the last patience of a waiting activation's rivals ends (seconds); None without pressure."""
     names = activation.refusal.names if activation.refusal is not None else ()
     clauses = state.policy.clause_plans
     times: list[float] = []

@@ -1,7 +1,8 @@
 """The static graph of causes between signals (L7), and its closures.
 
-An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. The closure of a signal
-holds the signal itself and all signals that lead to it. Effects of a detached rule have no causes.
+An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. No edge leads through a
+detached rule, because its effects have no causes. The closure of a signal holds the signal itself and all signals from
+which edges lead to it.
 
 A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
 intersections are fast.
@@ -22,8 +23,8 @@ class Causes:
     Attributes:
         causes: Signal → the non-detached rules that may raise it.
         all_causes: Signal → all rules that may raise it.
-        direct: Signal → the signals that may directly cause it, without detachment.
-        components: The cycles of `direct`; signals of one component lead to each other.
+        direct: Signal → the signals from which an edge leads to it.
+        components: Groups of signals that lead to each other. A signal on no cycle is a component by itself.
     """
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan]) -> None:
@@ -54,7 +55,7 @@ class Causes:
         self._helpful: frozenset[int] | None = None
 
     def roots(self, signal: int) -> int:
-        """Return the roots of the signal's pathways, as bits; roots are numbered separately from signals.
+        """Return the roots of a signal's pathways, as bits. Roots have numbers of their own.
 
         A root is a signal without causes, or a cycle without causes from outside. The pathways of two signals have a
         signal in common if and only if the two signals share a root.
@@ -62,10 +63,10 @@ class Causes:
         return self._roots[self.components.of[signal]]
 
     def parts(self, clause: Clause) -> frozenset[int]:
-        """Return the parts of the policy in whose causal groups a clause may have a stake.
+        """Return the numbers of the parts of the policy in whose causal groups a clause may take spikes.
 
-        A part is a set of roots whose spikes may belong to one causal group: a rule raises a signal from spikes of both,
-        or one write of a slot raises both (L11, L12).
+        A part is a set of roots. Two roots are in one part if their spikes may share a causal group: one run may hear
+        both, or one write of a slot may raise both (L11, L12).
         """
         if self._parts is None:
             self._parts = self._find_parts()
@@ -120,7 +121,7 @@ class Causes:
         return found
 
     def closure(self, signal: int) -> int:
-        """Return the signals on a signal's pathways, as bits: the signal itself, and all that lead to it undetached."""
+        """Return the closure of a signal, as bits: all signals on its pathways."""
         if self._closures is None:
             self._closures = self._find_closures()
         return self._closures[self.components.of[signal]]
@@ -140,15 +141,17 @@ class Causes:
         return found
 
     def ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of non-detached effects leads to the signal."""
+        """Return the numbers of the rules from which a chain of effects leads to the signal, without detached rules."""
         component = self.components.of[signal]  # all signals of a component have the same ancestors
         if component not in self._ancestors:
             self._ancestors[component] = self._climb(signal, self.causes, wide=False)
         return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects, detached or not, leads to the signal. A chain
-        does not pass through an input, because an input may occur at any time anyway."""
+        """Return the numbers of the rules from which a chain of effects leads to the signal, also by detached rules.
+
+        A chain does not pass through an input, because an input may occur at any time anyway.
+        """
         if signal not in self._wide:
             self._wide[signal] = self._climb(signal, self.all_causes, wide=True)
         return self._wide[signal]
@@ -190,7 +193,10 @@ class Causes:
         return frozenset(found)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """Return the clauses of slot-writing rules that `rule` may trigger by non-detached effects, the best first."""
+        """Return the clauses that effects of `rule` may make ready in the same group, the best first.
+
+        Only clauses of rules that write a slot count.
+        """
         found = self._downstream.get(rule.index)
         if found is None:
             clauses: dict[Clause, None] = {}
@@ -221,10 +227,11 @@ class Causes:
 
     @property
     def contested(self) -> frozenset[int]:
-        """The slots that a chain of effects must remember, because no rule of the chain may write a slot again (L19).
+        """The slots that a chain of effects must remember, because it may write each slot only once in a group (L19).
 
-        Within one group, a chain in which a rule occurs twice can be shortened. So a slot that only one rule writes
-        matters only if the rule is on a cycle with a clause that joins groups.
+        A slot that several rules write is contested. If only one rule writes a slot, a chain that writes it twice passes
+        this rule twice. Within one group, such a chain can leave out the part between, and still reach its end. So the
+        slot is contested only if the rule is on a cycle with a clause that joins groups.
         """
         if self._contested is None:
             self._contested = self._find_contested()
@@ -251,7 +258,7 @@ class Causes:
         )
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """Return the signals that may ever occur if the signals in `given` occur: a least fixed point over all rules."""
+        """Return the signals that may ever occur if the signals in `given` may: a least fixed point over all rules."""
         reached = set(given)
         lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}
@@ -281,6 +288,6 @@ def _firm(clause: Clause) -> list[int]:
 
 
 def _watched(rule: RulePlan) -> list[int]:
-    """Return the signals on which a rule depends: those that it hears, and the changes of the slots of its predicates."""
+    """Return the signals on which a rule depends: those that it hears, and those of the slots in its predicates."""
     slots = [slot for clause in rule.clauses for slot, _ in clause.guards]
     return [need.signal.index for need in _needs(rule)] + [signal.index for slot in slots for signal in slot.signals]

@@ -1,11 +1,11 @@
-"""The graph in which clauses are completed to pathways (L8).
+"""The graph that completes clauses to pathways (L8).
 
-An *alternative* of a signal is a conjunction of signals that may cause it. An input, or a signal without causes, also
-has the empty alternative. A pathway of a clause is a set of signals: the clause's own signals, and for each signal of
-the set, the signals of one of its alternatives.
+An *alternative* of a signal is a set of signals that together may cause it. An input, or a signal without causes, also
+has the empty alternative. A pathway of a clause is a set of signals. It holds the clause's own signals and, for each
+of its signals, one alternative of this signal.
 
-Sets of signals are integers here. Bit *n* stands for the *n*-th signal in an order with causes before their effects.
-Except in cycles, the signal of a set's highest bit causes no other signal of the set.
+A set of signals is an integer here. Bit *n* stands for the signal at *place* *n*; causes have places before their
+effects. Except in cycles, the signal of a set's highest bit causes no other signal of the set.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ class Completion:
     """The alternatives and the information of every signal.
 
     Attributes:
-        place: Signal's index → the signal's place in the order with causes before their effects.
+        place: Number of a signal → its place.
         alternatives: Place → the signal's alternatives, each a tuple of places.
-        bare: Place → whether a pathway may hold the signal without its causes.
+        bare: Place → whether a pathway may hold the signal without its causes, by the empty alternative.
         information: Place → the self-information of the signal (L9), in units (`UNIT`).
-        components: Groups of places that lead to each other without passing a bare signal. Groups of causes come first.
+        components: Groups of places on common cycles, after bare signals are cut off from their causes. Causes come first.
         cycle: Place → the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 
@@ -90,7 +90,7 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
     """Return, for each signal, the number of rules that have the signal on a pathway."""
     of, members = causes.components.of, causes.components.members
-    completed = [0] * len(members)  # component → the rules that it leads to without detachment, as a set
+    completed = [0] * len(members)  # component → the rules with a pathway through it, as a set of their numbers
     looked_at = [0] * len(signals)
     for rule in rules:
         bit = 1 << rule.index

@@ -18,9 +18,9 @@ class Conflict:
         slots: The names of the slots that both rules write.
         causes: The names of the signals that lie on pathways of both rules.
         winner: The name of the rule that goes first if both are ready and recovered.
-        margin: The winner's lead in effective utility (utility x weight, nats). It is 0 if neither rule carries
-            information, even if a weight decides which rule wins.
-        tie: Whether the two effective utilities are equal, so that the order of declaration decides.
+        margin: The winner's lead in utility x weight (nats). It is 0 if both utilities are 0, even if the weights
+            differ and so decide which rule wins.
+        tie: Whether only the order of declaration decides, because neither rule is ahead.
     """
 
     first: str
@@ -66,7 +66,7 @@ class Conflicts:
         self._names: dict[int, tuple[str, ...]] = {}
 
     def roots(self, clause: Clause) -> int:
-        """Return the roots of the causal groups that the clause may join, as bits (`Causes.roots`)."""
+        """Return the roots of a clause's pathways, as bits: the signals or cycles where its causes begin (`Causes.roots`)."""
         found = self._roots.get(clause)
         if found is None:
             found = 0
@@ -77,7 +77,7 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return each rule's best clause among those that exclude the other rule; None if the rules do not conflict."""
+        """Return the best clause of each rule that shares a root with the other rule; None without a conflict."""
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)

@@ -1,14 +1,17 @@
-"""The least pathway of a clause (L9): the choice of alternatives with the least information in their union.
+"""The least pathway of a clause (L9): the pathway with the least information.
 
-A pathway is a set that holds an alternative of each of its signals (`Completion`). The search begins with the
-clause's own signals. Each step takes the highest signal that lacks an alternative, and tries each of its alternatives.
-If two sets agree in all signals that may still matter, all further steps are the same for both. So the search follows
-only the cheaper set, and independent choices do not multiply. The search for a signal starts at the least pathways of
-its causes. If the causes form a chain, a ring or a tree, the search takes one or two steps.
+An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
+alternative of each of its signals (`Completion`). Its *cost* is its information.
 
-A choice among causes with common causes is the weighted set cover problem, for which no quick method is known. If a
-step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens only
-if dozens of choices depend on each other; the size of the policy does not matter.
+The search begins with the clause's own signals. Each step takes the signal with the highest bit that lacks an
+alternative, and tries each alternative of this signal. Two sets may agree in all signals that still matter. Then all
+further steps are the same for both, so the search follows only the cheaper set. So independent choices do not multiply.
+The search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree, it takes
+one or two steps.
+
+If alternatives have causes in common, the search is a weighted set cover problem, for which no quick method is known.
+If a step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens
+only if dozens of choices depend on each other; the size of the policy does not matter.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ from ravestate.policy.components import components
 EFFORT = 100_000
 """The number of sets that all searches of a policy together may examine, beyond the first `FREE` sets of each search.
 
-A search may use a tenth of the number that the earlier searches left over. It divides this tenth among its steps.
+Each search may use a tenth of the sets that are left. It divides this tenth among its steps.
 """
 
 FREE = 100  # the number of sets that each search may always examine
@@ -34,9 +37,9 @@ class Least:
         self.completion = completion
         self._effort = EFFORT
         self._open = 0
-        """The set of open signals. A signal is open if it has several alternatives."""
+        """The set of *open* signals: those with several alternatives, and without the empty one."""
         self._whole = [1 << place for place in range(len(completion.bare))]
-        """Signal → the set of the signal and the causes that it must have, up to the next choice."""
+        """Signal → the set of the signal and all causes that follow without a choice between alternatives."""
         self._price = completion.information[:]
         """Signal → the information of its set in `_whole`."""
         self._reach: dict[int, int] = {}
@@ -44,7 +47,7 @@ class Least:
         self._masks: dict[int, list[int]] = {}
         """Open signal → its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """Set of signals that still matter → the information of its completion, and the completion."""
+        """Set of signals that still matter → the cost that its completion adds, and the signals that it adds."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])
@@ -60,7 +63,7 @@ class Least:
         return cost + self.completion.weigh(free), found | free
 
     def _follow(self) -> None:
-        """Find the causes that signals with a single alternative must have."""
+        """Fill `_whole` and `_price`: find the causes that follow without a choice."""
         graph = self.completion
         forced = [
             found[0] if len(found) == 1 and not bare else ()
@@ -75,7 +78,7 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other; the pathways of their other causes must be known."""
+        """Find the least pathways of signals that lead to each other. Those of their other causes are known already."""
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}
@@ -133,7 +136,7 @@ class Least:
         return best
 
     def _joined(self, found: int, cost: int, places: Iterable[int], free: int) -> tuple[int, int]:
-        """Return the set `found` and its cost after the addition of `places` and the causes that these must have."""
+        """Add `places`, each with its `_whole`, to the set `found`. Return the set and its cost."""
         for place in places:
             whole = self._whole[place]
             more = whole & ~found
@@ -149,9 +152,9 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """Return the signals that lack an alternative in `found`.
+        """Return the open signals of the set `found` that lack an alternative there.
 
-        Candidates are the signals in `lacking`, and the signals that are in `found` but not in `before`.
+        `before` is the set before the last addition. `lacking` has the signals of `before` that may lack one.
         """
         new = found & ~before
         left = lacking | new & self._open

@@ -1,9 +1,14 @@
 """All pathways of a clause (L8), for explanations.
 
-To make a pathway of a signal, choose one of its alternatives, and one pathway of each signal in the alternative. Their
-union, with the signal itself, is the pathway. A cycle ends at a signal that is already on the path, so a signal's
-pathways depend on the path. Only explanations need the pathways one by one: `Completion` counts rules by reachability,
-and `Least` searches for the least pathway.
+An *alternative* of a signal is a set of signals that together may cause it. To make a pathway of a signal, choose one of
+its alternatives, and one pathway of each signal in the alternative. The union of these pathways and the signal itself is
+the pathway.
+
+The search walks from a signal to its causes. It ends at a signal that is already on its *way*, because the causes form a
+cycle there. So the pathways of a signal depend on the way to the signal.
+
+Only explanations need the pathways one by one. `Completion` counts the rules that a signal leads to, and `Least` finds
+the least pathway.
 """
 
 from __future__ import annotations
@@ -16,7 +21,7 @@ from ravestate.declare.signal import Signal
 from ravestate.policy.completion import Completion
 from ravestate.policy.model import Clause, Need
 
-MAX_PATHWAYS = 256  # the maximum number of pathways listed for a clause or a signal: those with the least information
+MAX_PATHWAYS = 256  # the maximum number of pathways of a clause or signal; those with the least information are kept
 
 MAX_UNIONS = 200_000
 """The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""
@@ -25,7 +30,7 @@ Costs = dict[int, int]
 """Set of signals → the information of the set, in units."""
 
 Search = Generator["Search", Costs, Costs]
-"""A computation that yields other computations and receives their results; so long chains need no deep recursion."""
+"""A step of the search. It yields further steps and receives their results, so long chains need no deep recursion."""
 
 
 class _Entangled(Exception):
@@ -39,7 +44,7 @@ class Pathways:
         self.completion = completion
         self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
-        self._within: dict[tuple[int, int], Costs] = {}  # (place, part of its cycle on the path) → pathways
+        self._within: dict[tuple[int, int], Costs] = {}  # (place, signals of its cycle on the way) → pathways
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:
@@ -70,7 +75,7 @@ class Pathways:
         return found
 
     def _of_signal(self, place: int, way: int) -> Search:
-        """Find the pathways of the signal at `place`. A cycle ends at a signal in `way`, the set of the path's signals."""
+        """Find the pathways of the signal at `place`. `way` is the set of the signals through which the search came."""
         graph = self.completion
         alone = 1 << place
         if way & alone:
@@ -115,7 +120,7 @@ def _cheapest(found: Costs) -> Costs:
 
 
 def _run(search: Search) -> Costs:
-    """Run a computation and all computations that it yields; return its result."""
+    """Run a step and all steps that it yields; return its result."""
     pending = [search]
     answer: Any = None
     while True:
