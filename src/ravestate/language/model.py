@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import SENTENCE_MODELS, ModelMissing, folders_of, requirement
+from ravestate.language.heap import keep_few_heaps
 from ravestate.language.loading import LOADING
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ class SentenceModel:
         Raises:
             PlatformError: A package or a file is missing or broken.
         """
+        keep_few_heaps()
         # Unless this is set before the import, onnxruntime sends usage data to its makers.
         os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
         try:

@@ -13,6 +13,7 @@ from typing import Any
 from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
 from ravestate.language.lexicon import load_lexicon
+from ravestate.language.heap import keep_few_heaps
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
 
@@ -70,6 +71,7 @@ class Pipeline:
             return
         with self._lock:
             if self._nlp is None:
+                keep_few_heaps()
                 with LOADING:
                     self._nlp = self._load()
                     if self._nlp.lang == "en":
