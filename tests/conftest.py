@@ -13,6 +13,7 @@ import gc
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -41,6 +42,24 @@ FIRST = ("quality", "properties", "end_to_end", "bridges", "modules", "examples"
 REAL = ("end_to_end", "bridges", "modules/platform")
 """The folders whose tests need a browser, a server or a robot beside them, in real time. A machine may stall these
 programs for seconds, so continuous integration runs a failing test a second time. The report names such tests."""
+
+
+SERVERS = {"matrixio": "a homeserver", "ros": "two networks", "roboyio": "two networks"}
+"""Folder of a platform → the servers that its tests need. These start slowly."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Give all files that share servers to one process, so that these start once."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = super()._split_scope(nodeid)
+            _, _, place = file.partition("/platform/")
+            return SERVERS.get(place.partition("/")[0], file)
+
+    return Scheduling(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

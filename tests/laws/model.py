@@ -335,15 +335,20 @@ class Model:
 
     def kept_by(self, act: Act) -> list[Act]:
         """Return the activations that wait, or would wait, because of this one (L16)."""
+        clause, slots, groups = act.clause, act.rule.slotset, set(act.groups())
+        behind: dict[Any, bool] = {}  # many activations are of the same clause
         return [
             other
             for other in self.acts
-            if other is not act
-            and other.state < RUNS
-            and other.clause is not act.clause
-            and not other.rule.slotset.isdisjoint(act.rule.slotset)
-            and not set(other.groups()).isdisjoint(act.groups())
-            and self.goes_before(act.clause, other.clause)[1]
+            if other.state < RUNS
+            and other.clause is not clause
+            and not other.rule.slotset.isdisjoint(slots)
+            and (
+                behind[other.clause]
+                if other.clause in behind
+                else behind.setdefault(other.clause, self.goes_before(clause, other.clause)[1])
+            )
+            and not groups.isdisjoint(other.groups())
         ]
 
     def break_stalemate(self) -> bool:

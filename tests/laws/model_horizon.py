@@ -23,8 +23,19 @@ class Derivation:
         self.model = model
         self.still = still
         self.known: dict[tuple[Any, Group, frozenset[int]], int] = {}
-        self.groups = {act: act.groups() for act in model.acts}
-        self.lacks = {act: act.lacks() for act in model.acts}
+        self.found: dict[Act, list[Group]] = {}
+        self.alive: dict[Group, set[int]] = {}
+
+    def groups(self, act: Act) -> list[Group]:
+        if act not in self.found:
+            self.found[act] = act.groups()
+        return self.found[act]
+
+    def rules(self, group: Group) -> set[int]:
+        """Return the rules with an activation in a group."""
+        if group not in self.alive:
+            self.alive[group] = {act.rule.index for act in self.model.acts if group in self.groups(act)}
+        return self.alive[group]
 
     def rival(self, clause: Any, act: Act | None, group: Group) -> int:
         """Return how a rival may become ready; `act` is None for the activation that stands by."""
@@ -34,7 +45,7 @@ class Derivation:
 
     def waits_elsewhere(self, clause: Any, act: Act, group: Group) -> bool:
         able = act.clause is clause and act.state == GATHERS and act not in self.still
-        return able and group not in self.groups[act] and bool(self.solve(clause, act, group))
+        return able and group not in self.groups(act) and bool(self.solve(clause, act, group))
 
     def solve(self, clause: Any, act: Act | None, group: Group) -> int:
         while True:
@@ -48,8 +59,7 @@ class Derivation:
 
     def comes(self, signal: Any, group: Group, slots: frozenset[int]) -> int:
         """Return how a signal lies in the horizon of a group, as far as is known."""
-        able = self.causes(signal, wide=False)
-        if not any(act.rule.index in able and group in self.groups[act] for act in self.model.acts):
+        if self.causes(signal, wide=False).isdisjoint(self.rules(group)):
             return NO  # every chain of causes in the group begins with an activation there
         return self.known.setdefault((signal, group, slots), NO)
 
@@ -60,8 +70,8 @@ class Derivation:
         model.steps += 1
         if clause.rule.index in model.retired or (act is None and group.consumed(clause.rule.slots)):
             return NO
-        stands_on = [] if act is None else self.groups[act]
-        lacks = list(clause.needs) if act is None else [*self.lacks[act]]
+        stands_on = [] if act is None else self.groups(act)
+        lacks = list(clause.needs) if act is None else act.lacks()
         elsewhere = [g for g in stands_on if g is not group]
         here: list[int] = []
         best: list[int] = []
@@ -118,7 +128,7 @@ class Derivation:
                 if act.rule is rule and act not in self.still:
                     if act.state < RUNS:
                         best = max(best, self.viable(act.clause, act, group, slots | rule.slotset))
-                    elif group in self.groups[act]:
+                    elif group in self.groups(act):
                         best = SURE
             for clause in rule.clauses:
                 best = max(best, self.viable(clause, None, group, slots | rule.slotset))
@@ -130,7 +140,7 @@ class Derivation:
             return True
         wide, narrow = self.causes(signal, wide=True), self.causes(signal, wide=False)
         return any(
-            act.rule.index in wide and (act.rule.index not in narrow or group not in self.groups[act])
+            act.rule.index in wide and (act.rule.index not in narrow or group not in self.groups(act))
             for act in self.model.acts
             if act not in self.still
         )

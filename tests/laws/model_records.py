@@ -18,7 +18,10 @@ class Group:
     pressed: dict[int, float] = field(default_factory=dict)  # clause in stand-by → end of its patience
 
     def root(self) -> Group:
-        return self if self.into is None else self.into.root()
+        group = self
+        while group.into is not None:
+            group = group.into
+        return group
 
     def consumed(self, slots: Iterable[int]) -> bool:
         return any(self.taken.get(slot, ()) is None for slot in slots)
@@ -67,7 +70,7 @@ class Act:
         return [need for need in self.clause.needs if need.index not in self.held]
 
     def firm(self) -> tuple[Spike, ...]:
-        return tuple(self.held[n.index] for n in self.clause.needs if n.index in self.held and not n.detached)
+        return tuple([self.held[n.index] for n in self.clause.needs if not n.detached and n.index in self.held])
 
     def groups(self) -> list[Group]:
-        return list(dict.fromkeys(spike.group.root() for spike in self.firm()))
+        return list(dict.fromkeys([spike.group.root() for spike in self.firm()]))

@@ -5,11 +5,13 @@ proves the rest from the source itself: imports of the standard library, and mod
 """
 
 import ast
+import functools
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -36,27 +38,36 @@ def files_of(*rooms: str) -> list[Path]:
     return found
 
 
-def imports_in(file: Path) -> Iterator[tuple[int, str, tuple[str, ...]]]:
-    """Each import as (line, absolute module, names taken from it); those for type checkers alone are left out."""
+class Import(NamedTuple):
+    """An import: its absolute module, the names taken from it, and whether it waits for a call of its function."""
+
+    line: int
+    module: str
+    names: tuple[str, ...]
+    late: bool
+
+
+@functools.cache
+def imports_in(file: Path) -> list[Import]:
+    """Return the imports of a file; those for type checkers alone are left out."""
     package = ("ravestate", *file.relative_to(SOURCE).parent.parts)
 
-    def visit(node: ast.AST) -> Iterator[tuple[int, str, tuple[str, ...]]]:
+    def visit(node: ast.AST, late: bool) -> Iterator[Import]:
+        children: Iterable[ast.AST] = ast.iter_child_nodes(node)
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            children: list[ast.stmt] = node.orelse
+            children = node.orelse
         elif isinstance(node, ast.Import):
-            yield from ((node.lineno, alias.name, ()) for alias in node.names)
-            return
+            yield from (Import(node.lineno, alias.name, (), late) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             origin = package[: len(package) - node.level + 1] if node.level else ()
             module = ".".join((*origin, *([node.module] if node.module else [])))
-            yield node.lineno, module, tuple(alias.name for alias in node.names)
-            return
-        else:
-            children = list(ast.iter_child_nodes(node))  # type: ignore[arg-type]
+            yield Import(node.lineno, module, tuple(alias.name for alias in node.names), late)
+        late = late or isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
         for child in children:
-            yield from visit(child)
+            if isinstance(child, (ast.stmt, ast.ExceptHandler, ast.match_case)):  # expressions import nothing
+                yield from visit(child, late)
 
-    yield from visit(ast.parse(file.read_text(encoding="utf-8"), str(file)))
+    return list(visit(ast.parse(file.read_text(encoding="utf-8"), str(file)), False))
 
 
 def name_of(file: Path) -> str:
@@ -75,7 +86,7 @@ def test_rooms_import_only_rooms_below_them() -> None:
 def test_pure_rooms_import_nothing_impure(file: Path) -> None:
     impure = [
         f"{name_of(file)}:{line}: {module}"
-        for line, module, _ in imports_in(file)
+        for line, module, _, _ in imports_in(file)
         if not {module, module.partition(".")[0]} & {"ravestate", *PURE_LIBRARY}
     ]
     assert not impure, "\n".join(impure)
@@ -86,7 +97,7 @@ def test_nothing_imports_the_command_line() -> None:
         f"{name_of(file)}:{line}: {module}"
         for file in files_of(".")
         if not (name_of(file).startswith("cli/") or name_of(file) == "__main__.py")
-        for line, module, names in imports_in(file)
+        for line, module, names, _ in imports_in(file)
         if f"{module}.".startswith("ravestate.cli.") or (module == "ravestate" and "cli" in names)
     ]
     assert not guilty, "\n".join(guilty)
@@ -97,7 +108,7 @@ def test_skills_know_no_platform() -> None:
     guilty = [
         f"{name_of(file)}:{line}: {module} {', '.join(names)}"
         for file in files_of("modules/skill")
-        for line, module, names in imports_in(file)
+        for line, module, names, _ in imports_in(file)
         if (lazy := module == "ravestate.modules" and platforms.intersection({*names, "platform"}))
         or lazy
         or f"{module}.".startswith("ravestate.modules.platform.")
@@ -122,15 +133,10 @@ def test_no_import_leads_back_to_its_file() -> None:
     files = {_name_of(file): file for file in SOURCE.rglob("*.py")}
     graph: dict[str, set[str]] = {}
     for name, file in files.items():
-        lazy = [
-            range(node.lineno, (node.end_lineno or 0) + 1)
-            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
-            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
-        ]
         graph[name] = {
             target
-            for line, module, names in imports_in(file)
-            if not any(line in lines for lines in lazy)
+            for _, module, names, late in imports_in(file)
+            if not late
             for target in [f"{module}.{each}" for each in names if f"{module}.{each}" in files] or [module]
             if target in files and target != name
         }

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import SENTENCE_MODELS, ModelMissing, folders_of, requirement
+from ravestate.language.cores import cores
 from ravestate.language.heap import keep_few_heaps
 from ravestate.language.loading import LOADING
 
@@ -92,7 +93,7 @@ class SentenceModel:
         self.folder = folder
         runtime: Any = onnxruntime
         options = runtime.SessionOptions()
-        options.intra_op_num_threads = min(2, _cores())
+        options.intra_op_num_threads = min(2, cores())
         options.inter_op_num_threads = 1
         # Without this, onnxruntime's threads spin between two runs and take the cores from other work.
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
@@ -144,7 +145,3 @@ class SentenceModel:
 def _encodable(text: str) -> str:
     """Shorten a text, and replace lone surrogates, because the tokenizer refuses them."""
     return text[:CHARACTERS].encode("utf-8", "replace").decode("utf-8")
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -19,7 +19,8 @@ def main(folder: str, bolt_port: int, http_port: int, password: str, database: s
             "server_plugins": "Bolt:com.arcadedb.bolt.BoltProtocolPlugin",
             "bolt_port": bolt_port,
         },
-        jvm_kwargs={"heap_size": "256m"},
+        # The tests end before the thorough compiler has earned back its time.
+        jvm_kwargs={"heap_size": "256m", "jvm_args": ["-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC"]},
     )
     server.start()
     server.create_database(database)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -11,6 +10,7 @@ from pathlib import Path
 from threading import Event
 
 from ravestate.errors import PlatformError
+from ravestate.language.cores import cores
 from ravestate.modules.modality.rawio.line import IN_RATE
 
 from . import model_process
@@ -71,7 +71,7 @@ class Recogniser:
                 raise PlatformError("voiceio needs faster-whisper: pip install 'ravestate[voice]'")
             config = {
                 "path": str(whisper_model(settings.model)),
-                "threads": settings.threads or min(4, _cores()),
+                "threads": settings.threads or min(4, cores()),
                 "exact": False,
             }
             self._process = model_process.take("whisper", config)
@@ -128,12 +128,6 @@ class Recogniser:
     def close(self, *, linger: bool = False) -> None:
         """Release the model. Its last user ends the process: at once, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
-
-
-def _cores() -> int:
-    """Return the number of cores that this process may use. More threads than cores wait for each other."""
-    allowed = getattr(os, "sched_getaffinity", None)  # only Linux has this function
-    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
 
 
 def _cleaned(text: str, confidence: float, no_speech: float) -> Recognised:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ravestate.modules.meta.ontology import Memory, Node
+from ravestate.modules.meta.ontology import Graph, Memory, Node
 
 from .life import Fact, Life
 
@@ -30,14 +30,24 @@ RELATIONS: Mapping[str, tuple[str, str]] = {
 async def settle(life: Life, memory: Memory) -> Node:
     """Update the agent's node in memory to match the file. Memory keeps facts that the file does not mention.
 
+    All changes are one transaction: the first call adds many nodes, and each transaction waits for the disk.
+
     Raises:
         PlatformError: Memory failed.
     """
-    node = await memory.ensure("Robot", name=life.name)
+    node, changed = await memory.together(lambda graph: _settle(life, graph))
+    if changed:
+        await memory.tidy()
+    return node
+
+
+def _settle(life: Life, graph: Graph) -> tuple[Node, bool]:
+    """Update the agent's node; return the node, and whether something has changed."""
+    node = graph.ensure("Robot", {"name": life.name})
     changed = False
     if life.born is not None and node.get("born") != life.born:
-        node, changed = await memory.update(node, born=life.born), True
-    known = await memory.relations(node)
+        node, changed = graph.update(node, {"born": life.born}), True
+    known = graph.relations(node)
     for fact, (relation, type) in RELATIONS.items():
         if fact not in life.facts:
             continue
@@ -46,14 +56,12 @@ async def settle(life: Life, memory: Memory) -> Node:
         for other in there:
             if other.get("name") not in wanted:
                 changed = True
-                await memory.unrelate(node, relation, other)
+                graph.unrelate(node, relation, other)
         for text in wanted:
             if text not in [other.get("name") for other in there]:
                 changed = True
-                await memory.relate(node, relation, await memory.ensure(type, name=text))
-    if changed:
-        await memory.tidy()  # the first call adds many nodes
-    return node
+                graph.relate(node, relation, graph.ensure(type, {"name": text}), {})
+    return node, changed
 
 
 async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
