@@ -97,6 +97,8 @@ class SentenceModel:
         options.inter_op_num_threads = 1
         # Without this, onnxruntime's threads spin between two runs and take the cores from other work.
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+        # Without this, products of whole numbers overflow on processors without VNNI, and scores differ by machine.
+        options.add_session_config_entry("session.x64quantprecision", "1")
         options.log_severity_level = 4  # log no errors, because they are raised as exceptions
         try:
             self._session: Any = runtime.InferenceSession(str(files[0]), options, providers=["CPUExecutionProvider"])
