@@ -39,6 +39,10 @@ _STATES = word_set("better worse well fine good bad great ok okay awful hard alo
 """Adjectives that the tagger mistakes for adverbs."""
 
 _GIVING = word_set("give tell show send lend buy bring teach")
+_CONTACT = word_set("call phone ring text email visit meet contact write use")
+"""Verbs whose object does not do what an infinitive after it says."""
+_SETTLING = word_set("sit stand lie get wake come go grow calm hurry slow run walk")
+"""Verbs of posture and motion. They share no object with the verb after *and*: *sit down and read a book*."""
 _OWN_STATES = word_set("live like love hate want need miss hope prefer know understand work study own")
 """Verbs of states. They make no requests: *live in Rome* stands for *I live in Rome*."""
 
@@ -289,6 +293,8 @@ class Clause:
         if verb.dep == "acl" or head is None:
             return []
         him = self.tree.children(above, "dobj", "dative")  # as in "I asked him to come"
+        if is_infinitive(self.tree, verb) and lemma_of(above) in _CONTACT:  # as in "I called him to say hello"
+            him = []
         if verb.dep in ("xcomp", "ccomp") and not self._inherited and him and him[0].index < verb.index:
             return [_WE] if head._is_lets else [part for part, _ in self._written(him)]
         if head._agents:
@@ -340,7 +346,7 @@ class Clause:
         if relative and not self._runs_on:
             return [(part, False) for part in self._antecedent]
         for verb in verbs:
-            states = [w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES]
+            states = [w for w in tree.children(verb, "advmod", "intj") if w.low in _STATES and lemma_of(verb) in _SENSES]
             indirect = [word for word in tree.children(verb, "dative") if word.pos != "ADP"]
             if states or indirect or (verb == self.verb and self._beside):
                 return self._written(states or indirect or self._beside, verb)
@@ -353,11 +359,13 @@ class Clause:
             if found := self._in_phrases(head, of=head in verbs):
                 return found
         for word in tree.children_of(verbs, "advmod", "npadvmod", "dep"):
-            if word.low in PLACES:
+            name = word.dep == "advmod" and word.pos == "PROPN" and word.index == verbs[0].index + 1  # as in "you speak Greek"
+            if word.low in PLACES or name:
                 return [(phrase_of(tree, word, [word]), False)]
         for word in tree.children(self.verb, "conj"):  # as in "bought and read the book"
             between = tree.words[self.verb.index + 1 : word.index]
-            if (other := self._clauses.get(word.index)) and between and all(w.dep in ("cc", "prt") for w in between):
+            shares = bool(between) and lemma_of(self.verb) not in _SETTLING
+            if (other := self._clauses.get(word.index)) and shares and all(w.dep in ("cc", "prt") for w in between):
                 return other._objects()
         return []
 
@@ -391,7 +399,8 @@ class Clause:
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
             # As in "out of", and in "in Berlin and in Paris".
-            prepositions = [phrase, *self.tree.children(phrase, "prep", "conj")]
+            ranged = bool(self.tree.children(phrase, "pobj"))  # as in "from Monday to Friday"
+            prepositions = [phrase, *self.tree.children(phrase, *(("conj",) if ranged else ("prep", "conj")))]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]
             asked = self.unknown is not None and any(self.unknown.word in self.tree.subtree(noun) for noun in nouns)
             if nouns and not asked:

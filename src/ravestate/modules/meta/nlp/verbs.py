@@ -89,9 +89,9 @@ def _following(tree: Tree, verb: Word) -> Word | None:
 
 def makes_future(tree: Tree, verb: Word) -> bool:
     """Return whether the verb is the *going* of a future, which counts as an auxiliary."""
-    return verb.low == "gon" or (
-        verb.low == "going" and any(lemma_of(aux) == "be" for aux in tree.children(verb, "aux"))
-    )
+    auxiliaries = tree.children(verb, "aux")
+    bare = verb.dep == "ROOT" and not auxiliaries  # as in "what you going to do"
+    return verb.low == "gon" or (verb.low == "going" and (bare or any(lemma_of(aux) == "be" for aux in auxiliaries)))
 
 
 def is_infinitive(tree: Tree, verb: Word) -> bool:
