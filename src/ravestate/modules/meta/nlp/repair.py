@@ -102,6 +102,9 @@ def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
             _reroot(tree, words, be, participle, tree.head(participle), "auxpass")
         elif be.low in _BE and be.dep == "ROOT" and participle.tag == "VBG" and tree.head(participle).dep == "nsubj":
             _reroot(tree, words, be, participle, tree.head(participle), "aux")
+    for participle in tree.children(be, "advcl") if be.low in _BE and be.dep == "ROOT" else ():
+        if participle.tag == "VBG" and nouns and tree.before(participle) == nouns[-1] and nouns[-1].dep == "nsubj":
+            _reroot(tree, words, be, participle, nouns[-1], "aux")
 
 
 def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
