@@ -252,7 +252,13 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
 
 def _owns(piece: _Piece, following: Sequence[_Piece], mended: Sequence[_Piece]) -> bool:
     """Return whether an apostrophe is missing before the *s* of a word: *my moms a nurse*, *my dogs name*."""
-    if not mended or not following or "'" in piece.text or mended[-1].low not in _OWNED or not following[0].gap.isspace():
+    if (
+        not mended
+        or not following
+        or "'" in piece.text
+        or mended[-1].low not in _OWNED
+        or not following[0].gap.isspace()
+    ):
         return False
     after, stem = following[0].low, piece.low[:-1]
     if not piece.low.endswith("s") or stem.endswith(("s", "parent", "i", "u")) or len(stem) < 3:

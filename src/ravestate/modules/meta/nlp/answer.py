@@ -49,10 +49,14 @@ _COURTESIES = ("thanks", "thank you", "many thanks")
 """Parts before an answer: *thank you, but no*."""
 _STANCE = word_set("sadly unfortunately regrettably luckily fortunately thankfully happily")
 """Words before an answer that say how the speaker feels about it. Alone, they are answers."""
-_TRAILING = word_set("lol lmao rofl haha hehe please sorry thanks though actually honestly mate man bro dude buddy dear")
+_TRAILING = word_set(
+    "lol lmao rofl haha hehe please sorry thanks though actually honestly mate man bro dude buddy dear"
+)
 """Words after an answer that do not change it."""
 _VERB = "am|is|are|was|were|do|does|did|have|has|had|can|could|will|would|shall|should|may|might|must"
-_YES = re.compile(rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|(?:ok|okay|okey)(?! so\b)|sure(?! (?:{_VERB}|enough)\b))\b(?! (?:was|is|means)\b)")
+_YES = re.compile(
+    rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|(?:ok|okay|okey)(?! so\b)|sure(?! (?:{_VERB}|enough)\b))\b(?! (?:was|is|means)\b)"
+)
 _NO = re.compile(
     r"(?:nope|nah|nay|naw|no(?! (?!(?:i|you|he|she|it|we|they|that|this|there|my|your|the|a|well|oh|please|sorry|thanks?|"
     r"no|nope|because|cause|since|not|never|but|if|let|sir|ma'am|maam|way)\b)))\b"
@@ -113,7 +117,7 @@ def _score(text: str) -> int | None:
 def _parts(text: str) -> Iterator[tuple[str, str]]:
     """Yield each part of a text, without the fillers around it, and the punctuation after it."""
     for part, marks in _PART.findall(text):
-        words = [] if part in _COURTESIES else part.split()
+        words: list[str] = [] if part in _COURTESIES else part.split()
         while words and (words[0] in _FILLERS or (words[0] in _STANCE and len(words) > 1)):
             del words[0]
         while len(words) > 1 and words[-1] in _TRAILING:

@@ -27,8 +27,10 @@ _ANY = word_set("any ever anyone anybody anything")
 """Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
 _NO_PREDICATE = word_set("too either neither again first next")
 """Words after *you* that make no question: *you too*."""
-_REPORTING = _TELLING | _KNOWING | word_set(
-    "forget forgot care matter mean learn teach think decide mention realise realize figure notice be"
+_REPORTING = (
+    _TELLING
+    | _KNOWING
+    | word_set("forget forgot care matter mean learn teach think decide mention realise realize figure notice be")
 )
 """Verbs before a question word that stands for a clause: *he knows why*, *that is how*."""
 _BEFORE_TAG = word_set("here there me you him her them us")
@@ -94,9 +96,7 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
     return QuestionWord.YES_NO if bare or _has_tag(tree, words) else None
 
 
-def _in_place(
-    words: Sequence[Word], clauses: Sequence[Clause], asked: bool, stated: bool
-) -> QuestionWord | None:
+def _in_place(words: Sequence[Word], clauses: Sequence[Clause], asked: bool, stated: bool) -> QuestionWord | None:
     """Return the kind of a question word at the end of a statement: *you live where*, *you paid how much?*"""
     for place in range(max(len(words) - 3, 1), len(words)):
         kind, rest = kind_at(words, place), words[place + 1 :]
@@ -187,9 +187,19 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
     lemma, own = lemma_of(verb), [word.low for word in clause.own]
     if clause.unknown is not None and clause.inverted:
         return clause.unknown.kind
-    wishes = bool({"i", "we"} & set(own) or own[0] == "want") and lemma_of(clause.chain[0]) in ("want", "like", "love", "need")
+    wishes = bool({"i", "we"} & set(own) or own[0] == "want") and lemma_of(clause.chain[0]) in (
+        "want",
+        "like",
+        "love",
+        "need",
+    )
     wonders = bool({"wonder", "wondering", "curious"} & set(own)) or (clause.inverted and "idea" in own)
-    demands = clause.inverted or (clause.requests and not clause.negated) or (wishes and len(clause.chain) > 1) or (asked and own[0] == "you")
+    demands = (
+        clause.inverted
+        or (clause.requests and not clause.negated)
+        or (wishes and len(clause.chain) > 1)
+        or (asked and own[0] == "you")
+    )
     let = clause.head_clause is not None and clause.head_clause.requests and lemma == "know"
     if (demands and lemma in _TELLING | _KNOWING) or wonders or let:
         words = [word for word in tree.subtree(clause.verb) if word.index > verb.index]

@@ -36,6 +36,8 @@ def repaired(tree: Tree) -> Tree:
         _make_present(tree, words, word)
         _make_way(tree, words, word)
         _make_predicate(tree, words, word)
+        if word.dep == "advmod" and word.pos == "PROPN" and word.head == word.index - 1:  # as in "you speak Greek"
+            words[word.index] = replace(word, dep="dobj")
     words = _split_relatives(Tree(tree.text, words))
     return tree if words == list(tree.words) else Tree(tree.text, words)
 
@@ -129,7 +131,11 @@ def _make_present(tree: Tree, words: list[Word], noun: Word) -> None:
     clausal = noun.dep == "ROOT" or (noun.dep in ("ccomp", "advcl") and tree.children(noun, "mark"))
     if noun.tag != "NNS" or not clausal or before is None or before.tag not in ("NN", "NNP"):
         return
-    if before.head != noun.index or before.dep not in ("nsubj", "compound") or tree.children(noun, "aux", "cop", "case"):
+    if (
+        before.head != noun.index
+        or before.dep not in ("nsubj", "compound")
+        or tree.children(noun, "aux", "cop", "case")
+    ):
         return
     if before.dep == "compound" and noun.dep == "ROOT":  # as in "my football boots"
         return
@@ -177,7 +183,12 @@ def _split_relatives(tree: Tree) -> list[Word]:
             continue
         subjects = tree.children(verb, "nsubj")
         above = tree.head(noun)
-        if subjects and subjects[0].low in _OBJECTIVE and subjects[0].index == noun.index + 1 and above.index < noun.index:
+        if (
+            subjects
+            and subjects[0].low in _OBJECTIVE
+            and subjects[0].index == noun.index + 1
+            and above.index < noun.index
+        ):
             words[subjects[0].index] = replace(subjects[0], dep="dobj", head=noun.index)
             dep, head = (above.dep, above.head) if above.dep != "ROOT" else ("ROOT", verb.index)
             words[verb.index] = replace(verb, dep=dep, head=head)
