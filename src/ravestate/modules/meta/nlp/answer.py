@@ -42,7 +42,7 @@ _SCORES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
 _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
-_HEDGE = re.compile(r"\b(?:probably|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
+_HEDGE = re.compile(r"\b(?:probably|prob|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
 """A hedge before an answer or at the end of a part. *maybe he is at home* does not count: it hedges a statement."""
 _FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry frankly ha haha")
 _COURTESIES = ("thanks", "thank you", "many thanks")
@@ -55,7 +55,7 @@ _TRAILING = word_set(
 """Words after an answer that do not change it."""
 _VERB = "am|is|are|was|were|do|does|did|have|has|had|can|could|will|would|shall|should|may|might|must"
 _YES = re.compile(
-    rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|(?:ok|okay|okey)(?! so\b)|sure(?! (?:{_VERB}|enough)\b))\b(?! (?:was|is|means)\b)"
+    rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|(?:ok|kk|okay|okey)(?! so\b)|sure(?! (?:{_VERB}|enough)\b))\b(?! (?:was|is|means)\b)"
 )
 _NO = re.compile(
     r"(?:nope|nah|nay|naw|no(?! (?!(?:i|you|he|she|it|we|they|that|this|there|my|your|the|a|well|oh|please|sorry|thanks?|"
