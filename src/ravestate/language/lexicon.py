@@ -127,7 +127,8 @@ class Lexicon:
 
         Short words resemble many others. In them, only swapped, doubled and missing letters are mended.
         """
-        if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or self.known(word):
+        known = self.known(word) or (word.endswith("s") and self.known(word[:-1]))
+        if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or known:
             return word
         if not all(map(self.rare, _american(word))):
             return word

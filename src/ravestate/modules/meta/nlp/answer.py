@@ -42,14 +42,24 @@ _SCORES = {"yes_2": 2, "yes_1": 1, "unsure": 0, "no_1": -1, "no_2": -2}
 _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
-_HEDGE = re.compile(r"\b(?:probably|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
+_HEDGE = re.compile(r"\b(?:probably|prob|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
 """A hedge before an answer or at the end of a part. *maybe he is at home* does not count: it hedges a statement."""
-_FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry thanks frankly ha haha")
+_FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry frankly ha haha")
+_COURTESIES = ("thanks", "thank you", "many thanks")
+"""Parts before an answer: *thank you, but no*."""
+_STANCE = word_set("sadly unfortunately regrettably luckily fortunately thankfully happily")
+"""Words before an answer that say how the speaker feels about it. Alone, they are answers."""
+_TRAILING = word_set(
+    "lol lmao rofl haha hehe please sorry thanks though actually honestly mate man bro dude buddy dear"
+)
+"""Words after an answer that do not change it."""
 _VERB = "am|is|are|was|were|do|does|did|have|has|had|can|could|will|would|shall|should|may|might|must"
-_YES = re.compile(rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|ok|okay|okey|sure(?! (?:{_VERB})\b))\b")
+_YES = re.compile(
+    rf"(?:yes|yeah|yep|yup|yea|ya|yah|yay|yess|aye|(?:ok|kk|okay|okey)(?! so\b)|sure(?! (?:{_VERB}|enough)\b))\b(?! (?:was|is|means)\b)"
+)
 _NO = re.compile(
     r"(?:nope|nah|nay|naw|no(?! (?!(?:i|you|he|she|it|we|they|that|this|there|my|your|the|a|well|oh|please|sorry|thanks?|"
-    r"no|nope|because|not|never|but|if|let|sir|ma'am|maam|way)\b)))\b"
+    r"no|nope|because|cause|since|not|never|but|if|let|sir|ma'am|maam|way)\b)))\b"
 )
 """The word *no*, unless a noun follows, as in *no brothers*."""
 _SHORT = re.compile(
@@ -105,21 +115,24 @@ def _score(text: str) -> int | None:
 
 
 def _parts(text: str) -> Iterator[tuple[str, str]]:
-    """Yield each part of a text, without the fillers at its beginning, and the punctuation after the part."""
+    """Yield each part of a text, without the fillers around it, and the punctuation after it."""
     for part, marks in _PART.findall(text):
-        words = part.split()
-        while words and words[0] in _FILLERS:
+        words: list[str] = [] if part in _COURTESIES else part.split()
+        while words and (words[0] in _FILLERS or (words[0] in _STANCE and len(words) > 1)):
             del words[0]
+        while len(words) > 1 and words[-1] in _TRAILING:
+            del words[-1]
         if words:
             yield " ".join(words), marks
 
 
 def _score_of_part(part: str, asks: bool) -> int | None:
-    """Return the score of a part. A question has a score only if it resembles a weak answer, or an example question."""
+    """Return the score of a part. A question has a score only if it resembles an example that asks likewise, or a weak answer."""
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:
-        return score if match.name[-1] != "2" or shape(match.example)[3] else None
+        order = shape(match.example)[3]
+        return score if order == shape(part)[3] and (order or match.name[-1] != "2") else None
     if asks or (match is not None and match.example == part):
         return score
     if short := _SHORT.match(part):

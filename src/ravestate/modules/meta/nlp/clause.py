@@ -14,8 +14,14 @@ from .repair import repaired
 from .statement import Triple
 from .tree import SUBJECTS, Tree, Word
 from .verbs import (
+    CONTACT,
+    FEELINGS,
     NEGATIONS,
+    OWN_STATES,
     PLACES,
+    PURSUITS,
+    SETTLING,
+    STATES,
     VERBAL,
     chain_of,
     heads_clause,
@@ -28,20 +34,8 @@ from .verbs import (
 _DIRECT = ("dobj", "attr", "acomp", "oprd", "pobj", "punct")  # the parser gives some objects one of the last two labels
 _ADVERBIAL = (QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.REASON, QuestionWord.FORM)
 _RELATIVE = ("who", "that", "which", "whom")
-_FEELINGS = word_set(
-    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired "
-    "annoyed satisfied",
-)
-_PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
-"""Subjects that a gerund may name: *my hobby is reading*."""
 _SENSES = word_set("be feel look seem sound taste smell")
-_STATES = word_set("better worse well fine good bad great ok okay awful hard alone")
-"""Adjectives that the tagger mistakes for adverbs."""
-
 _GIVING = word_set("give tell show send lend buy bring teach")
-_OWN_STATES = word_set("live like love hate want need miss hope prefer know understand work study own")
-"""Verbs of states. They make no requests: *live in Rome* stands for *I live in Rome*."""
-
 _NOMINAL = ("NOUN", "PROPN", "ADJ", "NUM")
 
 Part = Phrase | QuestionWord
@@ -111,7 +105,7 @@ class Clause:
             joined = verb == self.verb and is_infinitive(self.tree, self.tree.head(verb))
             words += ["to"] * (joined or is_infinitive(self.tree, verb))
             words += [word.low for word in self.tree.children(verb, "auxpass")]
-            words += [with_particles(self.tree, verb, verb.low)] * (verb.low not in _FEELINGS)
+            words += [with_particles(self.tree, verb, verb.low)] * (verb.low not in FEELINGS)
         return " ".join(words)
 
     @cached_property
@@ -124,7 +118,7 @@ class Clause:
     @cached_property
     def _is_state(self) -> bool:
         """Whether the verb is an adjective or a name of the subject: *she very nice*, *I am interested*."""
-        feels = self.passive is not None and self.chain[0].low in _FEELINGS
+        feels = self.passive is not None and self.chain[0].low in FEELINGS
         return feels or self._names_pursuit or lacks_copula(self.tree, self.verb)
 
     @cached_property
@@ -150,7 +144,7 @@ class Clause:
         """The auxiliary of a passive, or of a participle that serves as an adjective: *are they married*."""
         first, head = self.chain[0], self.head_clause
         auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
-        if first.low in _FEELINGS:
+        if first.low in FEELINGS:
             auxiliaries += [word for word in self.tree.children(first, "aux") if lemma_of(word) == "be"]
         if auxiliaries:
             return auxiliaries[0]
@@ -191,7 +185,7 @@ class Clause:
             return False
         if self.verb.dep == "conj" and self.head_clause is not None and not self.own_subjects:
             return self.head_clause._names_pursuit
-        return any(word.lemma.lower() in _PURSUITS for word in self.own_subjects)
+        return any(word.lemma.lower() in PURSUITS for word in self.own_subjects)
 
     # ---------------------------------------------------------------------------------- its neighbours
 
@@ -288,7 +282,8 @@ class Clause:
             return self._unsaid()
         if verb.dep == "acl" or head is None:
             return []
-        him = self.tree.children(above, "dobj", "dative")  # as in "I asked him to come"
+        own_aim = lemma_of(above) in CONTACT and is_infinitive(self.tree, verb)  # unlike "I asked him to come"
+        him = [] if own_aim else self.tree.children(above, "dobj", "dative")
         if verb.dep in ("xcomp", "ccomp") and not self._inherited and him and him[0].index < verb.index:
             return [_WE] if head._is_lets else [part for part, _ in self._written(him)]
         if head._agents:
@@ -305,7 +300,7 @@ class Clause:
         if set(auxiliaries) & {"ca", "can", "could"}:  # as in "can't find it"
             return [_I]
         has = lemma_of(self.verb) in ("have", "get") and (self.negated or len(self.chain) > 1)
-        states = lemma_of(self.verb) in _OWN_STATES or has
+        states = lemma_of(self.verb) in OWN_STATES or has
         request = (self.verb.tag in ("VB", "VBP") or "do" in auxiliaries) and not states
         return [YOU] if request else [_I] if states or self.verb.tag in ("VBD", "VBG", "VBN") else [NOTHING]
 
@@ -340,7 +335,7 @@ class Clause:
         if relative and not self._runs_on:
             return [(part, False) for part in self._antecedent]
         for verb in verbs:
-            states = [w for w in tree.children(verb, "advmod") if w.low in _STATES and lemma_of(verb) in _SENSES]
+            states = [w for w in tree.children(verb, "advmod") if w.low in STATES and lemma_of(verb) in _SENSES]
             indirect = [word for word in tree.children(verb, "dative") if word.pos != "ADP"]
             if states or indirect or (verb == self.verb and self._beside):
                 return self._written(states or indirect or self._beside, verb)
@@ -357,7 +352,8 @@ class Clause:
                 return [(phrase_of(tree, word, [word]), False)]
         for word in tree.children(self.verb, "conj"):  # as in "bought and read the book"
             between = tree.words[self.verb.index + 1 : word.index]
-            if (other := self._clauses.get(word.index)) and between and all(w.dep in ("cc", "prt") for w in between):
+            joined = between and all(w.dep in ("cc", "prt") for w in between)
+            if (other := self._clauses.get(word.index)) and joined and lemma_of(self.verb) not in SETTLING:
                 return other._objects()
         return []
 
@@ -391,7 +387,10 @@ class Clause:
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
             # As in "out of", and in "in Berlin and in Paris".
-            prepositions = [phrase, *self.tree.children(phrase, "prep", "conj")]
+            more = (
+                ("conj",) if self.tree.children(phrase, "pobj") else ("prep", "conj")
+            )  # "from Monday to Friday" has one
+            prepositions = [phrase, *self.tree.children(phrase, *more)]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]
             asked = self.unknown is not None and any(self.unknown.word in self.tree.subtree(noun) for noun in nouns)
             if nouns and not asked:

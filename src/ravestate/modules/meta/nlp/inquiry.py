@@ -25,6 +25,14 @@ _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote
 """Words for things to perform, such as jokes. A request for a performance is not a question."""
 _ANY = word_set("any ever anyone anybody anything")
 """Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
+_NO_PREDICATE = word_set("too either neither again first next")
+"""Words after *you* that make no question: *you too*."""
+_REPORTING = (
+    _TELLING
+    | _KNOWING
+    | word_set("forget forgot care matter mean learn teach think decide mention realise realize figure notice be")
+)
+"""Verbs before a question word that stands for a clause: *he knows why*, *that is how*."""
 _BEFORE_TAG = word_set("here there me you him her them us")
 """After one of these words, as after a noun or an adjective, *right* is a question tag even without a comma."""
 _SUBJECTS = word_set("i he she we they it")
@@ -64,9 +72,9 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         beside = len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in ("like", *QUESTION_WORDS)
         rest = part[beside:]
         kind = kind_at(rest, 0)
-        if kind is not None and _opens_question(
-            rest, inside, likely and part == parts[-1] and rest[0].low not in ("when", "where")
-        ):
+        sure = likely and part == parts[-1] and rest[0].low not in ("when", "where")
+        exclaims = tree.text[part[-1].end :].startswith("!")
+        if kind is not None and _opens_question(rest, inside, sure, exclaims=exclaims):
             return kind
         if [word.low for word in part[:2]] == ["any", "idea"]:
             return next((kind for place in range(len(part)) if (kind := kind_at(part, place))), None)
@@ -76,12 +84,44 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
     words = [word for word in words if word.pos != "PUNCT"]
     low = [word.low for word in words]
     stated = low[:1] == ["you"] and not any(clause.negated for clause in clauses)
-    if low and low[-1] in QUESTION_WORDS and (asked or (stated and low[1] not in _KNOWING)):  # as in "you live where"
-        return QUESTION_WORDS[low[-1]]
+    if (kind := _in_place(words, clauses, asked, stated)) is not None:
+        return kind
     if not words or asked or (stated and "any" in low):  # as in "you know any songs"
         return QuestionWord.YES_NO if low or asked else None
+    if (likely and low[0] in AUXILIARIES and low[1:2] == ["n't"]) or _lacks_auxiliary(words, clauses):
+        return QuestionWord.YES_NO
+    if low[-2:] == ["or", "not"] and not {"if", "whether"} & set(low):
+        return QuestionWord.YES_NO
     bare = low[-2:] in (["and", "you"], ["and", "yours"]) or low[0] in _ANY or low[1:2] == ["any"]
     return QuestionWord.YES_NO if bare or _has_tag(tree, words) else None
+
+
+def _in_place(words: Sequence[Word], clauses: Sequence[Clause], asked: bool, stated: bool) -> QuestionWord | None:
+    """Return the kind of a question word at the end of a statement: *you live where*, *you paid how much?*"""
+    for place in range(max(len(words) - 3, 1), len(words)):
+        kind, rest = kind_at(words, place), words[place + 1 :]
+        if kind is None or any(word.pos in (*VERBAL, "PRON", "ADP") for word in rest):
+            continue
+        verb = next((clause for clause in clauses if words[place] in clause.own), None)
+        told = lemma_of(words[place - 1]) in _REPORTING if verb is None else verb.lemma in _REPORTING or verb.negated
+        if asked or (not told and (stated or (verb is not None and verb.own_subjects and not rest))):
+            return kind
+    return None
+
+
+def _lacks_auxiliary(words: Sequence[Word], clauses: Sequence[Clause]) -> bool:
+    """Return whether a question leaves out its auxiliary: *you coming*, *you okay*, *want to play*."""
+    first, *rest = words
+    if first.low == "want":
+        return bool(rest) and rest[0].low in ("to", "a", "an", "some", "any", "me")
+    if first.low != "you" or not rest:
+        return False
+    if rest[0].low == "got":
+        return len(rest) > 1 and rest[1].low in ("a", "an", "any", "some", "my")
+    verbs = [word for word in rest if word.pos in VERBAL]
+    if not verbs:
+        return rest[-1].pos in ("ADJ", "ADV") and not _NO_PREDICATE & {word.low for word in rest}
+    return verbs[0].tag == "VBG" and all(word.pos in ("ADV", "PRON") for word in words[: words.index(verbs[0])])
 
 
 def _has_tag(tree: Tree, words: Sequence[Word]) -> bool:
@@ -106,13 +146,14 @@ def _parts(words: Sequence[Word]) -> list[list[Word]]:
     return [part for part in parts if part]
 
 
-def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool) -> bool:
-    """Return whether a part that begins with a question word is a question."""
+def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool, *, exclaims: bool) -> bool:
+    """Return whether a part that begins with a question word is a question; `exclaims`: an exclamation mark follows it."""
     first, second = part[0], part[1].low if len(part) > 1 else ""
     if (first.low, second) in (("what", "about"), ("how", "about"), ("how", "come"), ("what", "if")):
         return True
     clause = next((clause for clause in clauses if first.index in [word.index for word in clause.own]), None)
-    if clause is not None and not clause.inverted and clause.verb.dep in ("advcl", "csubj", "relcl"):
+    subordinate = ("csubj", "relcl") if second in AUXILIARIES else ("advcl", "csubj", "relcl")
+    if clause is not None and not clause.inverted and clause.verb.dep in subordinate:
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
@@ -123,7 +164,7 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
         kind_at(part, 0) is QuestionWord.AMOUNT and low[2:3] == ["you"] and "are" not in low
     )
     # As in "how much you have grown!".
-    exclaimed = clause is not None and clause.tree.text[part[-1].end :].startswith("!")
+    exclaimed = clause is not None and exclaims
     ends = clause is None or clause.verb.dep == "ROOT"
     if addressed and ends and not exclaimed and not (part[2:] and part[2].pos == "AUX"):
         return True  # as in "where you live"
@@ -133,7 +174,9 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
     if asked or nice or (first.low == "what" and second in ("a", "an")):
         return asked and not (nice and first.low == "what" and part[-1].pos in VERBAL)  # as in "how nice of you"
     if clause is None or clause.unknown is None:
-        return len(part) < 4
+        if exclaims and first.low == "what":  # as in "what nonsense!"
+            return False
+        return len(part) < 4 or (not exclaims and kind_at(part, 0) is QuestionWord.AMOUNT)
     begins = clause.verb.dep in ("ROOT", "ccomp") and clause.unknown.top in clause.own_subjects  # as in "what happened"
     return begins or not clause.own_subjects
 
@@ -144,9 +187,19 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
     lemma, own = lemma_of(verb), [word.low for word in clause.own]
     if clause.unknown is not None and clause.inverted:
         return clause.unknown.kind
-    wishes = bool({"i", "we"} & set(own)) and lemma_of(clause.chain[0]) in ("want", "like", "love", "need")
+    wishes = bool({"i", "we"} & set(own) or own[0] == "want") and lemma_of(clause.chain[0]) in (
+        "want",
+        "like",
+        "love",
+        "need",
+    )
     wonders = bool({"wonder", "wondering", "curious"} & set(own)) or (clause.inverted and "idea" in own)
-    demands = clause.inverted or clause.requests or (wishes and len(clause.chain) > 1) or (asked and own[0] == "you")
+    demands = (
+        clause.inverted
+        or (clause.requests and not clause.negated)
+        or (wishes and len(clause.chain) > 1)
+        or (asked and own[0] == "you")
+    )
     let = clause.head_clause is not None and clause.head_clause.requests and lemma == "know"
     if (demands and lemma in _TELLING | _KNOWING) or wonders or let:
         words = [word for word in tree.subtree(clause.verb) if word.index > verb.index]

@@ -58,9 +58,10 @@ _MEASURES = word_set(
     "young late soon close near thick strong loud rich quickly regularly frequently little few costly",
 )
 _CLASSES = {
-    QuestionWord.TIME: word_set("time day date hour week month year weekday century"),
-    QuestionWord.PLACE: word_set("place city town village country state street"),
-    QuestionWord.PERSON: word_set("person people man woman boy girl guy child"),
+    QuestionWord.TIME: word_set("time day date hour week month year weekday century decade evening night weekend"),
+    QuestionWord.PLACE: word_set("place city town village country state street region county continent district"),
+    QuestionWord.PERSON: word_set("person people man woman boy girl guy child lady kid"),
+    QuestionWord.REASON: word_set("reason"),
 }
 _CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
 _FOUGHT_FOR = word_set(

@@ -12,6 +12,14 @@ from .tree import SUBJECTS, Tree, Word
 
 _NEGATIONS = ("n't", "not", "nt")
 _BE = ("is", "are", "was", "were")
+_CLOSING = ("NOUN", "PROPN", "ADJ", "ADV", "VERB", "NUM", "PRON")
+_ACTIONS = (("do", "it"), ("have", "it"), ("do", "that"), ("have", "that"), ("do", "this"), ("have", "this"))
+"""An auxiliary and a pronoun that make no question tag: *I can't let you do it*."""
+_THINGS = word_set("it that this me him her them us one")
+"""Pronouns before a question tag without a comma: *you like it don't you*."""
+_OBJECTIVE = word_set("me him us them")
+_RELATIVE = word_set("that which who whom")
+_MOVING = word_set("go come drive walk run ride cycle travel get bike commute hurry")
 _INVERTING = word_set("do does did can could will would should")
 
 
@@ -25,6 +33,12 @@ def repaired(tree: Tree) -> Tree:
             _make_passive(tree, words, word)
             _make_copula(tree, words, word)
         _name_relative(tree, words, word)
+        _make_present(tree, words, word)
+        _make_way(tree, words, word)
+        _make_predicate(tree, words, word)
+        if word.dep == "advmod" and word.pos == "PROPN" and word.head == word.index - 1:  # as in "you speak Greek"
+            words[word.index] = replace(word, dep="dobj")
+    words = _split_relatives(Tree(tree.text, words))
     return tree if words == list(tree.words) else Tree(tree.text, words)
 
 
@@ -41,7 +55,10 @@ def tag_at(words: Sequence[Word], index: int) -> int:
     before = words[index - 1] if index else None
     if not ended or before is None or words[index].low not in AUXILIARIES or words[end - 1].low in QUESTION_WORDS:
         return 0
-    apart = before.low == "," or (negated and before.pos not in ("CCONJ", "SCONJ", "PRON") and index > 1)
+    denied = not negated and any(word.low in (*_NEGATIONS, "never") for word in words[: index - 1])
+    denied = denied and before.pos in _CLOSING and (words[index].low, words[end - 1].low) not in _ACTIONS
+    joined = before.pos in ("CCONJ", "SCONJ") or (before.pos == "PRON" and before.low not in _THINGS)
+    apart = before.low == "," or ((negated or denied) and not joined and index > 1)
     return end - index if apart and words[index - 1 - (before.low == ",")].low not in QUESTION_WORDS else 0
 
 
@@ -80,23 +97,103 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
 
 
 def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
-    """Turn a participle after its noun into the verb: *eaten*, in *was the cake eaten by the dog*."""
+    """Turn a participle after its noun into the verb: *eaten*, in *was the cake eaten by the dog*; *is the baby crying*."""
     nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
     for participle in tree.children_of(nouns, "acl"):
         if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
             _reroot(tree, words, be, participle, tree.head(participle), "auxpass")
+        elif be.low in _BE and be.dep == "ROOT" and participle.tag == "VBG" and tree.head(participle).dep == "nsubj":
+            _reroot(tree, words, be, participle, tree.head(participle), "aux")
+    for participle in tree.children(be, "advcl") if be.low in _BE and be.dep == "ROOT" else ():
+        if participle.tag == "VBG" and nouns and tree.before(participle) == nouns[-1] and nouns[-1].dep == "nsubj":
+            _reroot(tree, words, be, participle, nouns[-1], "aux")
 
 
 def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
     """Turn *'s* into a verb if the sentence has no verb: *my name's Ada*, but not *my sister's car*."""
     owner = tree.head(short)
     named = tree.head(owner)
-    if short.dep != "case" or owner.dep != "poss" or named.dep != "ROOT" or named.pos != "PROPN" or owner.pos != "NOUN":
+    after = tree.after(short)
+    article = after is not None and after.low in ("a", "an", "the")
+    if short.dep != "case" or owner.dep != "poss" or named.dep != "ROOT" or owner.pos != "NOUN":
+        return
+    if named.pos != "PROPN" and not article:
         return
     if any(word.pos in ("VERB", "AUX") for word in tree.subtree(named)):
         return
     for word, dep, head in ((short, "ROOT", short), (owner, "nsubj", short), (named, "attr", short)):
         words[word.index] = replace(word, dep=dep, head=head.index, pos="AUX" if word == short else word.pos)
+
+
+def _make_present(tree: Tree, words: list[Word], noun: Word) -> None:
+    """Turn a plural that ends a clause without a verb into the verb: *snores*, in *my husband snores*."""
+    before = tree.before(noun)
+    clausal = noun.dep == "ROOT" or (noun.dep in ("ccomp", "advcl") and tree.children(noun, "mark"))
+    if noun.tag != "NNS" or not clausal or before is None or before.tag not in ("NN", "NNP"):
+        return
+    if (
+        before.head != noun.index
+        or before.dep not in ("nsubj", "compound")
+        or tree.children(noun, "aux", "cop", "case")
+    ):
+        return
+    if before.dep == "compound" and noun.dep == "ROOT":  # as in "my football boots"
+        return
+    words[noun.index] = replace(words[noun.index], pos="VERB", tag="VBZ")
+    words[before.index] = replace(words[before.index], dep="nsubj")
+    for word in tree.children(noun, "det", "poss", "amod") if before.dep == "compound" else ():
+        words[word.index] = replace(words[word.index], head=before.index)
+
+
+def _make_predicate(tree: Tree, words: list[Word], adjective: Word) -> None:
+    """Join an adjective to the *be* before it: *I hope you're ok*."""
+    be = tree.before(adjective)
+    if be is None or adjective.pos != "ADJ" or adjective.dep != "ccomp" or tree.children(adjective):
+        return
+    if be.lemma.lower() == "be" and be.head == adjective.head and not tree.children(be, "acomp", "attr"):
+        words[adjective.index] = replace(adjective, dep="acomp", head=be.index)
+
+
+def _make_way(tree: Tree, words: list[Word], work: Word) -> None:
+    """Turn *work* after a verb of motion into a noun: *I drive to work*."""
+    verb, to = tree.head(work), tree.before(work)
+    if work.low != "work" or work.dep not in ("xcomp", "advcl") or verb.lemma.lower() not in _MOVING or to is None:
+        return
+    if [word.low for word in tree.children(work)] == ["to"] and to.low == "to" and verb.index < to.index:
+        words[to.index] = replace(to, pos="ADP", tag="IN", dep="prep", head=verb.index)
+        words[work.index] = replace(work, pos="NOUN", tag="NN", dep="pobj", head=to.index)
+
+
+def _split_relatives(tree: Tree) -> list[Word]:
+    """Return the words with relative clauses apart from the main clause.
+
+    The parser takes some relative clauses for objects (*the hat that you gave me*). After others, it takes their object for
+    the subject of the main verb (*the dog that bit me belongs to Ann*).
+    """
+    words = list(tree.words)
+    for verb in tree.words:
+        noun = tree.head(verb)
+        opening = tree.subtree(verb)[0]
+        before = tree.before(opening)
+        if verb.dep == "ccomp" and opening.tag in ("WDT", "WP") and opening.low in _RELATIVE and before is not None:
+            objects = tree.children(noun, "dobj", "pobj", "attr")
+            if before in objects and before.pos in ("NOUN", "PROPN"):
+                words[verb.index] = replace(verb, dep="relcl", head=before.index)
+        if verb.dep != "ccomp" or noun.dep != "relcl" or tree.children(verb, "mark", "aux"):
+            continue
+        subjects = tree.children(verb, "nsubj")
+        above = tree.head(noun)
+        if (
+            subjects
+            and subjects[0].low in _OBJECTIVE
+            and subjects[0].index == noun.index + 1
+            and above.index < noun.index
+        ):
+            words[subjects[0].index] = replace(subjects[0], dep="dobj", head=noun.index)
+            dep, head = (above.dep, above.head) if above.dep != "ROOT" else ("ROOT", verb.index)
+            words[verb.index] = replace(verb, dep=dep, head=head)
+            words[above.index] = replace(above, dep="nsubj", head=verb.index)
+    return words
 
 
 def _name_relative(tree: Tree, words: list[Word], noun: Word) -> None:

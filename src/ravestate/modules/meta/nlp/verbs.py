@@ -11,6 +11,21 @@ VERBAL = ("VERB", "AUX")
 NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
+CONTACT = word_set("call phone ring text email visit meet contact write use")
+"""Verbs whose object does not do what an infinitive after it says: *I called him to say hello*."""
+SETTLING = word_set("sit stand lie get wake come go grow calm hurry slow run walk")
+"""Verbs of posture and motion. They share no object with the verb after *and*: *sit down and read a book*."""
+FEELINGS = word_set(
+    "interested tired bored married divorced scared excited worried surprised pleased disappointed confused retired "
+    "annoyed satisfied",
+)
+"""Participles of feelings and states, which count as adjectives."""
+PURSUITS = word_set("hobby job passion dream goal plan interest pastime task habit")
+"""Subjects that a gerund may name: *my hobby is reading*."""
+STATES = word_set("better worse well fine good bad great ok okay awful hard alone")
+"""Adjectives that the tagger mistakes for adverbs."""
+OWN_STATES = word_set("live like love hate want need miss hope prefer know understand work study own")
+"""Verbs of states. They make no requests: *live in Rome* stands for *I live in Rome*."""
 _MOTION = word_set("come go travel fly drive run move stay")
 """Verbs after which an infinitive states a purpose, which is a second action: *come to help*."""
 _GERUND_TAKERS = word_set("like love hate enjoy prefer dislike start stop begin continue keep practise practice try")
@@ -89,9 +104,9 @@ def _following(tree: Tree, verb: Word) -> Word | None:
 
 def makes_future(tree: Tree, verb: Word) -> bool:
     """Return whether the verb is the *going* of a future, which counts as an auxiliary."""
-    return verb.low == "gon" or (
-        verb.low == "going" and any(lemma_of(aux) == "be" for aux in tree.children(verb, "aux"))
-    )
+    auxiliaries = tree.children(verb, "aux")
+    bare = verb.dep == "ROOT" and not auxiliaries  # as in "what you going to do"
+    return verb.low == "gon" or (verb.low == "going" and (bare or any(lemma_of(aux) == "be" for aux in auxiliaries)))
 
 
 def is_infinitive(tree: Tree, verb: Word) -> bool:

@@ -25,6 +25,20 @@ SENTENCES = 4
 """The maximum number of sentences that are considered."""
 _QUESTION_WORD = re.compile(r"(?<=\s)(?:who|whom|whose|what|which|where|when|why|how|if|whether)\b", re.IGNORECASE)
 
+_POLITE = re.compile(
+    r"^(?:(?:so|and|well|please|hey|now) )?(?:(?:can|could|would|will) you (?:please |kindly )?(?:tell|show) me|"
+    r"(?:may|might|can|could) i (?:please )?(?:ask|know|have|hear)|would you mind telling me|do you mind telling me|"
+    r"i (?:would|want|wanted) (?:(?:like|love) )?to (?:know|hear|ask)|i wonder)\b"
+)
+"""The beginning of a polite question, in the plain form: *could you tell me*, *may I ask*."""
+_TAG = re.compile(
+    r" (?:right|correct|huh|eh|yes|no|(?:are|do|did|can|have|will|would) (?:not )?you|(?:are|do|can|have|will) you not)$"
+)
+_OPENERS = re.compile(r"^(?:(?:so|and|well|but|hey|ok|okay|oh|wow|then) )+(?=\S+ \S)")
+_SHORTENED = {"any": "do you have any", "got": "have you got", "have": "do you have", "ever": "have you ever"}
+"""The first word of a question that leaves out its verb or its subject → the words that it stands for."""
+_INVERTED = frozenset(["are", "can", "were", "will", "would", "could", "did", "must", "should"])
+
 
 @dataclass(frozen=True, slots=True)
 class Match:
@@ -103,13 +117,43 @@ def router_of(life: Life) -> Router:
 
 
 def _readings(sentence: str, *, question: bool) -> Iterator[str]:
-    """Yield a sentence, then the part after its last comma, then the indirect question in it."""
+    """Yield a sentence, then the part after its last comma, then what it asks without its courtesies.
+
+    A question may be indirect, polite, or without its verb: *I wonder how old you are*, *may I ask your name*, *any hobbies*.
+    """
     yield sentence
     _, comma, rest = sentence.rpartition(", ")
     if comma and len(rest.split()) > 1:
         yield rest
-    if question and (found := _QUESTION_WORD.search(sentence)) is not None:
+    if not question:
+        return
+    if (found := _QUESTION_WORD.search(sentence)) is not None:
         yield sentence[found.start() :]
+    said = _OPENERS.sub("", plain(sentence))
+    asked = _POLITE.sub("tell me", said)
+    whole = _in_full(asked)
+    if whole != plain(sentence):
+        yield whole
+
+
+def _in_full(question: str) -> str:
+    """Return a question in the plain form with its verb before its subject, and without a tag.
+
+    Example:
+        >>> _in_full("any hobbies"), _in_full("you are a robot right"), _in_full("you like tea")
+        ('do you have any hobbies', 'are you a robot', 'do you like tea')
+    """
+    words = _TAG.sub("", question).split()
+    if len(words) < 2:
+        return question
+    first, second, *rest = words
+    if first in _SHORTENED:
+        return " ".join([_SHORTENED[first], second, *rest])
+    if first != "you" or not rest:
+        return " ".join(words)
+    if second in _INVERTED or (second == "have" and rest[0] == "got"):
+        return " ".join([second, "you", *rest])
+    return " ".join(["have" if second == "got" else "do", "you", second, *rest])
 
 
 def _reason(text: str, best: language.Match, others: Sequence[language.Match]) -> str:
