@@ -34,6 +34,8 @@ _WANTED = word_set("want wan hope plan intend wish dream decide aim like love ne
 _IMMINENT = word_set("move leave retire")
 _PONDERED = word_set("think consider dream talk plan")
 _DOUBTS = word_set("maybe perhaps possibly probably")
+_MISSED = word_set("almost nearly")
+"""Adverbs of an event that did not happen: *I almost moved to Rome*, but not *I am almost ready*."""
 _REPORTS = word_set("apparently supposedly allegedly reportedly according")
 _UNREAL = word_set("would 'd could might may should")
 _CONDITIONS = word_set("if unless whether")
@@ -136,6 +138,9 @@ class _Assertion:
             return True
         if any(word.low in _UNREAL and word.dep == "aux" for word in own) and not self._wished:
             return True
+        events = [verb for verb in self._clause.verbs if verb.tag in ("VBD", "VBN") and lemma_of(verb) != "be"]
+        if any(word.low in _MISSED for word in self._tree.children_of(events, "advmod")):
+            return True
         conditions = self._tree.children(self._clause.verb, "advcl")
         if any(word.low in ("if", "unless") for word in self._tree.children_of(conditions, "mark")):
             return True
@@ -173,7 +178,8 @@ class _Assertion:
         lemma, first = lemma_of(self._clause.chain[-1]), self._clause.chain[0]
         if first.low == "used" and len(self._clause.chain) > 1:
             return True
-        if self._clause.passive is not None or lemma not in _LASTING:
+        begins = len(self._clause.chain) > 1 and lemma_of(first) in ("start", "begin")
+        if self._clause.passive is not None or lemma not in _LASTING or begins:
             return False
         if self._tense == "past":
             return not (lemma in _HABITS and self._when)

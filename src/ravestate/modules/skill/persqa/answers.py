@@ -32,6 +32,10 @@ _ONE = (re.compile(","), re.compile(r",| and\b"))
 _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
+_PIECE = re.compile(
+    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they)\b)", re.IGNORECASE
+)
+"""The end of an answer before a clause."""
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
 """Kinds of values that leave out a place after them: in *teacher at a school*, the value is *teacher*."""
@@ -88,6 +92,25 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
     return found
 
 
+def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
+    """Return the answer in the words before the first clause: *hiking! And I'm in a club*; empty if there is none.
+
+    If a clause follows that only points (*at the moment that is Porto*), its object is the answer.
+    """
+    pieces = [piece for piece in _PIECE.split(text) if piece.strip(" ,.")]
+    finite = {word.low for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD")}
+    for piece in pieces[:2] if len(pieces) > 1 else ():
+        if finite & set(re.findall(r"[\w']+", spelled_out(piece.lower()))):
+            break
+        if facts := answer(piece, topic, seen):
+            return facts
+    for said in seen.statements:
+        if said.holds and said.verb == "be" and said.subject.text.lower() in ("it", "that") and said.object.text:
+            if said.object.owner is None and not said.object.preposition and topic != "age":
+                return answer(said.object.text, topic, seen)
+    return []
+
+
 def correction(
     text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False
 ) -> list[Fact]:
@@ -129,5 +152,7 @@ def _may_answer(said: nlp.Statement) -> bool:
     if said.subject.person == "I":
         thinks = f"I {said.verb}" in WORDS["openers"]
         return thinks or (not said.plan and said.verb in ("be", *WORDS["likes"], *WORDS["pastimes"]))
-    pronouns = ("", "it", "that", "this", "they", "these", "those", "he", "she")
+    pronouns = ("", "they", "these", "those", "he", "she")
+    if said.subject.text.lower() in ("it", "that", "this"):
+        return said.verb in ("be", "call", "name")  # not "it is raining"
     return said.subject.text.lower() in pronouns or said.subject.owner is not None

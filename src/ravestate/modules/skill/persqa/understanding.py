@@ -13,8 +13,10 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from . import kinds
-from .answers import answer, correction, may_stand_alone, spelled_out
+from .answers import answer, correction, may_stand_alone, opening, spelled_out
+from .changes import amended
 from .reading import Reader
+from .relatives import remaining_name
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
@@ -96,7 +98,7 @@ class _Hearing:
         self.topic = self.pending.topic if self.pending else ""
         self.waits = is_topic(self.topic)
         asked = talk.doubt if self.topic == CONFIRM else self.topic if self.waits else ""
-        self.reader = Reader(seen, asked, talk.person)
+        self.reader = Reader(seen, asked, talk.person, known)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
@@ -140,8 +142,13 @@ class _Hearing:
         facts = self.reader.facts(self.known)
         told = {fact.topic for fact in facts if not fact.gone}
         facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
+        if self.waits and topic not in told and "nothing" not in self.acts and not self.reader.denies_all:
+            facts = [*opening(self.text, topic, seen), *facts]
+        told = {fact.topic for fact in facts if not fact.gone}
+        if fixed := [fact for fact in amended(self.text, self.doubtful(facts), seen) if fact.gone or fact.topic not in told]:
+            facts = [*facts, *(fact for fact in fixed if fact not in facts)]
         other = any(fact.topic == NAME and not self.is_name(fact.values) for fact in facts if not fact.gone)
-        denied = any(fact.topic == NAME and fact.gone for fact in facts) or self.denies_name()
+        denied = any(fact.topic == NAME and fact.gone and self.is_name(fact.values) for fact in facts) or self.denies_name()
         if denied and not other:  # "I'm not Ada, I'm Ida" tells another name
             return Meaning("mistaken")
         free = tuple(told_in(self.reader, self.talk.said)[0])
@@ -169,6 +176,10 @@ class _Hearing:
         if (relative := self.reader.without_name()) and not self.known.get(relative):
             return Meaning("mentioned", topic=relative)
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
+
+    def doubtful(self, facts: Iterable[Fact]) -> Facts:
+        """Return the values that the utterance may correct: the known values, and those that it denies."""
+        return {**self.known, **{fact.topic: fact.values for fact in facts if fact.gone and fact.values}}
 
     def is_known(self, topic: str) -> bool:
         """Return whether a question about a topic can be answered from the facts, or at least from the nearest fact."""
@@ -252,7 +263,7 @@ class _Hearing:
         match = self.seen.act("identify")
         if other or match is None or match.text.endswith("?"):  # "me?"
             return None
-        name = Reader(self.seen).remaining_name()
+        name = remaining_name(self.reader)
         known = not name or among(name, self.known.get(NAME, ()))
         return Meaning("identified" if known else "told", (Fact(NAME, (name,)),) if name else ())
 
@@ -308,9 +319,9 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether to note a denial: it must deny a known fact, or all values of a topic (*I have no hobby*)."""
+        """Return whether to note a denial: it denies some values, or all values of a topic (*I have no hobby*)."""
         if fact.values or fact.topic == NAME:
-            return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
+            return bool(fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
 
 

@@ -118,7 +118,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
             least = 0.0
         case "organisation" if number_in(text):
             return False  # "at work at six"
-        case "organisation" if "ORG" in labels:
+        case "organisation" if "ORG" in labels or (sure and labels & _PLACES):  # "study at Uppsala"
             return True
         case "organisation" if _is_proper(text, seen) and "PERSON" not in labels:
             least = -0.6
@@ -132,7 +132,7 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
 def _is_proper(text: str, seen: nlp.Analysis) -> bool:
     """Return whether the parser takes words for a name."""
     found = {word.text: word.pos for word in seen.tree.words}
-    return text[:1].isupper() and all(found.get(word, "PROPN") == "PROPN" for word in text.split())
+    return (text[:1].isupper() or text.capitalize() in seen.normal.text) and all(found.get(word, "PROPN") == "PROPN" for word in text.split())
 
 
 def _trimmed(text: str) -> str:
