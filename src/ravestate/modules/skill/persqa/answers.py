@@ -7,6 +7,7 @@ from collections.abc import Collection
 
 from ravestate.modules import nlp
 
+from ravestate.language.normal import plain
 from .kinds import is_remark, likeness
 from .topics import TOPICS, WORDS, Fact, Topic
 from .values import value_of
@@ -23,7 +24,9 @@ def _before(name: str) -> re.Pattern[str]:
 
 _OPENERS, _CORRECTIONS = _before("openers"), _before("corrections")
 _PREPOSITIONS = re.compile(
-    r"^(?:(?:in|from|near|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE
+    r"^(?:(?:in|on|from|near|at|out of|for|with|as|of|to|outside|around|"
+    r"(?:the )?(?:city|town|village|outskirts|suburbs?|edge|centre|center|north|south|east|west) of)\s+)+",
+    re.IGNORECASE,
 )
 _LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 _END = re.compile(rf"[.;:!?…\n()\"]|\s(?:{_any('closers')}|(?:and )?(?:what about|how about|and) you)\b", re.IGNORECASE)
@@ -33,7 +36,8 @@ _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
 _PIECE = re.compile(
-    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they)\b)", re.IGNORECASE
+    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
+    re.IGNORECASE,
 )
 """The end of an answer before a clause."""
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
@@ -102,9 +106,13 @@ def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     for piece in pieces[:2] if len(pieces) > 1 else ():
         if finite & set(re.findall(r"[\w']+", spelled_out(piece.lower()))):
             break
+        if any(plain(piece) == plain(act.text) for act in seen.acts.values()):
+            continue  # "Good evening. I'm Ada."
         if facts := answer(piece, topic, seen):
             return facts
     for said in seen.statements:
+        if TOPICS[topic].kind == "name" and said.holds and said.subject.names and said.verb in ("be", "do"):
+            return answer(said.subject.text, topic, seen)  # "just Fenna is fine"
         if said.holds and said.verb == "be" and said.subject.text.lower() in ("it", "that") and said.object.text:
             if said.object.owner is None and not said.object.preposition and topic != "age":
                 return answer(said.object.text, topic, seen)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from ravestate.modules import nlp
 
 from .answers import answer, spelled_out
+from .kinds import likeness
 from .links import Link, predicate_of
 from .topics import NOUNS, TOPICS, WORDS, Fact
 from .values import gerund, number_in, value_of
@@ -63,7 +64,8 @@ def ended_by(reader: Reader, said: nlp.Statement, known: Facts) -> dict[str, tup
     if topic and TOPICS[topic].kind == "organisation" and (value := value_of(reader.written(object), TOPICS[topic], reader.seen)):
         return {topic: (value,)}
     activity = object.text if object.text.endswith("ing") else done.partition(" ")[2] if "ing" in done else ""
-    return {"hobby": (activity,)} if ends in WORDS["habit_ending"] and activity else {}
+    is_hobby = ends in WORDS["habit_ending"] and activity and likeness(activity, "activity") > 0
+    return {"hobby": (activity,)} if is_hobby else {}
 
 
 def renamed_in(said: nlp.Statement, known: Facts) -> Iterator[Link]:
@@ -87,10 +89,18 @@ def amended(text: str, known: Facts, seen: nlp.Analysis) -> list[Fact]:
                 before, after = text[: denied.start()], text[denied.end() :]
                 for part in (after, before):
                     if facts := answer(_NAMED.sub("", part), topic, seen):
-                        return [*facts[:1], Fact(topic, (value,), gone=True)]
-            elif _FIXED.search(text) and (new := _resembling(value, topic, seen)):
-                return [Fact(topic, (new,)), Fact(topic, (value,), gone=True)]
+                        gone = [Fact(topic, (value,), gone=True)] if _is_one_of_several(topic) else []
+                        return [*facts[:1], *gone]
+            elif value.lower() not in text.lower() and _FIXED.search(text) and (new := _resembling(value, topic, seen)):
+                return [Fact(topic, (new,)), *([Fact(topic, (value,), gone=True)] if _is_one_of_several(topic) else [])]
+            elif value.lower() in text.lower() and any(re.search(rf"\bnot (?:an?|my) {noun}\b", text) for noun in TOPICS[topic].nouns):
+                return [Fact(topic, (value,), gone=True)]  # "Tom is my cousin, not a friend"
     return []
+
+
+def _is_one_of_several(topic: str) -> bool:
+    """Return whether a new value leaves the old value in memory, so that a correction must remove it."""
+    return TOPICS[topic].many or TOPICS[topic].kind == "people"
 
 
 def _resembling(value: str, topic: str, seen: nlp.Analysis) -> str:

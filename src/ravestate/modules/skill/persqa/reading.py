@@ -8,14 +8,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ravestate.modules import nlp
-from ravestate.modules.meta.nlp.phrase import Phrase
+from ravestate.modules.meta.nlp.phrase import Phrase, gerund_phrase
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answers import answer
 from .changes import ended_by, renamed_in
 from .kinds import likeness
 from .links import Link, predicate_of
-from .relatives import is_former, named_in
+from .relatives import is_former, named_in, owner_before
 from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import gerund, is_gerund, number_in, value_of
 from .wording import Facts, alike, among, without
@@ -82,7 +82,7 @@ class Reader:
             instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
             for link in [Link(denied, said.object)] if instead else [*self.links(said), *renamed_in(said, known)]:
                 denied = link.topic if said.negated else ""
-                values = self.values(link)
+                values = self.values(link, denied=said.negated and link.topic == NAME)
                 called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # "his name was Joost"
                 over = (said.past and link.topic not in LASTING and not called) or (
                     link.topic == NAME and not self.words.isdisjoint({"was", "were"})
@@ -128,6 +128,8 @@ class Reader:
 
         It covers *Bonn* in *I live in Ulm, not in Bonn*, and in *I don't live in Bonn, but in Ulm*.
         """
+        if self._dislikes(said):
+            return True
         text, turn = self.tree.text, _TURN.search(self.tree.text)
         if not _NOT.search(_OPENING_NO.sub("", text)):
             return False
@@ -226,6 +228,8 @@ class Reader:
             return self.person
         if owner is None or not phrase.of("I") or is_former(phrase.text):
             return ""
+        if self.relative(phrase.head) and (owner.person != "I" or self._has_owner(phrase)):
+            return ""  # "my friend's dog"
         if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
             return self.noun(owner)  # "my sister's name, one of my hobbies"
         low = phrase.text.lower()
@@ -234,6 +238,10 @@ class Reader:
         topic = NOUNS.get(" ".join(low.split()[-2:])) or NOUNS.get(phrase.head, "")
         best = re.search(r"\bfavou?rite .+", low)
         return favourite(best[0]) if best and phrase.head in best[0] and topic != "hobby" else topic
+
+    def _has_owner(self, phrase: Phrase) -> bool:
+        words = [word for word in self.tree.words if word.lemma == phrase.head and word.text in phrase.text]
+        return any(owner_before(word, self.tree) for word in words)
 
     def _of_user(self, said: nlp.Statement) -> Iterator[Link]:
         predicate, object = predicate_of(said), said.object
@@ -251,6 +259,11 @@ class Reader:
         hobby = self._pursuit(said) if all(link.topic == "liking" or not link.sure for link in told) else None
         yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
 
+    def _dislikes(self, said: nlp.Statement) -> bool:
+        """Return whether the user dislikes something: *I hate rain*, *I can't stand rain*."""
+        verbs = WORDS["enduring"] if said.negated else WORDS["dislikes"]
+        return said.subject.person == "I" and said.verb in verbs and bool(said.object.text)
+
     def _equated(self, said: nlp.Statement, verb: Word) -> Phrase | None:
         """Return the value for which the antecedent of a relative clause stands: *the firm I work for is Aldi*."""
         stranded = [word.low for word in self.tree.children(verb, "prep") if not self.tree.children(word)]
@@ -263,7 +276,7 @@ class Reader:
 
     def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
         """Yield the topics that the table has for *live in* (verb, preposition) or *have a job at* (with an object)."""
-        predicate, object = predicate_of(said), said.object
+        predicate, object = "like" if self._dislikes(said) else predicate_of(said), said.object
         child = self._was_child or any(one.preposition == "as" and one.head in WORDS["young"] for one in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
             nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
@@ -283,7 +296,11 @@ class Reader:
 
     def _pursuit(self, said: nlp.Statement) -> Link | None:
         """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*, *I paint in my free time*."""
-        verbs, object = predicate_of(said).split(), said.object
+        if said.verb == "spend" and said.object.head in WORDS["leisure"] and (verb := self.verb(said)):
+            gerunds = [word for word in self.tree.children(verb, "xcomp", "advcl", "ccomp") if word.tag == "VBG"]
+            written = [self.tree.phrase(gerund_phrase(self.tree, word)) for word in gerunds]
+            return Link("hobby", said.object, value=written[0]) if written else None
+        verbs, object = said.triple.predicate.removeprefix("not ").split(), said.object
         verb = self.verb(said)
         if verb is None or said.subject.text.lower() != "i" or not isinstance(said.triple.object, str):
             return None
@@ -294,6 +311,8 @@ class Reader:
             written = re.sub(r"^\w+", verb.lemma, written)
         if verbs[0] in WORDS["likes"]:
             wanted = chained
+        elif verbs[0] in ("start", "begin", "take") and (written := gerund(said.triple.predicate.split()[-1] if chained and verbs[0] != "take" else object.text, self.seen)):
+            wanted = likeness(written, "activity") > 0 and (verbs[0] != "take" or verbs == ["take", "up"])
         elif verbs == ["do"] and direct and said.holds and likeness(object.text, "activity") > 0.2:
             wanted, written = True, object.text  # "I do judo"
         elif verbs[0] in WORDS["pastimes"]:
@@ -321,7 +340,7 @@ class Reader:
     def _being(self, said: nlp.Statement) -> Iterator[Link]:
         """Yield the links of *I am ...*: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
-        years = re.fullmatch(r"([\w -]+?)(?: years?(?: old)?| old)?", text.lower())
+        years = re.fullmatch(r"([\w -]+?)(?: (?:years?|yrs?)(?: (?:old|young|of age))?| old)?", text.lower())
         if years and not object.preposition and (number := number_in(years[1])):  # not *for six years*
             yield Link("age", object, value=number)
         elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
@@ -341,7 +360,7 @@ class Reader:
         elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
             yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
             yield from self._beside_name(said)
-        elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half"):
+        elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half", "young"):
             several = any(word.lemma == object.head and word.tag == "NNS" for word in self.tree.words)
             if several and said.subject.text.lower() == "i":
                 return  # "I'm all ears"
@@ -381,7 +400,7 @@ class Reader:
 
     # ----------------------------------------------------------------------------------------------- words
 
-    def values(self, link: Link) -> tuple[str, ...]:
+    def values(self, link: Link, *, denied: bool = False) -> tuple[str, ...]:
         topic, phrase = TOPICS[link.topic], link.phrase
         if phrase is None:
             return ()
@@ -389,7 +408,7 @@ class Reader:
             phrase = phrase.owner  # "by the name of Blackbeard"
         named = topic.kind == "people" or (topic.kind in ("place", "organisation") and phrase.head)
         raw = (phrase.names if named else ()) or (link.value or self.written(phrase),)  # "a small island, Naxos"
-        return self.fitting(link.topic, raw, sure=link.sure or link.topic == self.asked == NAME)
+        return self.fitting(link.topic, raw, sure=link.sure and not denied or link.topic == self.asked == NAME)
 
     def fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
         return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))

@@ -34,7 +34,8 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
     whole: list[tuple[str, tuple[str, ...]]] = []
     for said in reader.seen.statements:
         phrases = (said.subject, said.object, *said.phrases)
-        allowed = said.verb == "call" and said.subject.person == "you"  # "you may call me Fitz"
+        everyone = said.subject.text.lower() in ("everyone", "everybody", "people", "they", "friends")
+        allowed = said.verb == "call" and (said.subject.person == "you" or everyone)  # "you may call me Fitz"
         open = (said.question or said.conditional or said.hearsay or said.plan) and not allowed
         open = open or (said.past and not said.subject.names)
         if open or (said.negated and said.verb == "call"):
@@ -56,6 +57,8 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
             continue
         passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
         first = words[word.index + 1 + len(passed) :][:1]
+        if me and reader.words & {"mistake", "mistakenly", "wrongly"}:
+            continue
         if not first or unsaid & {word.lemma, before.lemma} or reader.denies_all:
             continue
         named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)

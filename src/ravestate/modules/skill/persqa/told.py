@@ -114,6 +114,8 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         relatives = reader.known.get(reader.noun(said.subject), ()) if subject else ()
         if len(relatives) == 1 and not said.subject.names:
             subject = last = relatives[0]
+        with_user = any(one.subject.person == "I" and one.triple[1:] == said.triple[1:] for one in reader.seen.statements)
+        subject = "" if with_user and said.subject.person != "I" else subject  # "my wife and I live in Rome"
         one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
         heard.append(one)
         if subject and (not he or last in [one.who for one in heard[:-1]]) and _is_worth_keeping(reader, said):
@@ -185,7 +187,7 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
     if _DEICTIC.match(said.object.text) or is_former(said.subject.text) or (said.verb == "be" and not said.object.text):
         return False
-    if ended_by(reader, said, reader.known) or any(renamed_in(said, reader.known)) or _is_momentary(reader, said):
+    if ended_by(reader, said, reader.known) or said.verb in WORDS["parting"] or any(renamed_in(said, reader.known)) or _is_momentary(reader, said):
         return False
     if (
         (said.verb in WORDS["passing"] and not (called or _gained(reader, said) or _noted(reader, said) or _is_there(said)))
@@ -202,6 +204,8 @@ def _is_momentary(reader: Reader, said: nlp.Statement) -> bool:
     if said.subject.person != "I" or verb is None or said.verb == "be":
         return False
     aux = any(word.lemma == "be" or word.low == "'m" for word in reader.tree.children(verb, "aux"))
+    if verb.dep == "advcl" and said.verb not in WORDS["states"] and {"since", "when", "until", "while"} & reader.words:
+        return True
     now = NOW & set(said.when.lower().split()) and verb.tag != "VBD"
     return bool(now or (verb.tag == "VBG" and aux and likeness(reader.span(said), "activity") < 0.1))
 
@@ -251,6 +255,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
             fits = fits and likeness(object.text, "trait") > 0.1
         elif said.verb in ("have", "get", "own"):
             fits = fits and _gained(reader, said)
+        fits = fits and not (object.names and reader.relative(object.head))  # "a cat called Luna"
         return "I" if spoken and fits and not any(map(reader.values, reader.links(said))) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
@@ -261,6 +266,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     number = {"CARDINAL", "QUANTITY"} & {entity.label for entity in reader.seen.entities if object.text in entity.text}
     dated = said.verb == "be" and (said.when or (object.text and number))  # "my birthday is in May"
     thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # "my car is new"
+    if words and any(map(reader.values, reader.links(said))):
+        return ""
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
