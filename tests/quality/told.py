@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from quality import blind
 from quality.measure import Result
 
-SETS = ("told_rows", "told_blind_rows")
+SETS = ("told_rows", "told_blind_rows", "told_fresh_rows")
 
 
 def results() -> Iterable[Result]:

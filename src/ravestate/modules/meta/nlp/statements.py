@@ -37,6 +37,9 @@ _DOUBTS = word_set("maybe perhaps possibly probably")
 _MISSED = word_set("almost nearly")
 """Adverbs of an event that did not happen: *I almost moved to Rome*, but not *I am almost ready*."""
 _REPORTS = word_set("apparently supposedly allegedly reportedly according")
+_REPORTING = word_set(
+    "say tell think claim believe write insist reckon report swear announce suspect guess assume mention"
+)
 _UNREAL = word_set("would 'd could might may should")
 _CONDITIONS = word_set("if unless whether")
 _SOON = word_set("tomorrow next soon tonight later")
@@ -124,8 +127,10 @@ class _Assertion:
         said = self._above._clause
         if self._clause.verb.dep in ("ccomp", "parataxis") and not self._given:
             speakers = [word for word in said.own_subjects if word.low not in ("it", "that", "this", "what")]
+            before = self._tree.before(self._tree.subtree(self._clause.verb)[0])
+            apart = before is not None and before.low == "," and said.lemma not in _REPORTING
             if any(person_of(word) != "I" for word in speakers):
-                return said.lemma != "be"
+                return said.lemma != "be" and not apart
             if said.lemma in ("hear", "read") or (said.lemma in ("say", "tell") and (said.negated or said.passive)):
                 return True
         return self._sharing is not None and self._sharing._hearsay

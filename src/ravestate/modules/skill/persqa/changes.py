@@ -61,7 +61,11 @@ def ended_by(reader: Reader, said: nlp.Statement, known: Facts) -> dict[str, tup
         partners = {topic: known[topic] for topic in ("partner", "wife", "husband") if known.get(topic)}
         return {topic: values for topic, values in partners.items() if any(value.lower() in text for value in values)}
     topic = NOUNS.get(object.head, "")
-    if topic and TOPICS[topic].kind == "organisation" and (value := value_of(reader.written(object), TOPICS[topic], reader.seen)):
+    if (
+        topic
+        and TOPICS[topic].kind == "organisation"
+        and (value := value_of(reader.written(object), TOPICS[topic], reader.seen))
+    ):
         return {topic: (value,)}
     activity = object.text if object.text.endswith("ing") else done.partition(" ")[2] if "ing" in done else ""
     is_hobby = ends in WORDS["habit_ending"] and activity and likeness(activity, "activity") > 0
@@ -84,16 +88,24 @@ def amended(text: str, known: Facts, seen: nlp.Analysis) -> list[Fact]:
     text = spelled_out(text)
     for topic, values in known.items():
         for value in values:
-            denied = re.search(rf"[,;.!?]*\s*\bnot (?:(?:an?|the|in|from|at|for) )?{re.escape(value)}\b[,;.!?]*\s*", text, re.IGNORECASE)
+            denied = re.search(
+                rf"[,;.!?]*\s*\bnot (?:(?:an?|the|in|from|at|for) )?{re.escape(value)}\b[,;.!?]*\s*",
+                text,
+                re.IGNORECASE,
+            )
             if denied:
                 before, after = text[: denied.start()], text[denied.end() :]
                 for part in (after, before):
+                    if re.search(r"\byou\b", part, re.IGNORECASE):
+                        continue
                     if facts := answer(_NAMED.sub("", part), topic, seen):
                         gone = [Fact(topic, (value,), gone=True)] if _is_one_of_several(topic) else []
                         return [*facts[:1], *gone]
             elif value.lower() not in text.lower() and _FIXED.search(text) and (new := _resembling(value, topic, seen)):
                 return [Fact(topic, (new,)), *([Fact(topic, (value,), gone=True)] if _is_one_of_several(topic) else [])]
-            elif value.lower() in text.lower() and any(re.search(rf"\bnot (?:an?|my) {noun}\b", text) for noun in TOPICS[topic].nouns):
+            elif value.lower() in text.lower() and any(
+                re.search(rf"\bnot (?:an?|my) {noun}\b", text) for noun in TOPICS[topic].nouns
+            ):
                 return [Fact(topic, (value,), gone=True)]  # "Tom is my cousin, not a friend"
     return []
 

@@ -9,6 +9,9 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 
 from .topics import WORDS
 
+NOW = frozenset(["tonight", "today", "tomorrow", "now", "this"])
+"""Words for a time that makes a statement momentary."""
+
 
 @dataclass(frozen=True, slots=True)
 class Link:

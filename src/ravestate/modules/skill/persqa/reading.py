@@ -8,23 +8,23 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ravestate.modules import nlp
-from ravestate.modules.meta.nlp.phrase import Phrase, gerund_phrase
+from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answers import answer
 from .changes import ended_by, renamed_in
 from .kinds import likeness
 from .links import Link, predicate_of
+from .pursuits import changed_in, pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
 from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
-from .values import gerund, is_gerund, number_in, value_of
-from .wording import Facts, alike, among, without
+from .values import is_gerund, number_in, value_of
+from .wording import Facts, alike, without
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics whose facts may be in the past tense: *I studied law*."""
 _CALLED = frozenset(["be", "be called", "be named", "be spelled", "be spelt", "be written"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
-_LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
 _TURN = re.compile(
     r"(?:, (?:and )?|(?<! am)(?<! is)(?<! are)(?<!'m)(?<!'s)(?<!'re) (?=not (?:an?|the|in|at|from) [\w ]+\W*$))(not) |"
     r",? but (?!i\b)",
@@ -35,7 +35,6 @@ _OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
 """Words with which speakers correct themselves: *I'm Voss, no wait, I'm Claudia*."""
 _NONE = frozenset(["none", "neither", "nobody"])
-NOW = frozenset(["tonight", "today", "tomorrow", "now", "this"])
 
 
 class Reader:
@@ -95,7 +94,7 @@ class Reader:
                     if values and _INSTEAD.search(self.tree.text):
                         told.pop(link.topic, None)
                     _add(told, link.topic, values)
-        for topic, values in named_in(self):
+        for topic, values in itertools.chain(named_in(self), self._in_fragments()):
             if topic not in gone and (topic != NAME or topic not in told):
                 _add(told, topic, values)
         if told and (found := _INSTEAD.search(self.tree.text)):  # "Ada here, no wait, it's Ida"
@@ -113,6 +112,19 @@ class Reader:
             told[topic] = without(told[topic], gone.get(topic, ()))
         struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
+
+    def _in_fragments(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Yield the age and the origin that users tell without a verb: *23 years old and from Rome*, *Ada here, 23, from Rome*."""
+        if found := re.match(r"\W*(\d{1,3}) (?:years?|yrs) old\b", self.tree.text):
+            yield "age", self.fitting("age", [found[1]])
+        if self.seen.statements or not re.search(r"\bhere\b", self.tree.text):
+            return
+        yield (
+            "age",
+            self.fitting("age", [word.text for word in self.tree.words if word.tag == "CD" and word.text.isdecimal()]),
+        )
+        places = (word for word in self.tree.words if word.dep == "pobj" and self.tree.head(word).low == "from")
+        yield "origin", self.fitting("origin", [word.text for word in places])
 
     def _is_refuted(self, said: nlp.Statement) -> bool:
         """Return whether the user contradicts the words of others: *they think I'm from Rome, but I'm not*, *but it's Bari*."""
@@ -133,7 +145,7 @@ class Reader:
         text, turn = self.tree.text, _TURN.search(self.tree.text)
         if not _NOT.search(_OPENING_NO.sub("", text)):
             return False
-        twice = turn and turn[1] and _NOT.search(text[: turn.start()])
+        twice = turn and turn[1] and _NOT.search(_OPENING_NO.sub("", text[: turn.start()]))
         if turn is None or twice or not said.negated or phrase is None:
             return said.negated
         return (phrase.text in text[turn.end() :]) == bool(turn[1])
@@ -179,6 +191,9 @@ class Reader:
         if said.hearsay or said.conditional or said.question or (said.plan and not self._is_habit(said)):
             return False
         thing = said.object.text
+        verb = self.verb(said)
+        if verb is not None and verb.dep == "xcomp" and self.tree.head(verb).low == "about":
+            return False  # "I was about to move"
         if any(phrase.preposition == "in" and phrase.head in WORDS["fiction"] for phrase in said.phrases):
             return False
         if self.denies_all or "not_meant" in self.seen.acts:
@@ -205,7 +220,9 @@ class Reader:
         elif subject.of("I") and (found := SAYS.get(f"my {subject.head} {predicate} {object.preposition}")):
             yield Link(found[0], object, found[1])
         elif topic := self.noun(subject):
-            if predicate in _CALLED and not object.preposition:
+            if f"{predicate} {object.preposition}" in ("answer to", "go by") and TOPICS[topic].kind == "people":
+                yield Link(topic, object)
+            elif predicate in _CALLED and not object.preposition:
                 sure = (
                     bool(object.names) or (subject.head == "name" and subject.owner) or TOPICS[topic].kind != "people"
                 )
@@ -237,7 +254,9 @@ class Reader:
             return relative  # "my dogs name"
         topic = NOUNS.get(" ".join(low.split()[-2:])) or NOUNS.get(phrase.head, "")
         best = re.search(r"\bfavou?rite .+", low)
-        return favourite(best[0]) if best and phrase.head in best[0] and topic != "hobby" else topic
+        if best and phrase.head[:3] in best[0] and topic != "hobby":
+            return favourite(re.sub(r"\w+$", phrase.head, best[0]) if best[0].endswith(f"{phrase.head}s") else best[0])
+        return topic
 
     def _has_owner(self, phrase: Phrase) -> bool:
         words = [word for word in self.tree.words if word.lemma == phrase.head and word.text in phrase.text]
@@ -252,17 +271,23 @@ class Reader:
                 return  # "the film that I like"
             said = replace(said, object=value)
             object = value
+        if trade := trade_in(self, said):
+            yield trade
+            return
+        if found := changed_in(self, said):
+            yield found
+            return
         has = self.has(said)
         if has and (topic := NOUNS.get(object.head, "")) and (said.negated or said.question):
             yield Link(topic, object if object.names else None)
         told = list(self._by_table(said, has=has))
-        hobby = self._pursuit(said) if all(link.topic == "liking" or not link.sure for link in told) else None
+        hobby = pursuit_in(self, said) if all(link.topic == "liking" or not link.sure for link in told) else None
         yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
 
     def _dislikes(self, said: nlp.Statement) -> bool:
         """Return whether the user dislikes something: *I hate rain*, *I can't stand rain*."""
         verbs = WORDS["enduring"] if said.negated else WORDS["dislikes"]
-        return said.subject.person == "I" and said.verb in verbs and bool(said.object.text)
+        return said.subject.person == "I" and predicate_of(said) in verbs and bool(said.object.text)
 
     def _equated(self, said: nlp.Statement, verb: Word) -> Phrase | None:
         """Return the value for which the antecedent of a relative clause stands: *the firm I work for is Aldi*."""
@@ -288,49 +313,17 @@ class Reader:
                 else [f"{predicate} {phrase.preposition}".strip()]
             )
             found = next(filter(None, map(SAYS.get, (*keys, before))), None)
+            if not found and phrase.preposition in ("for", "in", "with") and said.verb not in WORDS["passing"] | {"be"}:
+                found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
             if phrase.text and found:
                 topic = "childhood" if child and found[0] == "home" else found[0]
                 yield Link(topic, phrase, found[1])
-                if topic == "childhood" and self.words & {"born"} and not any(one.verb in ("bear", "born") and one.object != object for one in self.seen.statements):
+                if (
+                    topic == "childhood"
+                    and self.words & {"born"}
+                    and not any(one.verb in ("bear", "born") and one.object != object for one in self.seen.statements)
+                ):
                     yield Link("birthplace", phrase)  # "I was born and raised in Dresden"
-
-    def _pursuit(self, said: nlp.Statement) -> Link | None:
-        """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*, *I paint in my free time*."""
-        if said.verb == "spend" and said.object.head in WORDS["leisure"] and (verb := self.verb(said)):
-            gerunds = [word for word in self.tree.children(verb, "xcomp", "advcl", "ccomp") if word.tag == "VBG"]
-            written = [self.tree.phrase(gerund_phrase(self.tree, word)) for word in gerunds]
-            return Link("hobby", said.object, value=written[0]) if written else None
-        verbs, object = said.triple.predicate.removeprefix("not ").split(), said.object
-        verb = self.verb(said)
-        if verb is None or said.subject.text.lower() != "i" or not isinstance(said.triple.object, str):
-            return None
-        chained, direct = len(verbs) > 1, object.text and not object.preposition
-        free = object.head in ("time", "weekend", "fun")
-        written = self.span_of(verb.low, Phrase("") if free else object)
-        if verb.tag in ("VBN", "VBZ"):
-            written = re.sub(r"^\w+", verb.lemma, written)
-        if verbs[0] in WORDS["likes"]:
-            wanted = chained
-        elif verbs[0] in ("start", "begin", "take") and (written := gerund(said.triple.predicate.split()[-1] if chained and verbs[0] != "take" else object.text, self.seen)):
-            wanted = likeness(written, "activity") > 0 and (verbs[0] != "take" or verbs == ["take", "up"])
-        elif verbs == ["do"] and direct and said.holds and likeness(object.text, "activity") > 0.2:
-            wanted, written = True, object.text  # "I do judo"
-        elif verbs[0] in WORDS["pastimes"]:
-            wanted = verb.tag != "VBD" and (chained or object.text.endswith("ing") if verbs[0] == "go" else direct)
-        elif verb.tag == "VBG" and verb.dep == "conj":  # "I love climbing and baking bread"
-            wanted = any(other.verb in WORDS["likes"] and other.holds for other in self.seen.statements)
-        elif verbs[0] != "be" and _LEISURE.search(self.tree.text):
-            wanted = direct or free
-        else:
-            habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained
-            habit = (
-                habit
-                and not free
-                and not NOW & set(said.when.split())
-                and (direct or not (object.text or said.phrases))
-            )
-            wanted = habit and likeness(gerund(written, self.seen), "activity") > (0.2 if direct else 0.4)
-        return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
     def has(self, said: nlp.Statement) -> bool:
         """Return whether the user says that they have something: *I have*, *I've got*."""
@@ -346,7 +339,7 @@ class Reader:
         elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
             yield Link(found[0], object.owner)
         elif self._is_nationality(object):
-            yield Link("origin", object)
+            return  # the country is not named: "I'm Greek"
         elif object.preposition in ("at", "with") and object.head in TOPICS["university"].nouns:
             yield Link("university", object)
         elif object.preposition in ("at", "with") and (self.known.get("employer") or self.asked == "employer"):
@@ -368,6 +361,8 @@ class Reader:
             if not bare or self.asked == "occupation" or likeness(text, "work") > 0.3:  # "I'm noor"
                 yield Link("occupation", object, sure=self.asked == "occupation")
             yield Link(NAME, object, sure=False)
+            if " of " in text and object.owner is not None and likeness(text.partition(" of ")[0], "work") > 0.2:
+                yield Link("occupation", object, value=text.partition(" of ")[0])  # "I'm the head cook of a school"
             places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
             yield from (Link("employer", phrase, sure=False) for phrase in places)
 
@@ -408,7 +403,7 @@ class Reader:
             phrase = phrase.owner  # "by the name of Blackbeard"
         named = topic.kind == "people" or (topic.kind in ("place", "organisation") and phrase.head)
         raw = (phrase.names if named else ()) or (link.value or self.written(phrase),)  # "a small island, Naxos"
-        return self.fitting(link.topic, raw, sure=link.sure and not denied or link.topic == self.asked == NAME)
+        return self.fitting(link.topic, raw, sure=(link.sure and not denied) or link.topic == self.asked == NAME)
 
     def fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
         return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))

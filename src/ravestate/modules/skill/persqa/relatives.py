@@ -15,7 +15,27 @@ from .values import value_of
 if TYPE_CHECKING:
     from .reading import Reader
 
-_NAMING = frozenset(["'s", "'", "s", "name", "names", "is", "are", "called", "named", "by", "goes", "of", "the", ",", "who", "that", ":"])
+_NAMING = frozenset(
+    [
+        "'s",
+        "'",
+        "s",
+        "name",
+        "names",
+        "is",
+        "are",
+        "called",
+        "named",
+        "by",
+        "goes",
+        "of",
+        "the",
+        ",",
+        "who",
+        "that",
+        ":",
+    ]
+)
 """Words between a relative and their name: *my mother's name is Anna*."""
 _HERE = re.compile(
     r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
@@ -41,7 +61,7 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
         if open or (said.negated and said.verb == "call"):
             unsaid |= {said.verb, *said.object.text.split(), *(phrase.head for phrase in phrases)}
         for phrase in phrases if not open else ():
-            mine = phrase.of("I") or (reader.has(said) and not said.negated)
+            mine = (phrase.owner and phrase.owner.person == "I") or (reader.has(said) and not said.negated)
             if phrase.names and mine and not is_former(phrase.text) and (topic := reader.relative(phrase.head)):
                 whole.append((topic, reader.fitting(topic, phrase.names)))
     words = reader.tree.words

@@ -16,7 +16,8 @@ from ravestate.modules.meta.nlp.tree import SUBJECTS
 from .answers import spelled_out
 from .changes import ended_by, renamed_in
 from .kinds import likeness
-from .reading import NOW, Reader
+from .links import NOW
+from .reading import Reader
 from .relatives import is_former, named_in
 from .topics import NAME, NOUNS, TOPICS, WORDS
 from .values import value_of
@@ -114,7 +115,9 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         relatives = reader.known.get(reader.noun(said.subject), ()) if subject else ()
         if len(relatives) == 1 and not said.subject.names:
             subject = last = relatives[0]
-        with_user = any(one.subject.person == "I" and one.triple[1:] == said.triple[1:] for one in reader.seen.statements)
+        with_user = any(
+            one.subject.person == "I" and one.triple[1:] == said.triple[1:] for one in reader.seen.statements
+        )
         subject = "" if with_user and said.subject.person != "I" else subject  # "my wife and I live in Rome"
         one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
         heard.append(one)
@@ -187,10 +190,18 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
     if _DEICTIC.match(said.object.text) or is_former(said.subject.text) or (said.verb == "be" and not said.object.text):
         return False
-    if ended_by(reader, said, reader.known) or said.verb in WORDS["parting"] or any(renamed_in(said, reader.known)) or _is_momentary(reader, said):
+    if (
+        ended_by(reader, said, reader.known)
+        or said.verb in WORDS["parting"]
+        or any(renamed_in(said, reader.known))
+        or _is_momentary(reader, said)
+    ):
         return False
     if (
-        (said.verb in WORDS["passing"] and not (called or _gained(reader, said) or _noted(reader, said) or _is_there(said)))
+        (
+            said.verb in WORDS["passing"]
+            and not (called or _gained(reader, said) or _noted(reader, said) or _is_there(said))
+        )
         or " to " in said.triple.predicate
         or said.object.person != "other"
     ):
@@ -234,8 +245,14 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
     """Return whether a statement reports a past event: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
-    return not flags and verb is not None and said.verb not in WORDS["states"] | WORDS["pastimes"] and (
-        verb.tag == "VBD" or (verb.tag == "VBN" and any(aux.lemma == "have" for aux in reader.tree.children(verb, "aux")))
+    return (
+        not flags
+        and verb is not None
+        and said.verb not in WORDS["states"] | WORDS["pastimes"]
+        and (
+            verb.tag == "VBD"
+            or (verb.tag == "VBN" and any(aux.lemma == "have" for aux in reader.tree.children(verb, "aux")))
+        )
     )
 
 
