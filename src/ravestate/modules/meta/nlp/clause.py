@@ -158,8 +158,7 @@ class Clause:
             return None
         if head is not None and self.verb.dep == "conj" and first.low.endswith(("ed", "en")):  # as in "born and raised"
             return head.passive
-        alone = head is None or self.verb.dep == "advcl"
-        return _BE if first.low in ("born", "raised") and alone else None  # as in "born in Rome"
+        return _BE if first.low in ("born", "raised") and (head is None or self.verb.dep == "advcl") else None
 
     @property
     def requests(self) -> bool:
