@@ -133,4 +133,6 @@ def _prompt() -> float:
 
 
 if __name__ == "__main__":
+    # The environment for development has PyTorch, which spaCy would load. The environment of an agent has not.
+    sys.modules["torch"] = None  # type: ignore[assignment]
     serve(decide)

@@ -1,4 +1,7 @@
-"""The floors of language understanding on the blind sets: a little below the last measurement. They only rise."""
+"""The floors of language understanding on the blind sets: a little below the last measurement.
+
+They only rise, unless a new set replaces an old one.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +13,15 @@ from quality import blind
 from quality.measure import Result
 
 FLOORS = {
-    ("triples, clean", "exact"): 0.91,
-    ("triples, typed", "exact"): 0.88,
+    ("triples, clean", "exact"): 0.97,
+    ("triples, typed", "exact"): 0.95,
     ("yes and no", "right"): 0.86,
-    ("questions, clean", "right"): 0.95,
+    ("questions, clean", "right"): 0.88,
     ("questions, typed", "right"): 0.90,
-    ("about the agent", "F1"): 0.89,
+    ("about the agent", "F1"): 0.93,
     ("out of scope", "right"): 0.99,
-    ("facts, tricky", "nothing wrong"): 0.90,
-    ("feelings", "right"): 0.91,
+    ("facts, tricky", "nothing wrong"): 0.93,
+    ("feelings", "right"): 0.92,
     ("followups", "right"): 0.53,
     ("small talk", "taken up"): 0.77,
 }
