@@ -115,6 +115,25 @@ def test_it_lacked_a_signal_that_its_cause_did_not_raise(stage: Stage) -> None:
     assert raiser.words == "demo:classify finished without raising it, at 0.000 s"
 
 
+def test_it_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> None:
+    @stage.module.rule(when=stage.input.changed & stage.touch.max_age(60), writes=stage.output)
+    async def both(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "both"
+
+    @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=10.0)
+    async def one(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "one"
+
+    with stage.run() as sim:
+        sim.emit(stage.touch)
+        sim.advance(0.1)
+        sim.put(stage.input, "hello")
+        sim.advance(4)
+        found = ask(sim, "both", "demo:touch")
+    assert found.verdict == "lacked"
+    assert "it has demo:touch and still lacks demo:input:changed" in str(found)
+
+
 def test_it_resigned(stage: Stage) -> None:
     conversation(stage, is_question=True, resigns=True)
     with stage.run() as sim:

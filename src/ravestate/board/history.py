@@ -23,9 +23,9 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the signals that were without a spike after the latest take, or before the latest loss. `complete` is the
-    time at which the attempt took its last missing spike (seconds), or None before. `started` is None until the run
-    starts. `settled` is None until the run ends.
+    `lacks` has the signals that are without a spike. Once the attempt has given up its last spike, `lacks` has the signals
+    that were without a spike before. `complete` is the time at which the attempt took its last missing spike (seconds);
+    None while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
     """
 
     id: int
@@ -40,6 +40,7 @@ class Attempt:
     started: t.Started | None = None
     settled: t.Settled | None = None
     _missing: tuple[str, ...] = ()
+    _before: tuple[str, ...] = ()
     _holds: set[int] = field(default_factory=set[int])
 
     @property
@@ -53,6 +54,11 @@ class Attempt:
         if self.settled is not None:
             return self.settled.time
         return self.gave_up[-1].time if self.over and self.gave_up else None
+
+    @property
+    def kept(self) -> Iterable[str]:
+        """The signals whose spikes the attempt holds."""
+        return dict.fromkeys(held.signal for held in self.held if held.spike in self._holds)
 
     @property
     def spikes(self) -> Iterable[int]:
@@ -70,14 +76,17 @@ class Attempt:
     def lose(self, record: t.GaveUp) -> None:
         """Note a spike that the activation gave up.
 
-        If the activation gives up several spikes in one instant, `lacks` keeps the signals from before the first loss.
+        If the activation gives up all its spikes in one instant, `lacks` has the signals from before the first loss.
         """
         if not self.gave_up or self.gave_up[-1].time != record.time:
-            self.lacks = self._missing
+            self._before = self._missing
             self.gave_up.clear()
         self._missing = (*self._missing, record.signal)
         self.gave_up.append(record)
         self._holds.discard(record.spike)
+        self.lacks = self._missing if self._holds else self._before
+        if self._holds:
+            self.complete = None
 
 
 class History:

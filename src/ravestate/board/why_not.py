@@ -180,8 +180,7 @@ class _Inquiry:
     def _pending(self, rule: RuleView, clause: ClauseView, attempt: Attempt, ripe: float | None) -> Reached:
         """Return the furthest step of an attempt that still holds spikes but does not run."""
         if attempt.lacks or attempt.complete is None:
-            held = join(dict.fromkeys(held.signal for held in attempt.held))
-            return Verdict.LACKED, f"it has {held} and still lacks {join(attempt.lacks)}", None
+            return Verdict.LACKED, f"it has {join(attempt.kept)} and still lacks {join(attempt.lacks)}", None
         if ripe is not None and ripe > self.history.last:
             return Verdict.YOUNG, _young(clause, ripe), None
         wait = attempt.waits[-1] if attempt.waits else None
