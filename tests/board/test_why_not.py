@@ -120,7 +120,7 @@ def test_it_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> 
     async def both(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "both"
 
-    @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=10.0)
+    @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=100.0)
     async def one(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "one"
 
