@@ -124,6 +124,9 @@ def test_it_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> 
     async def one(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "one"
 
+    @stage.module.rule(when=stage.touch)
+    async def feel(ctx: rs.RuleContext) -> None: ...
+
     with stage.run() as sim:
         sim.emit(stage.touch)
         sim.advance(0.1)
