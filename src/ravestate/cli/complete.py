@@ -20,7 +20,7 @@ COMPLETE = (
 """The names of the modules of the complete text agent, without a platform."""
 
 ON_PAGE = ("voiceio", "visionio", "charades")
-"""The names of the modules that the complete agent has in addition on a page, where they are set up: speech and eyes."""
+"""The names of the modules that the complete agent also has on a web page, if speech and eyes are set up."""
 
 PACKAGES = {
     "nlp": ("spacy",),

@@ -40,8 +40,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
     """Add the options that choose a memory.
 
-    With `later`, the options come after an action. If an option is left out there, its value from before the action
-    stays.
+    With `later`, the options come after an action. An option that is left out after the action keeps
+    its value from before the action.
     """
     default = argparse.SUPPRESS if later else None
     parser.add_argument(

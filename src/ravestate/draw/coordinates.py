@@ -1,7 +1,7 @@
 """Coordinate assignment, which makes lines short first and then straight.
 
 Each layer in turn moves as near as possible to its neighbours. Within one layer, a weighted isotonic regression (pool
-adjacent violators) finds the best coordinates with the minimum distances. Forward and backward sweeps repeat this for
+adjacent violators) finds the best coordinates that keep the minimum gaps. Forward and backward sweeps repeat this for
 all layers. In the end, `Straightener` removes small steps.
 """
 

@@ -8,7 +8,8 @@ that a rule of the group may cause.
 If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience ends,
 the activation stops waiting for it. A rival gets its patience once in each group (L16).
 
-A rival may have no activation yet: its *stand-by* holds no spike. A *half* holds spikes without one (``halves.py``).
+A clause without an activation may be a rival, too: its *stand-by*, which holds no spike. A *half* (``halves.py``) holds
+spikes for clauses that have no activation yet. With a tracer there are none, and `_judge_rival` judges all rivals.
 """
 
 from __future__ import annotations
@@ -128,7 +129,7 @@ class Consent:
         for member in (*living, None):
             if member is None:
                 if apart:
-                    break  # such an activation takes the signal before the stand-by does, so the stand-by is no rival
+                    break  # this activation takes the spike first, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_still(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)
@@ -174,7 +175,7 @@ class Consent:
             horizon.judge(rival, None, group)[0] != NO  # the clause's stand-by is a rival as well
             or horizon.open_bits(rival, group)  # activations in other groups may take a spike of this group
             or (strength == FIRM and rival.rule.index in self.state.active)  # an older activation may cover the rival
-            or (strength != NO and self._is_held_beside(half, spike))  # it may cover another clause of the half
+            or (strength != NO and self._is_held_beside(half, spike))  # an activation may cover another clause
             or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
             self.halves.unfold(spike, half)  # the horizon stays valid: no derivation rests on the new activations
@@ -186,7 +187,7 @@ class Consent:
         return False
 
     def _is_held_beside(self, half: Half, spike: Spike) -> bool:
-        """Return whether a half holds a spike for a clause that also has an activation with this spike."""
+        """Return whether a clause has both: a spike in a half, and an activation that already holds this spike."""
         for holder in spike.holders:
             rank = half.rank.get(holder.clause.index)
             if rank is not None and self.state.keeps(half.best[rank], spike):
@@ -197,7 +198,7 @@ class Consent:
         """Put the clauses of a half that are ahead of `clause` under pressure. Return whether a clause was eliminated.
 
         For each spike and half, `State.pressed` has pairs: how many of the half's best clauses have a patience, and when
-        it ends. A later pair counts the clauses of earlier pairs again, but its time applies only to the others.
+        it ends. Each count includes the clauses of earlier pairs. A time applies to the clauses that its pair adds.
 
         If a clause still has patience, add it to `refusal`, which `ask` returns.
         """
@@ -225,7 +226,7 @@ class Consent:
         return eliminated
 
     def _best(self, half: Half, spike: Spike, clause: Clause) -> Need | None:
-        """Return the best rival of `clause` for which a half holds a spike (its need); None if there is no rival."""
+        """Return the need of the best rival of `clause` for which a half holds a spike; None without a rival."""
         for need in half.best:
             if need.clause is not clause and self.state.keeps(need, spike):
                 return need if self.state.standing.is_ahead(need.clause, clause) else None
@@ -235,7 +236,7 @@ class Consent:
         """Return whether a rival's utility may lie between those of the clauses of a conflict set.
 
         The clauses of a conflict set compete for each spike (``conflict_sets.py``). Only the best one has an activation;
-        the others are its alternatives. Such a rival waits for the best clause, but an alternative waits for the rival.
+        the others are its alternatives. A rival in between waits for the best clause, and an alternative waits for the rival.
         """
         state = self.state
         clauses = state.alternatives[best][0]
@@ -267,7 +268,7 @@ class Consent:
     def press(
         self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True
     ) -> float:
-        """Return the time at which a rival's patience in a group ends (seconds), or minus infinity without pressure.
+        """Start a rival's patience in a group, unless it has begun; return its end (seconds), or minus infinity without one.
 
         Args:
             rival: The rival, which may never become ready.
@@ -305,7 +306,7 @@ class Consent:
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # else the rule's clauses in this set would lose the spike too
+                    self.halves.sets.unfold(other)  # a refused spike no longer reaches the alternatives of this rule
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 

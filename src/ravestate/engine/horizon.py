@@ -66,7 +66,8 @@ class Horizon:
         roots: The live activations on which the latest firm derivation rests.
         visited: The groups on whose state the results depend.
         hopes: A kind (``refusal.py``) and the number of a rule or signal → a count. If this rule or signal changes, the
-            results may change. For `OUTSIDE`, a rule's change matters if it has at most so many other activations.
+            results may change. For `OUTSIDE`, a change of an activation matters only if its rule has at most this count of
+            other activations.
         recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
     """
 
@@ -134,7 +135,7 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return the needs of a clause (as bits) for which a group may give spikes to activations of other groups."""
+        """Return, as bits, the needs of a clause that activations without a spike of a group may meet from this group."""
         if clause.apart:
             return 0  # an activation of this clause takes all its spikes from one group
         reach = self._rules(group).keys()
@@ -183,7 +184,7 @@ class Horizon:
                     self.visited[home] = None
             if not missing:
                 self.roots.append(activation)  # the activation is ready, or will be when its spikes are old enough
-        # For each need, or set of kin needs (their spikes must share a group): its strength in this group, and in any.
+        # `here` has the strength of each need, or set of kin needs, in this group; `best` has it in any group.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -362,7 +363,7 @@ class Horizon:
         return False
 
     def _apart(self, rule: int, group: Group, *, near: bool) -> int:
-        """Count the activations of a rule that are no help from other groups: still ones, and with `near`, those here."""
+        """Count a rule's activations that cannot help from another group: still ones and, with `near`, the group's members."""
         if self._still is None:
             self._still = {}
             for activation in self.still:

@@ -129,7 +129,7 @@ class State(Memory):
         """The counterparts of benches whose heads may have gone."""
         self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds it → pairs: how many of the half's best clauses have a patience, and when it ends
-        (seconds; L16). A later pair counts the clauses of earlier pairs again."""
+        (seconds; L16). Each count includes the clauses of earlier pairs."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes while a predicate on a slot is false."""
         self.free = Free()

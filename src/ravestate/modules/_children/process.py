@@ -1,4 +1,4 @@
-"""Models in separate processes, which all contexts of this process share.
+"""Models in processes of their own, which all contexts of the main process share.
 
 A model that hangs or crashes ends only its own process, and the next request gets a fresh process. In a thread, a model
 would also hold Python's lock while it loads, and stop every event loop.
@@ -39,14 +39,14 @@ def _no_mend(_: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """A program for a process, and the names for messages.
+    """A program that runs in a process, and the names that error messages use for it.
 
     Attributes:
         program: A file, or a folder with ``__init__.py``. Its function ``load`` takes the configuration, and returns the
             function that handles a request. The program imports nothing from Ravestate.
         owner: The module that uses the program.
         name: The backend's name in messages.
-        mend: A function that takes the reason of a failed load, and returns the remedy for the end of the message.
+        mend: A function that takes the reason of a failed load, and returns advice. The error message ends with the advice.
     """
 
     program: Path
@@ -108,7 +108,7 @@ class ModelProcess:
 
         Args:
             header, data: The request.
-            seconds: The longest time that the answer may take, once the model has begun.
+            seconds: The longest time from sending the request to its answer. Loading does not count.
             unwanted: An event that another thread sets if nobody needs the answer any more. If the request still waits
                 for earlier requests, it is then dropped.
 
