@@ -78,7 +78,7 @@ def persqa_facts(sentence: str) -> str:
 
 @cache
 def _load() -> None:
-    for name in (*MATCHERS, "answers"):
+    for name in MATCHERS:
         bundled_matcher(name).load()
     kinds.load()
 
