@@ -111,9 +111,9 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """The folder, size and date of the model; together they identify it."""
+        """The folder, size and date of the model, and how it multiplies; together they identify its vectors."""
         folder = self._loaded().folder
-        return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns]
+        return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns, "without overflow"]
 
     def _loaded(self) -> SentenceModel:
         if self._model is None:

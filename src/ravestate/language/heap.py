@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import os
 
-_MMAP_THRESHOLD, _ARENA_MAX = -3, -8
-"""The numbers of the options in glibc's malloc.h."""
-
-LARGE = 128 * 1024
-"""The size in bytes from which a block of memory goes back to the system as soon as it is free."""
+_ARENA_MAX = -8
+"""The number of the option M_ARENA_MAX in glibc's malloc.h."""
 
 
 def keep_few_heaps() -> None:
     """Let the threads of the process share two heaps; if the C library is not glibc, do nothing.
 
     By default glibc makes up to eight heaps per core. Each keeps tens of megabytes that a model has used in its thread.
+    The environment variable ``MALLOC_ARENA_MAX`` comes first.
     """
-    with contextlib.suppress(AttributeError, OSError, TypeError):
-        libc = ctypes.CDLL(None)
-        libc.mallopt(_ARENA_MAX, 2)
-        libc.mallopt(_MMAP_THRESHOLD, LARGE)
+    if "MALLOC_ARENA_MAX" not in os.environ:
+        with contextlib.suppress(AttributeError, OSError, TypeError):
+            ctypes.CDLL(None).mallopt(_ARENA_MAX, 2)
 
 
 def give_back() -> None:

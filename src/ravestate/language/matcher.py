@@ -41,7 +41,7 @@ RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
 """`confusions` lists an example if the other examples put it into a wrong class by at least this margin."""
-SAMPLED = 500
+SAMPLED = 1500
 """The maximum number of examples that are scored without themselves, to learn the curve from margin to confidence."""
 NONE = ""
 REMEMBERED = 256

@@ -102,13 +102,6 @@ _GOVERNING = _AUX | word_set(
 """Words before a clause that belongs to the same sentence: *know* in *I know who you are*."""
 _SUPPOSING = word_set("think hope guess bet believe glad")
 """Words after which *ur* with a last word says something of the agent: *I think ur funny*."""
-_OWNED = word_set("my your his her our their")
-_BEFORE_OWNER = word_set("and but because so when if think that is are it's he's she's this that's")
-_NAMES_OF_OWNED = word_set(
-    "name birthday house car job brother sister mother mum mom dad father friend boyfriend girlfriend son daughter husband wife "
-    "dog cat age phone room place boss teacher school best favourite favorite"
-)
-"""Words before which a plural is an owner without its apostrophe: *my dogs name*."""
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
 _INTRODUCING = ("name is", "name's", "this is")
@@ -237,8 +230,6 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
             piece.text, piece.end = _cased(WRITTEN[phrase], piece), pieces[index + size - 1].end
         elif piece.code:
             pass
-        elif _owns(piece, following, mended):
-            piece.text = f"{piece.text[:-1]}'s"
         elif piece.low in known:
             piece.text = piece.text if piece.text != piece.low else known[piece.low]
         elif written := _written(piece, following, before.rpartition(" ")[2], lexicon):
@@ -248,23 +239,6 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
         mended.append(piece)
         index += size
     return mended
-
-
-def _owns(piece: _Piece, following: Sequence[_Piece], mended: Sequence[_Piece]) -> bool:
-    """Return whether an apostrophe is missing before the *s* of a word: *my moms a nurse*, *my dogs name*."""
-    if (
-        not mended
-        or not following
-        or "'" in piece.text
-        or mended[-1].low not in _OWNED
-        or not following[0].gap.isspace()
-    ):
-        return False
-    after, stem = following[0].low, piece.low[:-1]
-    if not piece.low.endswith("s") or stem.endswith(("s", "parent", "i", "u")) or len(stem) < 3:
-        return False
-    begins = mended[-1].first or (len(mended) > 1 and mended[-2].low in _BEFORE_OWNER)
-    return after in _NAMES_OF_OWNED or (begins and after in ("a", "an", "the"))
 
 
 def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:

@@ -12,8 +12,8 @@ from typing import Any
 
 from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
-from ravestate.language.lexicon import load_lexicon
 from ravestate.language.heap import keep_few_heaps
+from ravestate.language.lexicon import load_lexicon
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
 
