@@ -86,7 +86,7 @@ setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## make
 
 # Three processes on two cores: tests with a browser or a server often wait.
 .PHONY: test
-test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (about 10 minutes)
+test: setup $(APART) $(DONE)/browser $(DONE)/frontend ## set up and run the whole test suite (10 to 20 minutes)
 	@$(BIN)/python -m pytest -n 3 --max-worker-restart 0 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 .PHONY: check
