@@ -40,7 +40,7 @@ class Model:
 
     def ready(self, activation: Activation, spike: int) -> None:
         signal = self.policy.signal_of["m:signal"]
-        activation.spikes[0] = Spike(spike, signal, None, 0.0, Group(spike), (), -1, 0)
+        activation.put(activation.clause.needs[0], Spike(spike, signal, None, 0.0, Group(spike), (), -1, 0))
         activation.step(COMPLETE)
         self.waiting[activation] = spike
         self.free.new.append(activation)

@@ -77,7 +77,7 @@ class Exclusion:
         for one in clause.needs:  # coherence (L12)
             for other in clause.needs:
                 if one.kin & other.bit and not one.detached and not other.detached:
-                    a, b = activation.spikes[one.index], activation.spikes[other.index]
+                    a, b = activation.spike(one), activation.spike(other)
                     assert a.group.root() is b.group.root(), f"{name} joins {a} and {b} of different groups"
         key = (clause.index, tuple(spike.id for _, spike in held))
         # Detached spikes serve any number of runs (L19), so a clause without other spikes may run twice on the same ones.
@@ -168,7 +168,7 @@ def consistent(engine: Any) -> None:
         state = activation.state
         assert state != State.ENDED, f"{activation} has ended, and is kept"
         for need in clause.needs:
-            spike = activation.spikes[need.index]
+            spike = activation.spike(need)
             assert (spike is None) == bool(activation.missing & need.bit), f"{activation} misses {need}?"
             lacks = activation in engine.state.lacking.get(need, ())
             assert lacks == (spike is None), f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ravestate.engine.loops import Lineage
     from ravestate.engine.refusal import Refusal
     from ravestate.engine.spike import Spike
-    from ravestate.policy.model import Clause
+    from ravestate.policy.model import Clause, Need
 
 NEVER: Final = float("inf")
 """A time that never comes."""
@@ -100,7 +100,6 @@ class Activation:
             tracer, another activation with the same spikes may run.
         number: The number of its run in events and effects; 0 until it runs. Runs are numbered in the order of their
             start, so a tracer cannot change the number (L24, L25).
-        spikes: For each need of the clause, the spike that meets it; None if there is none yet.
         state: The `State`, as a whole number.
         missing: The bits of the clause's needs without a spike.
         ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
@@ -117,6 +116,8 @@ class Activation:
     """
 
     __slots__ = (
+        "_only",
+        "_several",
         "clause",
         "deadline",
         "groups",
@@ -129,7 +130,6 @@ class Activation:
         "pressed",
         "refusal",
         "ripens",
-        "spikes",
         "stands_on",
         "state",
         "told",
@@ -141,7 +141,9 @@ class Activation:
         self.number = 0
         self.clause = clause
         self.state: int = GATHERING
-        self.spikes: list[Spike | None] = [None] * len(clause.needs)
+        # Most clauses have one need, and thousands of activations may wait: a sequence in each would cost the collector.
+        self._only: Spike | None = None
+        self._several: tuple[Spike | None, ...] = (None,) * len(clause.needs) if len(clause.needs) > 1 else ()
         self.missing = clause.all_bits
         self.ripens = NEVER
         self.newest = 0
@@ -154,6 +156,24 @@ class Activation:
         self.deadline = NEVER
         self.told = ""
         self.lineage: Lineage | None = None
+
+    @property
+    def spikes(self) -> tuple[Spike | None, ...]:
+        """For each need of the clause, the spike that meets it; None if there is none yet."""
+        return self._several or (self._only,)
+
+    def spike(self, need: Need) -> Spike | None:
+        """Return the spike that meets one of the clause's needs; None if there is none yet."""
+        return self._several[need.index] if self._several else self._only
+
+    def put(self, need: Need, spike: Spike | None) -> None:
+        """Make a spike, or None, the one that meets one of the clause's needs."""
+        if self._several:
+            spikes = list(self._several)
+            spikes[need.index] = spike
+            self._several = tuple(spikes)
+        else:
+            self._only = spike
 
     def step(self, step: int) -> None:
         """Change the state by one `Step` of the table.
@@ -171,17 +191,17 @@ class Activation:
         """Return a spike that the activation holds for one of the needs in `bits`, or None."""
         for need in self.clause.needs:
             if need.bit & bits and not need.bit & self.missing:
-                return self.spikes[need.index]
+                return self.spike(need)
         return None
 
     def firm_groups(self) -> list[Group]:
         """Return the causal groups to which its non-detached spikes belong now, each group once."""
-        if len(self.spikes) == 1 and self.clause.firm_bits:
-            only = self.spikes[0]
+        if not self._several and self.clause.firm_bits:
+            only = self._only
             return [] if only is None else [only.group if only.group.into is None else only.group.root()]
         found: list[Group] = []
         for need in self.clause.needs:
-            spike = self.spikes[need.index]
+            spike = self.spike(need)
             if spike is not None and not need.detached:
                 group = spike.group if spike.group.into is None else spike.group.root()
                 if group not in found:
@@ -191,7 +211,7 @@ class Activation:
     def firm_spikes(self) -> tuple[Spike, ...]:
         """Return its non-detached spikes: the parents of the spikes that its run raises."""
         if self.clause.firm_bits == self.clause.all_bits and not self.missing:
-            return tuple(self.spikes)  # type: ignore[arg-type]  # nothing is missing
+            return self.spikes  # type: ignore[return-value]  # nothing is missing
         return tuple(
             spike
             for spike, need in zip(self.spikes, self.clause.needs, strict=True)

@@ -47,7 +47,7 @@ class ConflictSets:
     def substitute(self, activation: Activation) -> None:
         """Put the next alternative in the place of an activation that has resigned or failed."""
         queued = self.state.alternatives.pop(activation, None)
-        spike = activation.spikes[0]
+        spike = activation.spike(activation.clause.needs[0])
         if queued is not None and spike is not None and not spike.group.root().finished(activation.clause.rule.slots):
             clauses, made, base = queued
             refused = spike.refused or ()
@@ -59,7 +59,7 @@ class ConflictSets:
     def unfold(self, activation: Activation) -> None:
         """Create the activations of all alternatives in one activation's queue."""
         clauses, made, base = self.state.alternatives.pop(activation)
-        spike = activation.spikes[0]
+        spike = activation.spike(activation.clause.needs[0])
         assert spike is not None  # it is ready, or runs
         if spike.group.root().finished(activation.clause.rule.slots):
             return  # its group has merged with one in which the slots are consumed

@@ -192,19 +192,20 @@ def stand_ins(state: State) -> dict[int, list[Activation]]:
             counterpart = need.clause.needs[1 - need.index]
             for spike in bench.spikes:
                 other = state.stand_in(need, spike)
-                other.spikes[counterpart.index], other.missing = partner, 0
-                other.state, other.refusal = WAITING, Refusal()
+                other.put(counterpart, partner)
+                other.missing, other.state, other.refusal = 0, WAITING, Refusal()
                 other.refusal.name(need.clause)
                 other.refusal.blockers.update(dict.fromkeys(h for h in partner.holders if h.state >= RUNNING))
                 found.setdefault(need.clause.rule.index, []).append(other)
     for best, (clauses, made, base) in state.alternatives.items():
-        spike = best.spikes[0]
+        spike = best.spike(best.clause.needs[0])
         for place in range(made, len(clauses)):
             clause = clauses[place]
             if spike is None or (spike.refused is not None and clause.rule.index in spike.refused):
                 continue
             other = Activation(base + place + 1, clause)
-            other.spikes[0], other.missing, other.state = spike, 0, READY
+            other.put(clause.needs[0], spike)
+            other.missing, other.state = 0, READY
             if best.state >= WAITING:
                 other.state, other.refusal = WAITING, Refusal()
                 other.refusal.name(best.clause)

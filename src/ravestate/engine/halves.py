@@ -153,7 +153,7 @@ class Halves:
             later[need] = spike
             other = clause.needs[1 - need.index]
             activation = own[spike]
-            if other in later and activation.spikes[other.index] is not later[other]:
+            if other in later and activation.spike(other) is not later[other]:
                 if activation.missing:
                     holdings.acquire(activation, other, later[other])
                     holdings.update(activation)

@@ -65,13 +65,13 @@ class Holdings:
     def acquire(self, activation: Activation, need: Need, spike: Spike) -> None:
         """Give an activation a spike that meets one of the activation's needs."""
         state = self.state
-        activation.spikes[need.index] = spike
+        activation.put(need, spike)
         activation.missing &= ~need.bit
         spike.hold(activation)
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
             group.join(activation)
-        if len(activation.spikes) > 1:
+        if len(activation.clause.needs) > 1:
             lacking = state.lacking.get(need)
             if lacking is not None:
                 lacking.pop(activation, None)
@@ -143,7 +143,7 @@ class Holdings:
             ripens = -NEVER
             for need in clause.needs:
                 if need.min_age:
-                    spike = activation.spikes[need.index]
+                    spike = activation.spike(need)
                     assert spike is not None  # nothing is missing
                     ripens = max(ripens, spike.born + need.min_age)
             if ripens <= state.now:
@@ -159,7 +159,7 @@ class Holdings:
                 activation.ripens = ripens
                 state.deadlines.add(ripens, RIPEN, activation)
         for need in clause.needs:
-            spike = activation.spikes[need.index]
+            spike = activation.spike(need)
             if spike is not None and need.max_age != NEVER:
                 self.entries.let_expire(spike, spike.born + need.max_age)
 
@@ -255,7 +255,7 @@ class Holdings:
         """Make an activation give up its non-detached spikes of a group."""
         needs: list[Need] = []
         for need in activation.clause.needs:
-            spike = activation.spikes[need.index]
+            spike = activation.spike(need)
             if spike is not None and not need.detached and spike.group.root() is group:
                 needs.append(need)
         self.lose(activation, needs, reason, by)
@@ -319,14 +319,14 @@ class Holdings:
         The spike's causal group becomes *dirty*: the activations that wait in it ask again (`Waits.wake`).
         """
         state = self.state
-        spike = activation.spikes[need.index]
+        spike = activation.spike(need)
         if spike is None:
             return
-        activation.spikes[need.index] = None
+        activation.put(need, None)
         activation.missing |= need.bit
         if not need.detached:
             group = spike.group if spike.group.into is None else spike.group.root()
-            if len(activation.spikes) == 1 or group not in activation.firm_groups():
+            if len(activation.clause.needs) == 1 or group not in activation.firm_groups():
                 group.part(activation)
             if group.interested:
                 state.dirty[group] = None
@@ -389,4 +389,4 @@ class Holdings:
 
 def _of_spike(activation: Activation, spike: Spike) -> list[Need]:
     """Return the needs that an activation meets with a spike."""
-    return [need for need in activation.clause.needs if activation.spikes[need.index] is spike]
+    return [need for need in activation.clause.needs if activation.spike(need) is spike]

@@ -213,7 +213,7 @@ class Matching:
         """Give a new spike to the activations that look at its signal: these hold the newest spike (L19)."""
         for activation in list(self.state.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
-                held = activation.spikes[need.index]
+                held = activation.spike(need)
                 if held is not None and held.id < spike.id:
                     self.holdings.swap(activation, need, spike)
 

@@ -285,7 +285,7 @@ class State(Memory):
     def stand_in(self, need: Need, spike: Spike) -> Activation:
         """Return a copy of the activation that the need's half would make of a spike. No table has the copy."""
         activation = Activation(self.entry_number(need, spike), need.clause)
-        activation.spikes[need.index] = spike
+        activation.put(need, spike)
         activation.missing &= ~need.bit
         until = self.entry_patience(need, spike)
         if until is not None:
