@@ -199,7 +199,7 @@ def consistent(engine: Any) -> None:
             assert known.issuperset(spike.holders), f"{spike} is held by {list(spike.holders)}"
             signal = spike.signal
             assert (
-                spike.holders or spike.entries or (signal.retain >= 0 and spike.born + signal.retain >= engine.now)
+                spike.holders or spike.in_halves or (signal.retain >= 0 and spike.born + signal.retain >= engine.now)
             ), f"{spike} is kept without a holder"
         assert len(spikes) <= engine.policy.signal_plans[index].limit
     entries = sum(len(spikes) * half.busy for half, spikes in engine.state.halves.items())
@@ -268,7 +268,7 @@ def empty(play: Play) -> None:
         "pools",
         "benches",
         "headless",
-        "pressed",
+        "patience_ends",
         "asking",
         "dirty",
         "hoping",

@@ -105,7 +105,7 @@ class Activation:
         ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
         newest: If it needs no consent: the number of its newest spike, when it became ready.
         place: While it is ready and needs no consent: its place in the queue (``free.py``), if it has one of its own.
-        pressed: Group in which others wait for it, while it may never be ready → when its patience ends (seconds; L16).
+        patience_ends: Group in which others wait for it, while it may never be ready → when its patience ends (seconds; L16).
         refusal: While it waits: the reasons (``refusal.py``).
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
         groups: The groups in which the run took its slots when it began. They may have merged since.
@@ -127,7 +127,7 @@ class Activation:
         "newest",
         "number",
         "place",
-        "pressed",
+        "patience_ends",
         "refusal",
         "ripens",
         "stands_on",
@@ -148,7 +148,7 @@ class Activation:
         self.ripens = NEVER
         self.newest = 0
         self.place: Place | None = None
-        self.pressed: dict[Group, float] = NOTHING  # replaced on first use
+        self.patience_ends: dict[Group, float] = NOTHING  # replaced on first use
         self.refusal: Refusal | None = None
         self.stands_on: tuple[Spike, ...] = ()
         self.groups: tuple[Group, ...] = ()

@@ -18,13 +18,13 @@ from typing import Any, Final
 
 from ravestate.engine.activation import READY, WAITING, Activation
 from ravestate.engine.consent import Consent
-from ravestate.engine.idle import Idle
 from ravestate.engine.line import Line
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
 from ravestate.engine.stalemate import loose, stalemate
 from ravestate.engine.state import State
+from ravestate.engine.stuck import Stuck
 
 BATCH: Final = 100
 """The maximum number of free activations that start in one go. Then the caller reports the events of these runs."""
@@ -218,7 +218,7 @@ class Agenda:
         if stuck is None:
             if not found:
                 return
-            stuck = state.stuck = Idle()
+            stuck = state.stuck = Stuck()
         for activation in found:
             if activation not in stuck:
                 stuck.add(activation)

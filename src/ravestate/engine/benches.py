@@ -101,7 +101,7 @@ class Benches:
         if other is None:
             bench.partner = partner
             found[bench.half] = bench
-            partner.entries += 1
+            partner.in_halves += 1
             partner.group.root().enter(partner)
         else:
             bench = self._join(other, bench)

@@ -24,13 +24,13 @@ from ravestate.engine.deadlines import PATIENCE
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
-from ravestate.engine.horizon import FIRM, NO, Horizon
-from ravestate.engine.idle import Idle
+from ravestate.engine.horizon import NO, SURE, Horizon
 from ravestate.engine.leaders import Leaders
 from ravestate.engine.refusal import CONSENT, Refusal
 from ravestate.engine.roster import causers, writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
+from ravestate.engine.stuck import Stuck
 from ravestate.policy.model import Clause, Half, Need, RulePlan
 
 
@@ -45,19 +45,19 @@ class Consent:
         self.halves = halves
         self.leaders = Leaders(state)
 
-    def ask(self, activation: Activation, idle: Sequence[Idle] = (), *, commit: bool = True) -> Refusal:
+    def ask(self, activation: Activation, stuck: Sequence[Stuck] = (), *, commit: bool = True) -> Refusal:
         """Ask every causal group of a ready activation for consent. Return the refusal; an empty refusal is consent.
 
         Args:
             activation: The activation.
-            idle: Activations that count as doing nothing, because they wait for nothing but each other.
+            stuck: Activations that count as doing nothing, because they wait for nothing but each other.
             commit: Whether to change rivals: start their patience, and eliminate rivals whose patience has ended.
         """
         clause = activation.clause
         groups = activation.firm_groups()
         if clause.unrivalled and not _is_taken(groups, clause.rule):
             return CONSENT
-        asks = commit and not idle
+        asks = commit and not stuck
         if asks and self.leaders.found:
             following = self.leaders.refuse(activation)
             if following is not None:
@@ -77,24 +77,24 @@ class Consent:
                 if clause.rule.cooldown and not half.sole:
                     self.halves.unfold(spike, half)
                 elif (best := self._best(half, spike, clause)) is not None:
-                    horizon = horizon or self._horizon(activation, idle)
+                    horizon = horizon or self._horizon(activation, stuck)
                     if self._judge_half(refusal, horizon, best, spike, clause, commit=commit):
                         eliminated = True
             for rival, members in self._rivals(activation, group):
                 if clause.rule.cooldown or rival.rule.cooldown:
                     refusal.recheck = min(refusal.recheck, standing.crossing(clause, rival))
                 if standing.is_ahead(rival, clause):
-                    horizon = horizon or self._horizon(activation, idle)
+                    horizon = horizon or self._horizon(activation, stuck)
                     if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                         eliminated = True
                 elif rival.rule.cooldown and standing.overtakes(rival, clause):
                     soon.append((rival, members, group))
         for rival, members, group in soon if refusal.names else ():
-            horizon = horizon or self._horizon(activation, idle)
+            horizon = horizon or self._horizon(activation, stuck)
             if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                 eliminated = True
         if eliminated and refusal.names:
-            return self.ask(activation, idle)  # the verdict on an earlier rival may depend on the eliminated rival
+            return self.ask(activation, stuck)  # the verdict on an earlier rival may depend on the eliminated rival
         if asks and refusal.names and not refusal.taken:
             self.leaders.add(activation)
         if horizon is not None:
@@ -119,7 +119,7 @@ class Consent:
         If the rival may still become ready, add it to `refusal`, which `ask` returns.
         """
         eliminated = False
-        apart = False  # whether a viable activation of the rival holds no spike of the group, but waits for one
+        outside = False  # whether a viable activation of the rival holds no spike of the group, but waits for one
         sure: list[Activation] = []
         if self.state.halves and horizon.open_bits(rival, group):
             self.halves.unfold_clause(rival)
@@ -128,28 +128,28 @@ class Consent:
             living.sort(key=by_age)  # oldest first, because an older activation may cover younger ones (`_is_covered`)
         for member in (*living, None):
             if member is None:
-                if apart:
+                if outside:
                     break  # this activation takes the spike first, so the stand-by is no rival
-            elif member.state >= RUNNING or horizon.is_still(member) or _is_covered(member, sure):
+            elif member.state >= RUNNING or horizon.is_inert(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)
             if strength == NO:
                 continue
-            if strength == FIRM:
-                _note_firm(refusal, roots)
+            if strength == SURE:
+                _note_sure(refusal, roots)
                 if member is not None:
                     sure.append(member)
             elif (until := self.press(rival, member, group, activation, commit=commit)) > self.state.now:
                 if member is None:
                     refusal.recheck = min(refusal.recheck, until)
-                refusal.pressed = True
+                refusal.in_doubt = True
             else:
                 if commit and member is not None:
                     horizon.forget(member)
                     self.eliminate(member)
                     eliminated = True
                 continue
-            apart = apart or (member is not None and not group.has(member))
+            outside = outside or (member is not None and not group.has(member))
             refusal.name(rival)
         return eliminated
 
@@ -167,20 +167,20 @@ class Consent:
         assert half is not None
         bench = self.state.bench_of(half, spike)
         if bench is not None and bench.partner is not None:  # the rival is ready
-            _note_firm(refusal, tuple([one for one in bench.partner.holders if one.clause is rival]))
+            _note_sure(refusal, tuple([one for one in bench.partner.holders if one.clause is rival]))
             refusal.name(rival)
             return False
         strength, roots = horizon.judge(rival, self.state.stand_in(best, spike), group)
         if (
             horizon.judge(rival, None, group)[0] != NO  # the clause's stand-by is a rival as well
             or horizon.open_bits(rival, group)  # activations in other groups may take a spike of this group
-            or (strength == FIRM and rival.rule.index in self.state.active)  # an older activation may cover the rival
+            or (strength == SURE and rival.rule.index in self.state.active)  # an older activation may cover the rival
             or (strength != NO and self._is_held_beside(half, spike))  # an activation may cover another clause
-            or (strength not in (NO, FIRM) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
+            or (strength not in (NO, SURE) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
             self.halves.unfold(spike, half)  # the horizon stays valid: no derivation rests on the new activations
-        elif strength == FIRM:
-            _note_firm(refusal, roots)
+        elif strength == SURE:
+            _note_sure(refusal, roots)
             refusal.name(rival)
         elif strength != NO:
             return self._press_half(refusal, half, spike, clause, commit=commit)
@@ -197,19 +197,19 @@ class Consent:
     def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
         """Put the clauses of a half that are ahead of `clause` under pressure. Return whether a clause was eliminated.
 
-        For each spike and half, `State.pressed` has pairs: how many of the half's best clauses have a patience, and when
+        For each spike and half, `State.patience_ends` has pairs: how many of the half's best clauses have a patience, and when
         it ends. Each count includes the clauses of earlier pairs. A time applies to the clauses that its pair adds.
 
         If a clause still has patience, add it to `refusal`, which `ask` returns.
         """
         state = self.state
-        pressed = state.pressed.get(spike, {}).get(half, [])
+        pressed = state.patience_ends.get(spike, {}).get(half, [])
         ahead = bisect_left(half.ranks, (-clause.base, clause.index))
         if commit and (not pressed or pressed[-1][0] < ahead):
             until = state.now + (state.patience if half.patience is None else half.patience)
-            if state.pressed is NOTHING:
-                state.pressed = {}
-            state.pressed.setdefault(spike, {}).setdefault(half, pressed).append((ahead, until))
+            if state.patience_ends is NOTHING:
+                state.patience_ends = {}
+            state.patience_ends.setdefault(spike, {}).setdefault(half, pressed).append((ahead, until))
         begin, eliminated = 0, False
         for count, until in list(pressed):
             end = min(count, ahead)
@@ -218,7 +218,7 @@ class Consent:
                 for theirs in kept:
                     refusal.name(theirs)
                 if kept:
-                    refusal.pressed = True
+                    refusal.in_doubt = True
                     refusal.recheck = min(refusal.recheck, until)
             elif commit and begin < end and self.holdings.entries.refuse_best(spike, half, begin, end):
                 eliminated = True
@@ -281,13 +281,13 @@ class Consent:
         table: dict[Any, float]
         key: Any
         if member is None:
-            if group.pressed is None:
-                group.pressed = {}
-            table, key = group.pressed, rival.index
+            if group.patience_ends is None:
+                group.patience_ends = {}
+            table, key = group.patience_ends, rival.index
         else:
-            if not member.pressed:
-                member.pressed = {}
-            table, key = member.pressed, group
+            if not member.patience_ends:
+                member.patience_ends = {}
+            table, key = member.patience_ends, group
         if key in table or not commit:
             return table.get(key, -NEVER)
         patience = rival.rule.patience
@@ -310,12 +310,12 @@ class Consent:
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 
-    def _horizon(self, activation: Activation, idle: Sequence[Idle]) -> Horizon:
+    def _horizon(self, activation: Activation, stuck: Sequence[Stuck]) -> Horizon:
         """Return the horizon for an activation that asks: the signals that may come while it does nothing (L16).
 
         Activations that wait for the asking activation, or would wait for it, do nothing either.
         """
-        still = {activation}
+        inert = {activation}
         clause = activation.clause
         slots = clause.rule.slotset
         for group in activation.firm_groups():
@@ -327,8 +327,8 @@ class Consent:
                     and not theirs.rule.slotset.isdisjoint(slots)
                     and self.state.standing.overtakes(clause, theirs)
                 ):
-                    still.add(other)
-        return Horizon(self.state, still, idle)
+                    inert.add(other)
+        return Horizon(self.state, inert, stuck)
 
     def _rival_halves(self, clause: Clause, group: Group) -> list[tuple[Half, Spike]]:
         """Return each half that writes a slot of `clause`, paired with each spike of the group that the half holds."""
@@ -360,7 +360,7 @@ class Consent:
                     break  # the best clauses come first, and a cooldown only lowers a utility
                 if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                     found.setdefault(theirs, [])
-        return sorted(found.items(), key=_place)
+        return sorted(found.items(), key=lambda rival: rival[0].index)
 
 
 def _is_taken(groups: Sequence[Group], rule: RulePlan) -> bool:
@@ -384,18 +384,14 @@ def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
     return True
 
 
-def _note_firm(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
+def _note_sure(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
     """Note the activations whose progress decides whether a rival becomes ready."""
     for root in roots:
         refusal.blockers[root] = None
-    refusal.firm.append(roots)
+    refusal.sure.append(roots)
 
 
 def _is_covered(younger: Activation, older: Sequence[Activation]) -> bool:
     """Return whether one of some older activations, which will be ready first, holds all spikes of a younger one."""
     spikes = younger.firm_spikes() if older else ()
     return any([all([spike in one.spikes for spike in spikes]) for one in older])
-
-
-def _place(rival: tuple[Clause, list[Activation]]) -> int:
-    return rival[0].index

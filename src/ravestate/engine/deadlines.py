@@ -87,7 +87,7 @@ class Deadlines:
             return owner.refusal is not None and owner.refusal.recheck == time
         if kind == PATIENCE:
             group, rival = owner[0].root(), owner[1]
-            return rival.state < RUNNING and rival.pressed.get(group) == time
+            return rival.state < RUNNING and rival.patience_ends.get(group) == time
         if kind == EXPIRE:
             return owner.is_held or self.state.is_live(owner)
         if kind == FORGET:

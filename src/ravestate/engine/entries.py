@@ -34,7 +34,7 @@ class Entries:
         held[spike] = before
         if half.sole:
             state.seats.setdefault(half, {})[spike] = state.pools[half]
-        spike.entries += 1
+        spike.in_halves += 1
         state.busy += half.busy
         if half.slotset or half.kin:
             spike.group.root().enter(spike)
@@ -64,19 +64,19 @@ class Entries:
                 del state.halves[half]
                 if half in state.rows:
                     del state.rows[half]
-        spike.entries -= 1
+        spike.in_halves -= 1
         state.busy -= half.busy
-        if state.pressed:
-            pressed = state.pressed.get(spike, {})
+        if state.patience_ends:
+            pressed = state.patience_ends.get(spike, {})
             pressed.pop(half, None)
             if not pressed:
-                state.pressed.pop(spike, None)
+                state.patience_ends.pop(spike, None)
         group = spike.group.root()
-        if not spike.entries:
+        if not spike.in_halves:
             group.leave(spike)
         if half.slotset and group.interested:
             state.dirty[group] = None
-        if not (spike.is_held or spike.entries):
+        if not (spike.is_held or spike.in_halves):
             self.forget(spike)
 
     def _leave(self, spike: Spike, half: Half) -> None:
@@ -102,8 +102,8 @@ class Entries:
         del benches[bench.half]
         if not benches:
             del state.benches[partner]
-        partner.entries -= 1
-        if not partner.entries:
+        partner.in_halves -= 1
+        if not partner.in_halves:
             partner.group.root().leave(partner)
             if not partner.is_held:
                 self.forget(partner)
@@ -111,7 +111,7 @@ class Entries:
     def refuse_for_good(self, spike: Spike, rule: RulePlan) -> None:
         """Make a rule give a spike up for good."""
         spike.refuse(rule.index)
-        if spike.entries and len(rule.clauses) == 1:
+        if spike.in_halves and len(rule.clauses) == 1:
             for need in rule.clauses[0].needs:
                 if need.signal is spike.signal:
                     self.part(spike, need)
@@ -162,5 +162,5 @@ class Entries:
 
     def on_forget(self, spike: Spike) -> None:
         """Remove a spike that is too old for every detached need, if nothing holds it."""
-        if not (spike.is_held or spike.entries):
+        if not (spike.is_held or spike.in_halves):
             self.forget(spike)

@@ -148,7 +148,7 @@ def _activation(state: State, activation: Activation) -> ActivationState:
         mine = state.effective(clause)
         for rule, rival in refusal.all_names.items():
             waits.append((rule, max(0.0, state.effective(rival) - mine)))
-    bounds = [activation.ripens, min(activation.pressed.values(), default=NEVER), activation.deadline]
+    bounds = [activation.ripens, min(activation.patience_ends.values(), default=NEVER), activation.deadline]
     if activation.state == GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)
         bounds += [spike.born + need.max_age for spike, need in held if spike is not None]

@@ -43,13 +43,24 @@ class Group:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
-        pressed: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
+        patience_ends: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
         roster: The members of a large group by slot and by rule (``roster.py``), once a question has needed them.
         answers: Number of a slot → the rule that first finished with it, and the number of its activation. The engine notes
             them for the trace, while there is a tracer.
     """
 
-    __slots__ = ("_member", "_others", "answers", "entries", "id", "interested", "into", "pressed", "roster", "taken")
+    __slots__ = (
+        "_member",
+        "_others",
+        "answers",
+        "entries",
+        "id",
+        "interested",
+        "into",
+        "patience_ends",
+        "roster",
+        "taken",
+    )
 
     def __init__(self, id: int) -> None:
         self.id = id
@@ -60,7 +71,7 @@ class Group:
         self.taken: dict[int, tuple[Activation, ...] | None] = NOTHING
         self.interested: dict[Activation, None] = NOTHING
         self.entries: dict[Spike, None] = NOTHING
-        self.pressed: dict[int, float] | None = None
+        self.patience_ends: dict[int, float] | None = None
         self.roster: Roster | None = None
         self.answers: dict[int, tuple[str, int]] = NOTHING
 
@@ -183,13 +194,16 @@ class Group:
             self.concern(activation)
         for spike in other.entries:
             self.enter(spike)
-        if other.pressed:
-            own = self.pressed or {}
-            self.pressed = {**own, **{c: min(until, own.get(c, until)) for c, until in other.pressed.items()}}
+        if other.patience_ends:
+            own = self.patience_ends or {}
+            self.patience_ends = {
+                **own,
+                **{c: min(until, own.get(c, until)) for c, until in other.patience_ends.items()},
+            }
         for activation in self.members:
-            until = activation.pressed.get(other)
+            until = activation.patience_ends.get(other)
             if until is not None:
-                activation.pressed[self] = min(until, activation.pressed.get(self, until))
+                activation.patience_ends[self] = min(until, activation.patience_ends.get(self, until))
         if other.answers:
             self.answers = {**other.answers, **self.answers}
         other._member = None

@@ -170,7 +170,7 @@ class Halves:
 
     def take_over(self, activation: Activation, group: Group) -> None:
         """Put a new activation under pressure in a group, if its clause's stand-by was under pressure there (L16)."""
-        until = (group.pressed or {}).get(activation.clause.index)
+        until = (group.patience_ends or {}).get(activation.clause.index)
         if until is not None:
             self.holdings.put_under_pressure(activation, group, until)
 
@@ -250,7 +250,7 @@ class Halves:
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
         """If the stand-by of a clause was under pressure, create the clause's activation, and put it under the same."""
-        for number in group.pressed or ():
+        for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)
             if place is not None and self.state.keeps(half.needs[place], spike):

@@ -56,7 +56,7 @@ class Holdings:
 
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
         """Give a new activation a patience in a group: its stand-by or entry was already under pressure there (L16)."""
-        activation.pressed = {group: until}
+        activation.patience_ends = {group: until}
         if until > self.state.now:
             self.state.deadlines.add(until, PATIENCE, (group, activation))
 
@@ -300,7 +300,7 @@ class Holdings:
         else:
             activation.deadline = NEVER
             activation.stands_on = activation.groups = ()
-        activation.pressed = NOTHING
+        activation.patience_ends = NOTHING
         if state.alternatives:
             state.alternatives.pop(activation, None)
         rule = clause.rule
@@ -330,7 +330,7 @@ class Holdings:
                 group.part(activation)
             if group.interested:
                 state.dirty[group] = None
-        if spike not in activation.spikes and not (spike.release(activation) or spike.entries):
+        if spike not in activation.spikes and not (spike.release(activation) or spike.in_halves):
             self.entries.forget(spike)
         if reason and state.tracer is not None:
             rule, run = ("", 0) if by is None else (by.clause.rule.name, by.id)

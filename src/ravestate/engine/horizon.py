@@ -7,12 +7,12 @@ signals matter at a time. It skips the causes that no live rule of the group can
 
 The result of a derivation is a *strength*:
 
-``FIRM``         work in progress may raise the signal: runs, ripening spikes, ready activations
+``SURE``         work in progress may raise the signal: runs, ripening spikes, ready activations
 ``SPECULATIVE``  a step needs an input, or a live rule of another group: only patience ends the wait
 ``NO``           nothing leads to the signal
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
-The asking activation cannot help either, nor can an activation that waits for it. These count as *still*: doing nothing.
+The asking activation cannot help either, nor can an activation that waits for it. These count as *inert*: doing nothing.
 
 A chain of causes may be too long for recursion. So each step of a derivation is a generator, a `Step`, which yields the
 steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack.
@@ -30,15 +30,15 @@ from typing import Any, Final
 
 from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
 from ravestate.engine.group import Group
-from ravestate.engine.idle import Idle
 from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
 from ravestate.engine.roster import by_rule
 from ravestate.engine.state import State
+from ravestate.engine.stuck import Stuck
 from ravestate.policy.model import Clause, Need
 
 NO: Final = 0
 SPECULATIVE: Final = 1
-FIRM: Final = 2
+SURE: Final = 2
 
 SlotNumbers = frozenset[int]
 Place = tuple[int, Group, SlotNumbers]
@@ -59,8 +59,8 @@ class Horizon:
 
     Args:
         state: The state of the engine.
-        still: The activations that count as doing nothing: the asking activation, and the activations that wait for it.
-        idle: More activations that count as doing nothing.
+        inert: The activations that count as doing nothing: the asking activation, and the activations that wait for it.
+        stuck: More activations that count as doing nothing.
 
     Attributes:
         roots: The live activations on which the latest firm derivation rests.
@@ -79,21 +79,21 @@ class Horizon:
         "_open",
         "_risen",
         "_since",
-        "_still",
+        "_inert",
         "hopes",
-        "idle",
+        "stuck",
         "recheck",
         "roots",
         "state",
-        "still",
+        "inert",
         "visited",
     )
 
-    def __init__(self, state: State, still: Set[Activation], idle: Sequence[Idle] = ()) -> None:
+    def __init__(self, state: State, inert: Set[Activation], stuck: Sequence[Stuck] = ()) -> None:
         self.state = state
-        self.still = still
-        self.idle = idle
-        self._still: dict[int, int] | None = None  # rule → how many of its activations are in `still`
+        self.inert = inert
+        self.stuck = stuck
+        self._inert: dict[int, int] | None = None  # rule → how many of its activations are in `inert`
         # For each place: its strength, its roots if it is firm, and the depth of the oldest open derivation it rests on.
         self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
         self._depth = 0  # how many derivations are in progress
@@ -107,12 +107,12 @@ class Horizon:
         self.hopes: dict[tuple[int, int], int] = {}
         self.recheck = NEVER
 
-    def is_still(self, activation: Activation) -> bool:
+    def is_inert(self, activation: Activation) -> bool:
         """Return whether an activation counts as doing nothing."""
-        return activation in self.still or (bool(self.idle) and self._is_idle(activation))
+        return activation in self.inert or (bool(self.stuck) and self._is_stuck(activation))
 
-    def _is_idle(self, activation: Activation) -> bool:
-        return any([activation in idle for idle in self.idle])
+    def _is_stuck(self, activation: Activation) -> bool:
+        return any([activation in stuck for stuck in self.stuck])
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
         """Return the strength with which a clause may become ready in a group, and the `roots` of a firm result.
@@ -131,7 +131,7 @@ class Horizon:
             return  # no derivation rests on it
         self._known.clear()
         self._far.clear()
-        self._still = None
+        self._inert = None
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
@@ -158,7 +158,7 @@ class Horizon:
             if one.clause is clause
             and one.state == GATHERING
             and one.missing & open_bits
-            and not self.is_still(one)
+            and not self.is_inert(one)
             and not group.has(one)
         ]
 
@@ -202,7 +202,7 @@ class Horizon:
                 if own is None or own is group:
                     mine = yield from self._all(kin, group, slots)
                 for there in others:
-                    if mine == FIRM or other == FIRM:
+                    if mine == SURE or other == SURE:
                         break
                     if own is None or own is there:
                         strength = yield from self._all(kin, there, slots)
@@ -214,9 +214,9 @@ class Horizon:
                 return NO
             here.append(mine)
             best.append(max(mine, other))
-        strength = min(best, default=FIRM)
+        strength = min(best, default=SURE)
         if not member:  # the clause is a rival here only if this group itself may meet one of its needs
-            strength = max((min(mine, *best[:k], *best[k + 1 :], FIRM) for k, mine in enumerate(here)), default=NO)
+            strength = max((min(mine, *best[:k], *best[k + 1 :], SURE) for k, mine in enumerate(here)), default=NO)
         if strength == NO or (clause.guards and not (yield from self._guards(clause, group, slots))):
             del self.roots[mark:]
             return NO
@@ -224,7 +224,7 @@ class Horizon:
 
     def _all(self, needs: list[Need], group: Group, slots: SlotNumbers) -> Step:
         """Return the strength with which one group may meet all of several needs."""
-        weakest = FIRM
+        weakest = SURE
         for need in needs:
             strength = yield from self._comes(need.signal.index, group, slots)
             weakest = min(weakest, strength)
@@ -239,7 +239,7 @@ class Horizon:
         if spike is not None:
             self.visited[spike.group.root()] = None
             self.recheck = min(self.recheck, spike.born + need.max_age)
-            return FIRM
+            return SURE
         strength = yield from self._comes(need.signal.index, group, slots)
         return strength or (SPECULATIVE if self._outside(need, group) else NO)
 
@@ -248,7 +248,7 @@ class Horizon:
         for slot, guard in clause.guards:
             if self.state.opens(slot, guard):
                 continue
-            if (yield from self._comes(slot.signals[0].index, group, slots)) != FIRM:
+            if (yield from self._comes(slot.signals[0].index, group, slots)) != SURE:
                 return False
         return True
 
@@ -273,9 +273,9 @@ class Horizon:
             self._since, risen = FINAL, self._risen
             best = yield from self._caused(*place)
             since = self._since
-            if best == FIRM:
+            if best == SURE:
                 self._close(first, STALE)
-                known[place] = FIRM, tuple(dict.fromkeys(self.roots[mark:])), FINAL
+                known[place] = SURE, tuple(dict.fromkeys(self.roots[mark:])), FINAL
                 since = FINAL
             elif since < depth:  # this derivation is part of the cycle of an older one
                 self._risen += best > bound
@@ -312,16 +312,16 @@ class Horizon:
             for activation in by_rule.get(rule.index, ()):
                 if activation.state >= RUNNING:
                     self.roots.append(activation)
-                    return FIRM
-                if not self.is_still(activation):
+                    return SURE
+                if not self.is_inert(activation):
                     ways.append((activation.clause, activation))
             for clause in rule.clauses:
                 ways += [(clause, activation) for activation in self.elsewhere(clause, group)]
                 ways.append((clause, None))
             for clause, helper in ways:
                 strength = yield self._viable(clause, helper, group, inner)
-                if strength == FIRM:
-                    return FIRM
+                if strength == SURE:
+                    return SURE
                 del self.roots[mark:]
                 best = max(best, strength)
         return best
@@ -356,26 +356,26 @@ class Horizon:
             for rule in wide if len(wide) < len(live) else live:
                 alive = len(live.get(rule, ()))
                 if alive and rule in wide:
-                    apart = self._apart(rule, group, near=rule in narrow)
-                    most = self.hopes[hope] = max(most, apart)
-                    if alive > apart:
+                    helpless = self._helpless(rule, group, near=rule in narrow)
+                    most = self.hopes[hope] = max(most, helpless)
+                    if alive > helpless:
                         return True
         return False
 
-    def _apart(self, rule: int, group: Group, *, near: bool) -> int:
-        """Count a rule's activations that cannot help from another group: still ones and, with `near`, the group's members."""
-        if self._still is None:
-            self._still = {}
-            for activation in self.still:
-                if activation.state != ENDED and not self._is_idle(activation):
+    def _helpless(self, rule: int, group: Group, *, near: bool) -> int:
+        """Count a rule's activations that cannot help from another group: inert ones and, with `near`, the group's members."""
+        if self._inert is None:
+            self._inert = {}
+            for activation in self.inert:
+                if activation.state != ENDED and not self._is_stuck(activation):
                     number = activation.clause.rule.index
-                    self._still[number] = self._still.get(number, 0) + 1
-        count = self._still.get(rule, 0)
-        for idle in self.idle:
-            count += idle.counts.get(rule, 0)
+                    self._inert[number] = self._inert.get(number, 0) + 1
+        count = self._inert.get(rule, 0)
+        for stuck in self.stuck:
+            count += stuck.counts.get(rule, 0)
         if near:
             for activation in self._rules(group).get(rule, ()):
-                count += not self.is_still(activation)
+                count += not self.is_inert(activation)
         return count
 
 

@@ -76,7 +76,7 @@ class Leaders:
         refusal.interests[groups[0]] = None
         refusal.name(first)
         refusal.blockers[leader.activation] = None
-        refusal.firm.append((leader.activation,))
+        refusal.sure.append((leader.activation,))
         if clause.rule.cooldown or first.rule.cooldown or leader.recovering:
             refusal.recheck = min([standing.crossing(clause, theirs) for theirs in (first, *leader.recovering)])
         return refusal

@@ -112,7 +112,7 @@ class Loops:
             run.lineage = Lineage(frozenset((run.clause.rule.index,)), Loop(self._instant))
         return run.lineage
 
-    def trace(self, run: Activation) -> Sequence[RulePlan]:
+    def find(self, run: Activation) -> Sequence[RulePlan]:
         """Note the lineage of a run that starts. If an error must name the run's loop now, return the loop's rules."""
         lines = self._lines(run)
         if not lines:

@@ -161,7 +161,7 @@ class Matching:
                 self._offer(need, spike)
         if signal.conflict_sets:
             self.sets.offer(signal, spike)
-        if spike.holder is None and not (spike.is_held or spike.entries):
+        if spike.holder is None and not (spike.is_held or spike.in_halves):
             self.entries.forget(spike)
 
     def _offer(self, need: Need, spike: Spike) -> None:
@@ -196,7 +196,7 @@ class Matching:
             group = spike.group.root()
             if group.interested:
                 state.dirty[group] = None
-            if group.pressed:
+            if group.patience_ends:
                 self.halves.take_over(activation, group)
         if clause.simple:
             holdings.complete(activation)

@@ -26,9 +26,9 @@ class Refusal:
     Attributes:
         names: Name of a rule that the activation waits for → the best of the rule's clauses that are rivals.
         blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
-        firm: For each rival that work in progress makes ready or rules out: the activations that do this work.
+        sure: For each rival that work in progress makes ready or rules out: the activations that do this work.
         taken: Whether a run has taken one of the activation's slots.
-        pressed: Whether a rival may never be ready, so that only the end of its patience ends the wait.
+        in_doubt: Whether a rival may never be ready, so that only the end of its patience ends the wait.
         hopes: The hopes of the activation → a count for each (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
         leader: The activation that speaks for this one (``leaders.py``), or None.
@@ -37,17 +37,17 @@ class Refusal:
             spike that grows too old, and the end of the patience of a rival without an activation.
     """
 
-    __slots__ = ("blockers", "firm", "hopes", "interests", "leader", "names", "pressed", "recheck", "taken", "told")
+    __slots__ = ("blockers", "sure", "hopes", "interests", "leader", "names", "in_doubt", "recheck", "taken", "told")
 
     def __init__(self) -> None:
         self.interests: dict[Group, None] = {}
         self.hopes: dict[tuple[int, int], int] = {}
         self.names: dict[str, Clause] = {}
         self.blockers: dict[Activation, None] = {}
-        self.firm: list[tuple[Activation, ...]] = []
+        self.sure: list[tuple[Activation, ...]] = []
         self.leader: Activation | None = None
         self.taken = False
-        self.pressed = False
+        self.in_doubt = False
         self.recheck = NEVER
         self.told: tuple[str, ...] = ()
 
@@ -68,7 +68,7 @@ class Refusal:
     @property
     def bounded(self) -> bool:
         """Whether the wait ends in any case: when a run frees its slot, or when a rival's patience ends."""
-        return self.taken or self.pressed
+        return self.taken or self.in_doubt
 
     def __bool__(self) -> bool:
         return bool(self.names)

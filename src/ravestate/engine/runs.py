@@ -43,7 +43,7 @@ class Runs:
             self.holdings.waits.end(activation)
             if state.tracer is not None:
                 self.holdings.waits.tell_followers()
-        activation.pressed = NOTHING
+        activation.patience_ends = NOTHING
         activation.stands_on = activation.firm_spikes()
         if rule.slots:
             groups = activation.firm_groups()
@@ -58,7 +58,7 @@ class Runs:
         state.running[state.runs] = activation
         loops = state.loops
         loops.runs += 1
-        if loops.runs > MANY and (loop := loops.trace(activation)):
+        if loops.runs > MANY and (loop := loops.find(activation)):
             state.fail(loop[0], RuleError(_endless(loop)), signal=True)
         if rule.timeout is not None:
             activation.deadline = state.now + rule.timeout

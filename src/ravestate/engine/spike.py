@@ -24,7 +24,7 @@ class Spike:
         holder: The first activation that has taken the spike, while it holds the spike. Most spikes never have a second
             holder, and need no table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
-        entries: How many halves hold the spike without an activation (``halves.py``).
+        in_halves: How many halves hold the spike without an activation (``halves.py``).
         parted: The numbers of the clauses for which these halves do not hold the spike: a clause gave the spike up, or
             has an activation with it.
         refused: The numbers of the rules that gave the spike up for good.
@@ -34,7 +34,7 @@ class Spike:
         "_others",
         "before",
         "born",
-        "entries",
+        "in_halves",
         "expiring",
         "group",
         "holder",
@@ -71,7 +71,7 @@ class Spike:
         self.holder: Activation | None = None
         self._others: dict[Activation, None] = NOTHING
         self.expiring: tuple[float, ...] = ()
-        self.entries = 0
+        self.in_halves = 0
         self.parted: set[int] | None = None
         self.refused: set[int] | None = None
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 from ravestate.engine.activation import Activation, by_age
 from ravestate.engine.consent import Consent
-from ravestate.engine.idle import Idle
+from ravestate.engine.stuck import Stuck
 
 
-def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | None = None) -> set[Activation]:
+def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | None = None) -> set[Activation]:
     """Return activations that wait for nothing but each other.
 
     Suppose that two rules are ready, and each waits for a rival. Each rival lacks a signal that only the other rule may
@@ -29,33 +29,33 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Idle | Non
             one = reached.pop()
             if one in seen or not _hangs(one):
                 continue
-            if any([waiting.isdisjoint(roots) for roots in _firm(one)]):
+            if any([waiting.isdisjoint(roots) for roots in _sure(one)]):
                 continue  # the activations that decide on one rival do not wait, so this wait will end
             seen.add(one)
-            for roots in _firm(one):
+            for roots in _sure(one):
                 reached += roots
         if not seen:
             return seen
         stuck: set[Activation] = seen.copy()
         freed: set[Activation] | None = None
         while freed is None or freed:
-            freed = {one for one in stuck if any([stuck.isdisjoint(roots) for roots in _firm(one)])}
+            freed = {one for one in stuck if any([stuck.isdisjoint(roots) for roots in _sure(one)])}
             stuck -= freed
         while stuck:
-            new = Idle(one for one in sorted(stuck, key=by_age) if known is None or one not in known)
-            idle = (new,) if known is None else (new, known)
-            answers = [(one, consent.ask(one, idle, commit=False)) for one in sorted(stuck, key=by_age)]
+            new = Stuck(one for one in sorted(stuck, key=by_age) if known is None or one not in known)
+            others = (new,) if known is None else (new, known)
+            answers = [(one, consent.ask(one, others, commit=False)) for one in sorted(stuck, key=by_age)]
             moved = [(one, refusal) for one, refusal in answers if refusal]
             if not moved:
                 break
             stuck -= {one for one, _ in moved}
             for _, refusal in moved:  # these depend on further activations, which may wait for the first ones
-                reached += [root for roots in refusal.firm for root in roots if root not in seen]
+                reached += [root for roots in refusal.sure for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck
 
 
-def loose(one: Activation, stuck: Idle) -> list[Activation]:
+def loose(one: Activation, stuck: Stuck) -> list[Activation]:
     """Return the members of a stalemate that wait for an activation outside it by now; oldest first.
 
     Only `one` and the members for which it waits, directly or through others, are searched.
@@ -66,21 +66,21 @@ def loose(one: Activation, stuck: Idle) -> list[Activation]:
         each = reached.pop()
         if each in stuck and each not in seen:
             seen.add(each)
-            for roots in _firm(each):
+            for roots in _sure(each):
                 reached += roots
     left, freed = seen.copy(), seen
     while freed:
-        freed = {each for each in left if any([left.isdisjoint(roots) for roots in _firm(each)])}
+        freed = {each for each in left if any([left.isdisjoint(roots) for roots in _sure(each)])}
         left -= freed
     return sorted(seen - left, key=by_age)
 
 
-def _firm(activation: Activation) -> list[tuple[Activation, ...]]:
-    """Return an activation's `Refusal.firm`: for each rival, the activations that will make it ready or rule it out."""
-    return [] if activation.refusal is None else activation.refusal.firm
+def _sure(activation: Activation) -> list[tuple[Activation, ...]]:
+    """Return an activation's `Refusal.sure`: for each rival, the activations that will make it ready or rule it out."""
+    return [] if activation.refusal is None else activation.refusal.sure
 
 
 def _hangs(activation: Activation) -> bool:
     """Return whether an activation's wait might never end: no taken slot and no rival's patience ends it."""
     refusal = activation.refusal
-    return refusal is not None and bool(refusal.firm) and not refusal.bounded
+    return refusal is not None and bool(refusal.sure) and not refusal.bounded

@@ -11,7 +11,7 @@ The parts of the engine share one state. Only `State.adopt` and these files chan
 - `halves`, `pools`, `seats`, `benches`: ``entries.py`` and ``benches.py``
 - `rows`: ``halves.py`` and ``entries.py``
 - `headless`: ``holdings.py`` and ``benches.py``
-- `pressed`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
+- `patience_ends`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
 - `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: ``waits.py`` and ``agenda.py``
 - `running`, `ran`, `watches`: ``runs.py``; `watched_by`: ``runs.py`` and ``holdings.py``; `retired`: ``parts.py``
 - `values`: ``slots.py``; the first read of a slot adds its default
@@ -34,12 +34,12 @@ from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
 from ravestate.engine.group import NOTHING, Group
-from ravestate.engine.idle import Idle
 from ravestate.engine.loops import Lineage, Loops
 from ravestate.engine.memory import Memory
 from ravestate.engine.row import Row
 from ravestate.engine.spike import Spike
 from ravestate.engine.standing import Standing
+from ravestate.engine.stuck import Stuck
 from ravestate.engine.trace import Tracer
 from ravestate.engine.watch import Watch
 from ravestate.policy.model import Clause, Half, Need, RulePlan, SlotPlan
@@ -80,7 +80,7 @@ class State(Memory):
         "loops",
         "out",
         "pools",
-        "pressed",
+        "patience_ends",
         "pressure",
         "refused",
         "reordered",
@@ -127,7 +127,7 @@ class State(Memory):
         """Half with benches → each spike that the half holds → the spike's bench."""
         self.headless: dict[Spike, None] = NOTHING
         """The counterparts of benches whose heads may have gone."""
-        self.pressed: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
+        self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds it → pairs: how many of the half's best clauses have a patience, and when it ends
         (seconds; L16). Each count includes the clauses of earlier pairs."""
         self.gated: dict[Activation, None] = NOTHING
@@ -142,7 +142,7 @@ class State(Memory):
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
         """The activations refused since the last search for a stalemate."""
-        self.stuck: Idle | None = None
+        self.stuck: Stuck | None = None
         """The activations that wait for nothing but each other (``stalemate.py``); made on first use."""
         self.dirty: dict[Group, None] = {}
         """The groups that have changed: a run or a patience has ended, or a member has come, changed or gone. The
@@ -254,7 +254,7 @@ class State(Memory):
 
     def halves_of(self, spike: Spike) -> Sequence[Half]:
         """Return the halves that hold a spike."""
-        return [half for half in spike.signal.halves if self.entries(half, spike)] if spike.entries else ()
+        return [half for half in spike.signal.halves if self.entries(half, spike)] if spike.in_halves else ()
 
     def entries(self, half: Half, spike: Spike) -> OrderedDict[Spike, int] | None:
         """Return the table in which a half holds a spike, or None."""
@@ -289,7 +289,7 @@ class State(Memory):
         activation.missing &= ~need.bit
         until = self.entry_patience(need, spike)
         if until is not None:
-            activation.pressed = {spike.group.root(): until}
+            activation.patience_ends = {spike.group.root(): until}
         return activation
 
     def entry_patience(self, need: Need, spike: Spike) -> float | None:
@@ -298,10 +298,10 @@ class State(Memory):
         Return None if the clause is not under pressure.
         """
         half = need.half
-        if half is None or spike not in self.pressed:
+        if half is None or spike not in self.patience_ends:
             return None
         rank = half.rank[need.clause.index]
-        for count, until in self.pressed[spike].get(half, ()):
+        for count, until in self.patience_ends[spike].get(half, ()):
             if rank < count:
                 return until
         return None

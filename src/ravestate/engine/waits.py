@@ -146,10 +146,12 @@ def patience_of_rivals(state: State, activation: Activation) -> float | None:
     clauses = state.policy.clause_plans
     times: list[float] = []
     for group in activation.firm_groups():
-        times += [m.pressed[group] for m in group.members if m.clause.rule.name in names and group in m.pressed]
-        times += [t for c, t in (group.pressed or {}).items() if clauses[c].rule.name in names and t > state.now]
-        for spike in group.entries if state.pressed else ():
-            for half, pressed in state.pressed.get(spike, {}).items():
+        times += [
+            m.patience_ends[group] for m in group.members if m.clause.rule.name in names and group in m.patience_ends
+        ]
+        times += [t for c, t in (group.patience_ends or {}).items() if clauses[c].rule.name in names and t > state.now]
+        for spike in group.entries if state.patience_ends else ():
+            for half, pressed in state.patience_ends.get(spike, {}).items():
                 begin = 0
                 for end, until in pressed:
                     if until > state.now and any([n.clause.rule.name in names for n in half.best[begin:end]]):

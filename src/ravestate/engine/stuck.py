@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from ravestate.engine.activation import Activation
 
 
-class Idle:
+class Stuck:
     """A set of activations in a fixed order; `counts` is the number of a rule → how many members it has."""
 
     __slots__ = ("_members", "counts")

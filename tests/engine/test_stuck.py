@@ -1,0 +1,24 @@
+"""A set of stuck activations counts its members by rule."""
+
+from __future__ import annotations
+
+import ravestate as rs
+from laws.short import output, writer
+from ravestate.engine.activation import Activation
+from ravestate.engine.stuck import Stuck
+
+
+def test_a_member_counts_once_and_leaves_once() -> None:
+    m = rs.Module("m")
+    writer(m, "rule", m.signal("a"), output(m))
+    clause = rs.compile(m).rule_plan("m:rule").clauses[0]
+    one, other = Activation(1, clause), Activation(2, clause)
+    stuck = Stuck([one, other])
+    stuck.add(one)
+    assert (list(stuck), stuck.counts[clause.rule.index]) == ([one, other], 2)
+    stuck.discard(one)
+    stuck.discard(one)
+    assert (list(stuck), stuck.counts[clause.rule.index]) == ([other], 1)
+    stuck.clear()
+    assert not stuck
+    assert not stuck.counts
