@@ -87,3 +87,15 @@ def test_a_new_rule_that_only_looks_needs_no_deadline_for_earlier_spikes() -> No
     engine.receive(AddRule(engine.policy.with_rule(later)), 0.0)
     assert not runs(engine)
     assert engine.next_deadline() == due
+
+
+def test_an_explanation_says_which_missing_signal_is_an_input() -> None:
+    m = rs.Module("m")
+    heard, topic, out = m.signal("heard"), m.signal("topic"), m.slot("out", "")
+    declared(m, "classifier", when=heard, emits=topic)
+    declared(m, "both", when=heard & topic & m.signal("pointed"), writes=out)
+    engine = Engine(rs.compile(m))
+    assert runs(engine, Emit("m:heard"), end=False)
+    text = str(explain(engine, engine.policy.rule_plan("m:both")))
+    assert "lacks m:topic\n" in text
+    assert "lacks m:pointed, an input\n" in text

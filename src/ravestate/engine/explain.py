@@ -67,6 +67,7 @@ class Explanation:
         missing: A sentence for each of the rule's signals that did not occur in the trace: the rules that may raise the
             signal, and how each rule last ended. Empty without a trace.
         history: The rule's latest records in the trace, as text. Empty without a trace.
+        inputs: The rule's signals that are inputs: no rule can promise them, so only patience bounds a wait for one.
     """
 
     rule: str
@@ -76,6 +77,7 @@ class Explanation:
     activations: tuple[ActivationState, ...]
     missing: tuple[str, ...]
     history: tuple[str, ...]
+    inputs: frozenset[str] = frozenset()
 
     def __str__(self) -> str:
         lines = [f"{self.rule} at {self.now:.3f} s" + (": retired" if self.retired else "")]
@@ -89,7 +91,7 @@ class Explanation:
         for one in self.activations:
             lines.append(f"  {one.state} (activation {one.id})")
             lines += [f"    holds {signal}, {age:.3f} s old" for signal, age in one.holds]
-            lines += [f"    lacks {signal}" for signal in one.lacks]
+            lines += [f"    lacks {signal}" + ", an input" * (signal in self.inputs) for signal in one.lacks]
             lines += [
                 f"    waits for {name}" + (f", which is ahead by {nats:.6f} nats" if nats else "")
                 for name, nats in one.waits_for
@@ -121,6 +123,7 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
             for record in records
             if getattr(record, "rule", None) == rule.name and (words := words_of(record))
         )[-limit:],
+        frozenset(need.signal.name for clause in rule.clauses for need in clause.needs if need.signal.input),
     )
     engine.rest()
     return explanation
