@@ -166,6 +166,10 @@ class Activation:
         """Return the spike that meets one of the clause's needs; None if there is none yet."""
         return self._several[need.index] if self._several else self._only
 
+    def holds(self, spike: Spike) -> bool:
+        """Return whether the activation holds a spike."""
+        return spike in self._several if self._several else spike is self._only
+
     def put(self, need: Need, spike: Spike | None) -> None:
         """Make a spike, or None, the one that meets one of the clause's needs."""
         if self._several:

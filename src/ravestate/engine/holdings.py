@@ -330,7 +330,7 @@ class Holdings:
                 group.part(activation)
             if group.interested:
                 state.dirty[group] = None
-        if spike not in activation.spikes and not (spike.release(activation) or spike.in_halves):
+        if not activation.holds(spike) and not (spike.release(activation) or spike.in_halves):
             self.entries.forget(spike)
         if reason and state.tracer is not None:
             rule, run = ("", 0) if by is None else (by.clause.rule.name, by.id)

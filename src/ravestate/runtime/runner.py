@@ -29,9 +29,7 @@ from ravestate.runtime.timer import Timer
 from ravestate.runtime.waits import Waits
 
 ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
-
 BATCH: Final = 512  # the number of rounds of effects after which the loop gets a turn, so that a busy agent takes input
-
 TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
