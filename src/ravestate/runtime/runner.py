@@ -36,7 +36,8 @@ BATCH: Final = 512
 TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""The number of waits for a signal that may end without a turn of the loop, before it gets one (`Runner.settle`)."""
+"""How many waits for a signal may end in a row without a turn of the loop. Then the loop gets a turn
+(`Runner.settle`)."""
 
 ENDED = "the context has ended"
 
@@ -142,7 +143,8 @@ class Runner:
             self.receive(Write(slot, value, run))
 
     def short_way(self) -> Parts | None:
-        """Return the engine's parts for an event that nothing records, or None if the event must go to `receive`."""
+        """Return the engine's parts, for an event on the loop's thread without a journal. Otherwise, return None: use
+        `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
