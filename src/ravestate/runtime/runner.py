@@ -143,8 +143,7 @@ class Runner:
             self.receive(Write(slot, value, run))
 
     def short_way(self) -> Parts | None:
-        """Return the engine's parts, for an event on the loop's thread without a journal. Otherwise, return None: use
-        `receive`."""
+        """Return the engine's parts if an event may go to them directly; None if it must go to `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
