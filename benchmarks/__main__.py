@@ -62,7 +62,7 @@ def _arguments() -> argparse.Namespace:
         epilog=f"questions:\n{listed}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("question", nargs="*", help="which to ask; all by default")
+    parser.add_argument("question", nargs="*", help="the questions to measure; all by default")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions: a first look in about a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures to a file as well")
     parser.add_argument(

@@ -15,10 +15,10 @@ __all__ = ["clips", "peers", "reference"]
 
 ROOT = Path(__file__).resolve().parent.parent / ".bench"
 
-# The reference is installed without dependencies: what it declares is long gone from PyPI or not needed here.
+# The reference is installed without dependencies: PyPI no longer has them, or the benchmark does not need them.
 REFERENCE = ["--no-deps", "ravestate==0.7.0.post1", "reggol==0.2.0", "pyyaml==6.0.3", "pyyaml-include==1.3.2"]
 CLIPS = ["clipspy==1.0.6"]
-# experta asks for a frozendict that does not run on the Pythons of today.
+# experta requires a version of frozendict that does not run on present versions of Python.
 PEERS = ["--no-deps", "durable_rules==2.0.28", "experta==1.9.4", "frozendict==2.4.6", "py_trees==2.6.0", "pydot==4.0.1",
          "pyparsing==3.3.3", "schema==0.7.7"]  # fmt: skip
 

@@ -1,7 +1,7 @@
 """Fixtures of every test: a temporary data folder instead of the user's, and the Hypothesis profiles.
 
-- `ci` (the default of `make test` and of continuous integration): the same examples each time, so that a
-  failure is the change's own.
+- `ci` (the default of `make test` and of continuous integration): the same examples each time, so that only a change of
+  the code can cause a failure.
 - `dev` (the default of a bare `pytest`): fresh examples, and the failing ones are remembered.
 - `fuzz` (`make fuzz`): fresh examples, and many.
 
@@ -18,13 +18,13 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-# Each process of the tests has one core. More threads for a product of matrices would wait for each other.
+# Each test process has one core, so several threads for a matrix product would only wait for each other.
 for _library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
 _folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
 os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well
-os.environ["RAVESTATE_WILDTALK_SEARCH"] = "false"  # no test asks the ports and folders of this machine
+os.environ["RAVESTATE_WILDTALK_SEARCH"] = "false"  # no test looks at the ports and folders of this machine
 
 _shared = {
     "deadline": None,
@@ -79,7 +79,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(scope="module", autouse=True)
 def small_heap() -> None:
-    """Leave out all that is in memory before a file's tests from garbage collection.
+    """Exclude all objects that exist before a file's tests from garbage collection.
 
     Otherwise, each collection would visit the tests themselves, the modules and the models: a third of the time.
     """

@@ -24,7 +24,7 @@ TARGET = HERE / "src/ravestate/modules/skill/genqa/collection/world-factbook.jso
 SOURCE = "The World Factbook, 2025"
 
 Sentence = tuple[str, str]
-"""A sentence, and further words that ask for it."""
+"""A sentence, and further words of questions that it answers."""
 
 NAMES = {
     "ae": "the United Arab Emirates", "bf": "the Bahamas", "cf": "the Republic of the Congo",
@@ -79,7 +79,7 @@ CONTINENT_OF = {"rs": "Europe", "cy": "Asia"}
 
 
 def plain(markup: str) -> str:
-    """Text without tags and entities, on one line; what stood on lines of its own is parted by ``¦``."""
+    """Return a text without tags and entities, on one line; ``¦`` stands for each line break."""
     text = re.sub(r"<\s*(?:br|p|/p)\s*/?>", "¦", html.unescape(html.unescape(markup)))
     text = re.sub(r"<[^>]+>", "", text).replace("\xa0", " ").replace("\u200b", "")
     text = re.sub(r"\s+", " ", text)
@@ -97,7 +97,7 @@ class Entry:
         self.also = self._also()
 
     def get(self, *path: str) -> str:
-        """The text of a field; empty if there is none."""
+        """Return the text of a field; empty if there is none."""
         value: Any = self.fields
         for key in path:
             if not isinstance(value, dict):
@@ -109,14 +109,14 @@ class Entry:
         return "" if text.lower() in ("none", "na", "na%", "n/a", "not available") else text
 
     def first(self, *path: str) -> str:
-        """The field without notes and without what follows on further lines."""
+        """Return the first line of a field, without notes."""
         text = self.get(*path).partition("¦")[0]
         text = re.split(r"(?:;|,)? ?\bnotes?\b ?\d?(?: ?-|:)", text, maxsplit=1)[0]
         # "metropolitan France: ..." goes
         return re.sub(r"^[^:;,.]{3,30}: ", "", text).strip(" ;.")
 
     def latest(self, field: str) -> str:
-        """The newest of a field's yearly figures."""
+        """Return the newest of a field's yearly figures."""
         values = self.fields.get("Economy", {}).get(field, {})
         years = sorted((key for key in values if re.search(r"\d{4}$", key)), reverse=True)
         return self.first("Economy", field, years[0]) if years else ""
@@ -142,7 +142,7 @@ class Entry:
 
 
 def number(text: str) -> float | None:
-    """The first number in `text`, with million, billion or trillion."""
+    """Return the first number in `text`; *million*, *billion* and *trillion* count."""
     found = re.search(r"-?\d[\d,]*(?:\.\d+)?", text)
     if found is None:
         return None
@@ -154,13 +154,13 @@ def number(text: str) -> float | None:
 
 
 def listed(items: Iterable[str]) -> str:
-    """``a, b and c``."""
+    """Return a list of items as text: ``a, b and c``."""
     *head, last = items
     return f"{', '.join(head)} and {last}" if head else last
 
 
 def person(text: str) -> str:
-    """A name whose surname was in capitals: ``Sanae TAKAICHI`` to ``Sanae Takaichi``."""
+    """Return a name without capitals in the surname: ``Sanae Takaichi`` for ``Sanae TAKAICHI``."""
 
     def lower(found: re.Match[str]) -> str:
         word = found[0]
@@ -170,7 +170,7 @@ def person(text: str) -> str:
 
 
 def short(text: str, limit: int = 220) -> str:
-    """`text` up to the last list item that fits into `limit` characters."""
+    """Return `text` up to the last list item that fits into `limit` characters."""
     if len(text) <= limit:
         return text
     cut = text[:limit]
@@ -179,7 +179,7 @@ def short(text: str, limit: int = 220) -> str:
 
 
 def lines_of(text: str) -> Iterator[str]:
-    """The sentences of prose."""
+    """Return the sentences of prose."""
     for part in text.split("¦"):
         for sentence in re.split(r"(?<=[a-z0-9)\"”][.!?]) (?=[A-Z\"“])", part):
             whole = sentence[:1].isupper() and sentence.count("(") == sentence.count(")")
@@ -188,7 +188,7 @@ def lines_of(text: str) -> Iterator[str]:
 
 
 def semicolons(text: str) -> str:
-    """``; `` as commas, for use within a sentence."""
+    """Return a text with commas for semicolons, for use within a sentence."""
     return text.replace("; ", ", ").rstrip(" .;,")
 
 
@@ -196,7 +196,7 @@ def semicolons(text: str) -> str:
 
 
 def sentences_of(entry: Entry) -> Iterator[Sentence]:
-    """All that is said about a country."""
+    """Return all sentences about a country."""
     parts = (_government, _geography, _people, _economy, _background)
     for part in parts[1:] if entry.code == "xx" else parts:  # the world has no government
         yield from part(entry)
@@ -426,12 +426,12 @@ def _geography(entry: Entry) -> Iterator[Sentence]:
 
 
 def area_of(entry: Entry) -> str:
-    """The total area; the source rounds the smallest of all to nothing."""
+    """Return the total area. The source rounds the smallest area to 0."""
     return "0.44 sq km" if entry.code == "vt" else entry.first("Geography", "Area", "total")
 
 
 def _items(text: str, unit: str) -> list[str]:
-    """The items of ``Nile (shared with ...) - 6,650 km; ...``, figures in brackets."""
+    """Return the items of ``Nile (shared with ...) - 6,650 km; ...``, with figures in brackets."""
     found: list[str] = []
     for item in re.split(r"; ?", re.sub(r"\s*\((?:shared|partially)[^)]*\)|\s*\[[^]]*\]", "", text)):
         named = re.match(r"(.+?)(?: river (?:source|mouth))? - ([\d,.]+)", item)
@@ -585,7 +585,7 @@ def _economy(entry: Entry) -> Iterator[Sentence]:
 
 
 def official_in(languages: str) -> list[str]:
-    """The languages that are official in a whole country."""
+    """Return the languages that are official in a whole country."""
     found = re.findall(
         r"([A-Z][\w’'-]*(?: [A-Z(][\w)’'-]*)*)(?: only)?(?: \d[\d.]*%)? ?\(official(?: nationwide)?\)",
         languages,
@@ -594,7 +594,7 @@ def official_in(languages: str) -> list[str]:
 
 
 def currency_of(entry: Entry) -> str:
-    """The currency in the singular: ``Peruvian sol (PEN)``."""
+    """Return the currency in the singular: ``Peruvian sol (PEN)``."""
     if entry.code in CURRENCIES:
         return CURRENCIES[entry.code]
     text = re.sub(r"\s*per US dollar.*$", "", entry.first("Economy", "Exchange rates", "Currency"))
@@ -613,7 +613,7 @@ def _background(entry: Entry) -> Iterator[Sentence]:
 
 
 def person_free(text: str) -> str:
-    """Prose, its surnames no longer in capitals."""
+    """Return prose without capitals in surnames."""
 
     def lower(found: re.Match[str]) -> str:
         word = found[0]
@@ -626,12 +626,12 @@ KEPT = {"NATO", "ASEAN", "OPEC", "UNESCO", "ECOWAS", "MINUSTAH", "UNMIT", "CARIC
 
 
 def upper(text: str) -> str:
-    """`text` at the beginning of a sentence."""
+    """Return `text` as the beginning of a sentence."""
     return text[0].upper() + text[1:]
 
 
 def metres(text: str) -> str:
-    """``6,746 m`` as ``6,746 metres``."""
+    """Return ``6,746 metres`` for ``6,746 m``."""
     return re.sub(r"(?<=\d) m\b", " metres", text)
 
 

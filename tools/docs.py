@@ -92,7 +92,7 @@ def _modules(kind: str) -> list[str]:
 
 
 def _reference(part: str) -> str:
-    """Return the docstring of a room, and one directive for each of its files."""
+    """Return the docstring of a package, and one directive for each of its files."""
     if not (SOURCE / part).is_dir():
         return f"::: ravestate.{part}\n"
     room = SOURCE / part

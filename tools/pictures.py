@@ -1,7 +1,7 @@
-"""The pictures of README.md and docs/: drawn from the code that stands beside them, or by hand below.
+"""Draw the pictures of README.md and docs/: most from the code on the page, some from the sketches in this file.
 
     python tools/pictures.py            write docs/pictures/*.svg
-    python tools/pictures.py --check    exit code 1 if one is not up to date; the tests do the same
+    python tools/pictures.py --check    exit with code 1 if a picture is out of date; the tests check this too
 
 Three kinds:
 
@@ -37,7 +37,7 @@ MODEL = "docs/explanation/processing-model.md"
 
 
 def pictures() -> dict[str, str]:
-    """Every picture: file name and text."""
+    """Draw every picture; return file name → text of the SVG."""
     made = {
         "guide.svg": diagram("README.md", "guide"),
         "tutorial.svg": diagram("docs/tutorial/first-agent.md", "guide"),
@@ -62,7 +62,7 @@ def pictures() -> dict[str, str]:
 
 @cache
 def _page(file: str) -> ModuleType:
-    """The namespace of a page once all its blocks have been run."""
+    """Run all blocks of a page; return their namespace."""
     with tempfile.TemporaryDirectory() as folder:
         page = Page(ROOT / file, Path(folder))
         sys.stdout, out = open(Path(folder) / "printed", "w"), sys.stdout  # noqa: SIM115  # closed below
@@ -77,7 +77,7 @@ def _page(file: str) -> ModuleType:
 
 
 def diagram(file: str, variable: str) -> str:
-    """The Signal-Rule-Slot diagram of a module that a page makes."""
+    """Draw the Signal-Rule-Slot diagram of a module that a page defines."""
     return rs.compile(vars(_page(file))[variable]).diagram()
 
 
@@ -104,7 +104,7 @@ class Sheet:
         )
 
     def state(self, x: float, y: float, w: float, name: str, words: Iterable[str], kind: str) -> None:
-        """A box centred at (x, y) with a name and lines of small words."""
+        """Draw a box centred at (x, y), with a name and lines of small text."""
         words = list(words)
         h = 34 + 14 * len(words)
         self.box(x - w / 2, y - h / 2, w, h, kind, 8)
@@ -242,7 +242,7 @@ def _seen(names: Iterable[str]) -> list[str]:
 
 
 def _bars(records: list[t.Record], end: float) -> Iterable[Bar]:
-    """The bars of every activation, in the order in which they begin."""
+    """Return the bars of all activations, in the order in which they begin."""
     open_: dict[int, Bar] = {}
     done: list[Bar] = []
 
@@ -280,7 +280,7 @@ def _bars(records: list[t.Record], end: float) -> Iterable[Bar]:
 
 
 def groups(page: ModuleType, variable: str) -> str:
-    """Causal groups: a band for each, its spikes in order of birth, arrows from parents to children."""
+    """Draw causal groups: a band for each, its spikes in order of birth, and arrows from parents to children."""
     records = list(vars(page)[variable])
     spikes = [r for r in records if isinstance(r, t.Born) and not r.signal.startswith(("core:", "idle:"))]
     runs = {r.run: r for r in records if isinstance(r, t.Started)}
@@ -336,7 +336,7 @@ def _short(payload: object) -> str:
 
 
 def life() -> str:
-    """The life of an activation."""
+    """Draw the life of an activation."""
     sheet = Sheet("The life of an activation: from a spike to an outcome", 940, 436)
     y = 120
     sheet.state(90, y, 132, "Stand-by", ["holds nothing;", "there is always one"], "plain")
@@ -360,8 +360,8 @@ def life() -> str:
     sheet.text(250, 312, "another rule has answered: consumed", "tiny")
     sheet.box(508, 336, 424, 86, "band", 10)
     for row, (name, words) in enumerate((
-        ("Done", "its spikes are consumed for its slots: nobody else answers"),
-        ("Resign", "its slots are free again: the next best is asked"),
+        ("Done", "its spikes are consumed for its slots: no other rule answers"),
+        ("Resign", "its slots are free again: the next best rule is asked"),
         ("Error", "as Resign if it has written nothing, else as Done"),
         ("Retire", "as Done, and the rule leaves the context"),
     )):  # fmt: skip
@@ -372,7 +372,7 @@ def life() -> str:
 
 
 def instant() -> str:
-    """The waves in which an instant is settled."""
+    """Draw the waves in which the engine settles an instant."""
     sheet = Sheet("How an instant is settled: three waves", 900, 236)
     y = 96
     sheet.state(98, y, 172, "Something happens", ["an input, a deadline,", "a rule that ends"], "signal")
@@ -382,11 +382,11 @@ def instant() -> str:
     for begin, end in ((184, 232), (408, 465), (655, 730)):
         sheet.line(f"M{begin} {y}H{end - 2}")
     sheet.text(436, y - 9, "none left", "tiny")
-    sheet.text(692, y - 9, "none may", "tiny")
+    sheet.text(692, y - 9, "no consent", "tiny")
     sheet.line("M540 128C540 186 350 186 340 129")
-    sheet.text(442, 156, "who starts may cause more", "tiny")
+    sheet.text(442, 156, "a rule that starts may cause more", "tiny")
     sheet.line("M814 128C814 232 320 232 310 129")
-    sheet.text(610, 224, "a flag has changed: from the beginning", "tiny")
+    sheet.text(610, 224, "a flag has changed: start again", "tiny")
     sheet.text(790, 48, "nothing changed: time may pass", "tiny")
     return sheet.svg()
 
@@ -395,7 +395,7 @@ def instant() -> str:
 
 
 def stale() -> list[str]:
-    """The names of pictures that are missing, or not as they would be drawn now."""
+    """Return the names of the pictures that are missing, out of date or no longer drawn."""
     made = pictures()
     kept = {file.name for file in FOLDER.glob("*.svg")}
     return sorted(
@@ -405,7 +405,7 @@ def stale() -> list[str]:
 
 
 def main(arguments: list[str]) -> int:
-    """Write or check."""
+    """Write the pictures, or check them; return the exit code."""
     if "--check" in arguments:
         names = stale()
         print("\n".join(f"docs/pictures/{name} is not up to date" for name in names), end="\n" if names else "")

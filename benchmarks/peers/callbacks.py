@@ -9,7 +9,7 @@ Seconds = float
 
 
 def answer(k: int, inputs: int) -> list[Seconds]:
-    """The bare hops of the common work: k + 1 callbacks, each scheduling the next, then the caller wakes."""
+    """Measure k + 1 callbacks, each of which schedules the next; the last one wakes the caller."""
 
     async def measure() -> list[Seconds]:
         loop = asyncio.get_running_loop()
@@ -33,7 +33,7 @@ def answer(k: int, inputs: int) -> list[Seconds]:
 
 
 def thread_hop(inputs: int) -> list[Seconds]:
-    """A bare hop into a worker thread and back."""
+    """Measure a bare hop into a worker thread and back."""
 
     async def measure() -> list[Seconds]:
         loop = asyncio.get_running_loop()

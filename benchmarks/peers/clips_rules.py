@@ -1,8 +1,8 @@
 """CLIPS, the C rule engine, through clipspy: facts for signals, salience for the competition, Python actions.
 
-Two styles. ``raise``: a rule's action is a Python function that itself raises the next signal (it asserts the
-fact), as a rule function does in Ravestate; this is the same work. ``return``: the Python function only returns
-whether to, and the rule asserts in C; this is the quickest that CLIPS with Python actions can be.
+There are two styles. In ``raise``, a rule's action is a Python function that asserts the next fact itself, as a rule
+function of Ravestate raises a signal. In ``return``, the Python function only returns a decision, and the rule asserts
+the fact in C. That is the fastest way to use CLIPS with Python actions.
 """
 
 import time
@@ -16,7 +16,7 @@ TEXT = "(slot text (type STRING))"
 
 
 class Agent:
-    """An environment with the chain: what was put, and what was said."""
+    """An environment with the chain. It notes the inputs and the answers."""
 
     def __init__(self, k: int, style: str, unrelated: int = 0) -> None:
         self.env = env = clips.Environment()
@@ -70,11 +70,11 @@ class Agent:
         else:
             self.env.define_function(speak, name)
             act = f"(assert (output (text ({name} ?text))))"
-        # The output is taken once there is one: that is what keeps the fallback quiet.
+        # Once there is an output, no other rule may write it. So the fallback stays quiet.
         self.env.build(f"(defrule {name} (declare (salience {salience})) ({on} (text ?text)) (not (output)) => {act})")
 
     def turn(self, text: str, expected: str) -> tuple[Seconds, Seconds]:
-        """Put an input. Returns the time to the answer, and the time with clearing away for the next."""
+        """Give an input. Return the time to the answer, and the time including the clean-up for the next input."""
         self.said.clear()
         begin = time.perf_counter()
         self.input.assert_fact(text=text)
@@ -89,10 +89,10 @@ class Agent:
 
 
 def answer(k: int, inputs: int, style: str, before: int = 20) -> dict[str, list[Seconds]]:
-    """Inputs one after another, each answered by the answering rule at the end of a chain of k.
+    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input.
 
-    Each batch has an environment of its own: clipspy 1.0.6 slows with every input that an environment has
-    seen, whichever way the facts are cleared away. `before`: how many inputs it sees before the measured ones.
+    Each batch has an environment of its own, because clipspy 1.0.6 slows down with every input, whether or not the
+    facts are removed. `before` is the number of inputs before the measurement.
     """
     agent = Agent(k, style)
     for n in range(before):
@@ -102,7 +102,7 @@ def answer(k: int, inputs: int, style: str, before: int = 20) -> dict[str, list[
 
 
 def compete(rules: int, inputs: int) -> list[Seconds]:
-    """One input, `rules` rules on it that all would write the one output: the greatest salience wins."""
+    """Measure one input with `rules` rules that compete for one output. The greatest salience wins."""
     agent = Agent(0, "raise")
     for i in range(rules - 2):  # "answer" and "fallback" compete as well
         agent.speaker(f"rival-{i}", on="input", salience=0, style="raise")
@@ -112,7 +112,7 @@ def compete(rules: int, inputs: int) -> list[Seconds]:
 
 
 def build(rules: int) -> Seconds:
-    """Time to build that many rules, each on a signal of its own."""
+    """Return the time to build so many rules, each on a signal of its own."""
     begin = time.perf_counter()
     Agent(1, "raise", unrelated=rules)
     return time.perf_counter() - begin

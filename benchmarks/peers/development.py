@@ -1,4 +1,4 @@
-"""Sentences on which the end of a turn was developed. They are apart from the sentences of the measurement.
+"""The sentences with which the end of a turn was developed. The measurement uses other sentences.
 
 `voice.ends_of_turns(model, 40, OPEN, COMPLETE)` measures them.
 """
@@ -39,4 +39,4 @@ OPEN = (
     ("It would be better to", "wait."), ("I am thinking of", "buying a car."),
     ("There is something I have to", "tell you."),
 )  # fmt: skip
-"""Beginnings of sentences, and how they go on after a pause."""
+"""Beginnings of sentences, each with its continuation after a pause."""

@@ -1,7 +1,7 @@
 """durable_rules, a rule engine in C: facts for signals, priorities for the competition, Python actions.
 
-The fallback has the last priority, and needs that there is no output. The facts of an input are retracted after it, which
-is not measured.
+The fallback has the lowest priority, and needs an empty output. The benchmark retracts the facts of an input after the
+measurement.
 """
 
 import time
@@ -46,7 +46,7 @@ def speak(who: str, said: list[str]) -> Callable[[Any], None]:
 
 
 def answer(k: int, inputs: int) -> list[Seconds]:
-    """Inputs one after another, each answered by the answering rule at the end of a chain of k."""
+    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input."""
     said: list[str] = []
     name = f"chain{time.perf_counter_ns()}"
     build(name, k, said)

@@ -13,7 +13,7 @@ class Signal(Fact):
 
 
 def engine_of(k: int, said: list[str]) -> KnowledgeEngine:
-    """Return an engine with the chain. The same rules as for CLIPS."""
+    """Return an engine with the chain: the same rules as for CLIPS."""
     members = {}
 
     def hop(self: KnowledgeEngine, number: int, text: str) -> None:
@@ -35,7 +35,7 @@ def engine_of(k: int, said: list[str]) -> KnowledgeEngine:
 
 
 def answer(k: int, inputs: int) -> list[Seconds]:
-    """Inputs one after another, each answered by the answering rule at the end of a chain of k."""
+    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input."""
     said: list[str] = []
     engine = engine_of(k, said)
     times = []

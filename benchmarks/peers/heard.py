@@ -1,4 +1,4 @@
-"""The truth about heard words: how much of each synthesised sentence is in the loudspeaker's file."""
+"""Find the words that the user really heard: the part of each synthesised sentence in the loudspeaker's file."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ravestate.modules.platform.voiceio import sound
 from ravestate.modules.platform.voiceio.synthesiser import Spoken, Synthesiser
 
 PIECE, STEP = 480, 48
-"""The samples of a piece that is looked for in the file (20 ms), and the samples between two pieces (2 ms)."""
+"""The number of samples of a piece to look for in the file (20 ms), and of samples between two pieces (2 ms)."""
 LOUD = 300
-"""The level of a piece that is no silence, so that it is in the file only if its sentence is."""
+"""The minimum level of a piece. A louder piece is in the file only if its sentence is."""
 FRAME = 240
-"""The samples of a frame whose power is measured: 10 ms."""
+"""The number of samples of a frame, for measuring its power: 10 ms."""
 
 
 @contextlib.contextmanager

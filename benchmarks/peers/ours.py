@@ -1,4 +1,4 @@
-"""Ravestate itself, at the common work: through the public interface only, on the event loop, in real time."""
+"""Ravestate with the same work as the peers: by its public interface, on the event loop, in real time."""
 
 import asyncio
 import time
@@ -13,11 +13,11 @@ Seconds = float
 
 
 class Agent:
-    """The chain as a module: what is put, and what was said.
+    """A module with the chain. It notes the inputs and the answers.
 
     Args:
-        k: Length of the chain.
-        unrelated: Rules besides, each on a signal of its own.
+        k: The length of the chain.
+        unrelated: The number of other rules, each on a signal of its own.
         threads: Whether the answering rule is a plain function, which runs in a worker thread.
     """
 
@@ -55,7 +55,7 @@ class Agent:
         )
 
     async def turn(self, context: rs.Context, text: str, expected: str) -> Seconds:
-        """Put an input. Returns the time until the caller holds the answer."""
+        """Give an input; return the time until the caller has the answer (seconds)."""
         self.said.clear()
         begin = time.perf_counter()
         context.put(self.heard, text)
@@ -90,7 +90,7 @@ stage = Stage()
 
 
 def answer(k: int, inputs: int, unrelated: int = 0, threads: bool = False) -> dict[str, list[Seconds]]:
-    """Inputs one after another, each answered by the answering rule at the end of a chain of k."""
+    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input."""
     agent, context = stage.agent(k, unrelated, threads)
 
     async def measure() -> dict[str, list[Seconds]]:
@@ -100,14 +100,14 @@ def answer(k: int, inputs: int, unrelated: int = 0, threads: bool = False) -> di
             answered.append(await agent.turn(context, f"word {n}", f"answer word {n}"))
             await context.quiet()
             turns.append(time.perf_counter() - begin)
-            assert len(agent.said) == 1, agent.said  # nor has the fallback come late
+            assert len(agent.said) == 1, agent.said  # and the fallback rule has not answered late
         return {"answered": answered, "turn": turns}
 
     return stage.run(measure())
 
 
 def simulated(k: int, inputs: int) -> list[Seconds]:
-    """The same in virtual time, without a loop's turns: what the automaton alone needs."""
+    """Measure the same in virtual time, without turns of the loop: the time of the engine alone."""
     agent = Agent(k)
     times = []
     with simulate(agent.module, trace=False) as sim:
@@ -120,7 +120,7 @@ def simulated(k: int, inputs: int) -> list[Seconds]:
 
 
 def idle(seconds: float, unrelated: int) -> float:
-    """Share of a core that a started context takes with nothing to do."""
+    """Return the share of a core that an idle context takes."""
 
     async def measure() -> float:
         agent = Agent(1, unrelated)

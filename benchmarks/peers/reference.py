@@ -1,7 +1,7 @@
 """The paper's reference implementation (Ravestate 0.7): states for rules, properties for slots, 20 ticks a second.
 
-Brought up as its own modules do it: a module in a ``with`` block, a context by the module's name, the input
-through ``ravestate_rawio.say``.
+The setup is that of its own modules: a module in a ``with`` block, a context by the module's name, and input through
+``ravestate_rawio.say``.
 """
 
 import random
@@ -22,7 +22,7 @@ serial = 0  # its modules live in one global registry, so every one needs a name
 
 
 class Agent:
-    """A running context with the chain: what was put, and what was said."""
+    """A running context with the chain. It notes the inputs and the answers."""
 
     def __init__(self, k: int, unrelated: int) -> None:
         global serial
@@ -65,7 +65,7 @@ class Agent:
         rawio.say(self.context, text)
         self.seen.wait(timeout=10)
         end = time.perf_counter()
-        # Long enough for the fallback to show itself, and for the next input to fall anywhere between two ticks.
+        # The wait is long enough for the fallback to answer, and for the next input to come anywhere between two ticks.
         time.sleep((4 + random.random()) * TICK)
         assert self.said == [expected], self.said
         return end - begin
@@ -80,17 +80,17 @@ def running(k: int, unrelated: int = 0) -> Iterator[Agent]:
         agent.turn("warm", "answer warm")
         yield agent
     finally:
-        agent.context.shutdown()  # idle it would burn what the next contestant needs
+        agent.context.shutdown()  # an idle context would take processor time from the next contestant
 
 
 def answer(k: int, inputs: int) -> list[Seconds]:
-    """Inputs one after another, each answered by the answering rule at the end of a chain of k."""
+    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input."""
     with running(k) as agent:
         return [agent.turn(f"word {n}", f"answer word {n}") for n in range(inputs)]
 
 
 def idle(seconds: float, unrelated: int) -> float:
-    """Share of a core that a started context takes with nothing to do."""
+    """Return the share of a core that an idle context takes."""
     with running(1, unrelated):
         time.sleep(1)
         wall, cpu = time.perf_counter(), time.process_time()

@@ -16,7 +16,7 @@ OPTIONS = {"queue_size": 100_000, "tcp_nodelay": True}
 
 
 class Image(genpy.Message):
-    """A sensor_msgs/Image that is on the wire already: Debian's rospy comes without its package."""
+    """A sensor_msgs/Image in its wire form, because Debian's rospy does not have the package of this type."""
 
     __slots__ = ("data",)
     _slot_types = ("uint8[]",)
@@ -27,12 +27,12 @@ class Image(genpy.Message):
 
 
 def start(name: str) -> None:
-    """Become a node."""
+    """Start a node in this process."""
     rospy.init_node(name, disable_signals=True, disable_rosout=True)
 
 
 def echo() -> None:
-    """Send back on /back each text of /chat."""
+    """Send each text of /chat back on /back."""
     back = rospy.Publisher("/back", String, **OPTIONS)
     rospy.Subscriber("/chat", String, lambda message: back.publish(message.data), tcp_nodelay=True)
 

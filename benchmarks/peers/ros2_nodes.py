@@ -18,7 +18,7 @@ node = executor = None
 
 
 def start(name: str) -> None:
-    """Become a node."""
+    """Start a node in this process."""
     global node, executor
     rclpy.init(args=[])
     node = rclpy.create_node(name, start_parameter_services=False)
@@ -28,7 +28,7 @@ def start(name: str) -> None:
 
 
 def echo() -> None:
-    """Send back on /back each text of /chat."""
+    """Send each text of /chat back on /back."""
     back = node.create_publisher(String, "/back", DEEP)
     node.create_subscription(String, "/chat", back.publish, DEEP)
     executor.wake()

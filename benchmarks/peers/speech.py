@@ -52,7 +52,7 @@ OPEN = (
     ("I was on my way to the", "market."), ("They asked us to", "wait outside."), ("It is a photograph of my", "house."),
     ("Before we leave, I", "have to call him."),
 )  # fmt: skip
-"""Beginnings of sentences, and how they go on after a pause."""
+"""Beginnings of sentences, each with its continuation after a pause."""
 
 INTERRUPTIONS = (
     "Stop, that is enough.", "Wait a moment please.", "Excuse me, I have a question.", "Can you tell me something else?",
@@ -162,7 +162,7 @@ class Room(WavLine):
 
 @contextlib.contextmanager
 def echoing() -> Iterator[None]:
-    """Let every recording be played in a `Room`."""
+    """Make every recording play in a `Room`."""
     with patch.object(opening, "WavLine", Room):
         yield
 
@@ -192,12 +192,12 @@ def conversation(pcm: bytes, output: Path | None = None, record: Any = None, **s
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """A moment at which the agent took the user's turn for over.
+    """A moment at which the agent decided that the user's turn was over.
 
     Attributes:
         time: The moment: seconds on the track's time line.
         end: The end of the speech in the turn.
-        text: The words, or the reason for which it is no utterance.
+        text: The words, or the reason why the sound is not an utterance.
     """
 
     time: float

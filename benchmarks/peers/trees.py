@@ -1,4 +1,4 @@
-"""py-trees, behaviour trees in Python: a tick of a tree for an input.
+"""py-trees, behaviour trees in Python: each input is one tick of a tree.
 
 A tree has no rules, and nothing competes: the order in the tree decides. A sequence of k steps passes the input on over
 the blackboard, then the answer follows; the fallback is the second child of a selector. The tree does less than the other
@@ -16,7 +16,7 @@ Seconds = float
 
 
 class Hop(py_trees.behaviour.Behaviour):
-    """A step: it copies one key of the blackboard to another."""
+    """A step that copies one key of the blackboard to another."""
 
     def __init__(self, here: str, there: str) -> None:
         super().__init__(there)
@@ -31,7 +31,7 @@ class Hop(py_trees.behaviour.Behaviour):
 
 
 class Speak(py_trees.behaviour.Behaviour):
-    """The last step: it says the text of a key."""
+    """The last step, which says the text of a key."""
 
     def __init__(self, name: str, on: str, said: list[str]) -> None:
         super().__init__(name)
@@ -45,7 +45,7 @@ class Speak(py_trees.behaviour.Behaviour):
 
 
 def answer(k: int, inputs: int) -> list[Seconds]:
-    """Inputs one after another, each answered by the answering step at the end of a chain of k."""
+    """Measure inputs one after another. The step at the end of a chain of k steps answers each input."""
     said: list[str] = []
     names = ["input", *(f"signal{i}" for i in range(1, k + 1))]
     chain = py_trees.composites.Sequence("chain", memory=False)

@@ -1,6 +1,6 @@
-"""The contestants' half of the wire: requests and replies, one JSON object a line, on stdin and stdout.
+"""The contestant's end of the pipe: requests and replies on stdin and stdout, one JSON object in each line.
 
-Imports the standard library only, since each contestant runs in an environment of its own.
+This file imports only the standard library, because each contestant runs in an environment of its own.
 """
 
 import json
@@ -18,7 +18,7 @@ def serve(*functions: Callable[..., Any]) -> None:
     ``{"result": ...}`` or ``{"error": traceback}``.
     """
     replies = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # whatever else is printed is no reply
+    os.dup2(2, 1)  # other output must not count as a reply
     by_name = {function.__name__: function for function in functions}
     for line in sys.stdin:
         request = json.loads(line)

@@ -1,7 +1,8 @@
 """How many pictures a second does the agent look at, and what do its eyes cost the conversation?
 
-The camera is a video of 30 pictures a second: a person who sways before it. The agent looks at it while it is asked. Agents
-with and without a camera take turns. The time of an answer ends when the agent has understood the words: the same work in both.
+The camera is a video of 30 pictures a second: a person who sways before it. The agent looks at the video while users
+ask questions. Agents with and without a camera take turns. The time of an answer ends when the agent has understood the
+words: the same work in both.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ out.release()
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Measure the rate, and the delay of the conversation."""
+    """Measure the rate of pictures, and the delay of the conversation."""
     with tempfile.TemporaryDirectory() as place:
         video = Path(place) / "camera.mp4"
         subprocess.run([eyes_python(), "-c", VIDEO, str(PHOTO), str(video)], check=True)
@@ -86,7 +87,7 @@ async def _talk(source: str, memory: Path) -> tuple[float, float]:
     }
     waits: list[float] = []
     async with rs.Context(hibye, persqa, visionio, counter, settings=settings) as context:
-        for text in TEXTS:  # loads what is loaded at the first use
+        for text in TEXTS:  # the first input loads the models
             context.put(rawio.input, text)
             await context.next(nlp.analysis.changed, timeout=60)
         await asyncio.sleep(2.0)
@@ -97,6 +98,6 @@ async def _talk(source: str, memory: Path) -> tuple[float, float]:
             await context.next(nlp.analysis.changed, timeout=60)
             waits.append(time.perf_counter() - start)
             await asyncio.sleep(0.3)
-    # The time from the first look to the last one has no part of a period at its ends, unlike that of the talk.
+    # Measure from the first look to the last, because the talk may begin and end in the middle of a period.
     rate = (len(looks) - 1) / (looks[-1] - looks[0]) if looks else 0.0
     return statistics.median(waits), rate

@@ -3,7 +3,7 @@
 Each workload runs on the bare engine, whose rules do nothing. It runs at one size and at ten times that size:
 
 - Pairs: n spikes of each of two signals, for a rule `a & b`. The same for a rule that writes a slot.
-- Halves: n spikes wait for a counterpart that comes for the last one alone.
+- Halves: n spikes wait for a counterpart, which comes only for the last spike.
 - Topics: an input among n rules `input & topic_i`. The topics are inputs, or a classifier raises them.
 - Fallbacks: an input among n rules `input & topic_i` and n rules on the input alone.
 - Stalemates: n inputs, each of which makes two pairs of rules wait for each other.
@@ -35,7 +35,7 @@ from ravestate.engine.events import Emit, Event, Finish
 SPIKES, RULES = 50, 100
 FACTOR = 10
 LINEAR = 13.0
-"""The most that ten times the size may cost."""
+"""The maximum factor by which the time may grow at ten times the size."""
 LIMIT = 1_000_000
 
 
@@ -223,7 +223,7 @@ WORKLOADS: dict[str, tuple[int, Callable[[int], float]]] = {
 def grow(workload: str, size: int) -> float:
     """Return the seconds of processor time of a workload at a size.
 
-    Earlier workloads leave thousands of dead records of policies. They are collected first: else their removal, up to 50 ms,
+    Earlier workloads leave thousands of dead records of policies. Collect these first, or their removal (up to 50 ms)
     would count for a later workload.
     """
     gc.collect()

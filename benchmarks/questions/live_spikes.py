@@ -62,7 +62,7 @@ def in_wait(spikes: int) -> dict[str, float]:
 
         @module.rule(when=ping.max_age(None) & never)
         async def both(ctx: rs.RuleContext) -> None:
-            raise AssertionError("what never comes came")
+            raise AssertionError("the second signal came, although it must not")
 
         @module.rule(when=heard.changed, reads=heard, writes=output)
         async def answer(ctx: rs.RuleContext) -> None:
@@ -97,7 +97,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
     beside: dict[int, list[float]] = {FEW: [], MANY: []}
     for _ in bench.rounds(7, 2):
         for spikes in (FEW, MANY):
-            repeated = 10 if spikes == FEW else 1  # so few spikes are too short a while to measure
+            repeated = 10 if spikes == FEW else 1  # so few spikes take too little time for a measurement
             bursts[spikes].append(statistics.median(ours.ask("burst", spikes=spikes) for _ in range(repeated)))
             waits = [ours.ask("in_wait", spikes=spikes) for _ in range(repeated)]
             more[spikes].append(statistics.median(wait["one more"] for wait in waits))

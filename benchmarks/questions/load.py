@@ -1,13 +1,13 @@
 """How evenly are many contexts served?
 
-A thousand contexts of one policy run on one loop. First all of them have inputs in wait, which gives the most inputs a
-second. Then inputs come at half of this rate, each to a random context. The time of an input ends when its answer is
-written. It begins when the input was due, although the loop may be busy then. The loop never sleeps, so the clock
-is the process's own: other programs on the machine do not count.
+A thousand contexts of one policy run on one loop. First, inputs wait in all contexts, which gives the maximum number of
+inputs a second. Then inputs come at half of this rate, each to a random context. The time of an input ends when its
+answer is written. It begins when the input is due, even if the loop is busy then. The loop never sleeps, so the
+benchmark uses the process's own clock, and other programs do not count.
 
 Evenly spaced inputs show the delays that are ours: garbage collection, and the contexts' turns on the loop. Inputs at
-random moments (exponential pauses) also wait for each other. The last figure tells how much of that any server has: the
-same moments, and a server that takes our time at full load for each input.
+random moments (exponential pauses) also wait for each other. The last figure is the same for an ideal server: it gets
+the inputs at the same moments, and takes our time at full load for each.
 
 The floor is a loop of constant work instead of an agent, at the same even moments. Its slowest percent are delays that
 the machine causes.
@@ -27,13 +27,13 @@ from benchmarks.peers.wire import serve
 
 CONTEXTS = 1_000
 LIMIT = 3.0
-"""The most that the 99th percentile may be, as a multiple of the median."""
+"""The maximum of the 99th percentile, as a multiple of the median."""
 STEPS, WARM = 1_000, 200
-"""The steps of the loop that finds out how long a step takes, and how often it runs."""
+"""The number of steps of the loop that measures the time of a step, and the number of its runs."""
 
 
 class Users:
-    """Contexts of one policy, and when each input was answered."""
+    """Contexts of one policy, with the time of each answer."""
 
     def __init__(self) -> None:
         self.answered: list[float] = []

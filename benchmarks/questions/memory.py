@@ -34,7 +34,7 @@ def held(contexts: int, k: int, unrelated: int) -> float:
     async def measure() -> float:
         agent = Agent(k, unrelated)
         policy = rs.compile(agent.module)
-        async with rs.Context(policy) as first:  # what is made once, for all, is not counted
+        async with rs.Context(policy) as first:  # objects that all contexts share do not count
             await agent.turn(first, "warm", "answer warm")
         gc.collect()
         tracemalloc.start()

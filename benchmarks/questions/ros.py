@@ -4,8 +4,8 @@
   the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge process.
 - Stream: numbers come a thousand times a second. One slot takes all of them, another the latest. None may be lost, out of
   order or left waiting, and neither the agent nor its bridge may grow after the first quarter.
-- Images: 640x480 colour images come 30 times a second. The number of copies is that of the bytes which the bridge writes,
-  divided by those of the images. The agent reads the bridge's memory.
+- Images: 640x480 colour images come 30 times a second. The number of copies is the number of bytes that the bridge
+  writes, divided by the number of bytes of the images. The agent reads the bridge's memory.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ RATE = 1000
 IMAGES = 30
 SIZE = 3 * 640 * 480
 GROWTH = 2_000_000
-"""The bytes by which a process may differ between two looks, without growing."""
+"""The number of bytes by which the size of a process may vary. A greater increase counts as growth."""
 WAIT = 30.0
 """Seconds to wait for the other nodes."""
 
@@ -169,7 +169,7 @@ def talk(version: int, settings: dict[str, Any], count: int) -> list[float]:
 
 
 def stream(version: int, settings: dict[str, Any], count: int) -> dict[str, float]:
-    """Take a stream of numbers; return what was lost, by how much the processes grew (bytes), and their work (cores)."""
+    """Take a stream of numbers. Return the losses, the growth of the processes (bytes), and their work (cores)."""
     ros: Any = (ros1, ros2)[version - 1]
     module = rs.Module("agent", requires=[ros])
     all_ = ros.subscriber(module, "all", topic="/numbers", type="std_msgs/Int32", keep="all")
@@ -220,7 +220,7 @@ def stream(version: int, settings: dict[str, Any], count: int) -> dict[str, floa
 
 
 def look(version: int, settings: dict[str, Any], count: int) -> dict[str, float]:
-    """Take images; return the number of those lost, and of the copies of each."""
+    """Take images. Return the number of lost images, and the number of copies of each image."""
     ros: Any = (ros1, ros2)[version - 1]
     module = rs.Module("agent", requires=[ros])
     images = ros.subscriber(module, "images", topic="/images", type="sensor_msgs/Image", keep="all")
@@ -276,7 +276,7 @@ def _memory(pid: int) -> int:
 
 
 def _held(numbers: list[int]) -> int:
-    """Return about how many bytes the measurement's own list takes: a number and a place in the list each."""
+    """Return an estimate of the bytes of the measurement's own list: for each entry, a number and its place."""
     return len(numbers) * (32 + 8)
 
 

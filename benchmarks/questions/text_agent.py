@@ -28,7 +28,7 @@ DECIDE, PROMPT, HOLD = 0.015, 1.5, 500e6
 """Seconds from input to decision, seconds to the first prompt, and bytes."""
 
 PATIENCE = 60.0
-"""Seconds until an agent that decides nothing has failed."""
+"""Seconds after which an agent without a decision has failed."""
 
 UTTERANCES = (
     "hello {name}", "how are you, {name}", "what is your name? i am {name}", "i live in a small house near {town}",
@@ -40,7 +40,7 @@ UTTERANCES = (
     "how many people live in {country}?", "thank you, {name}!", "do you have any friends in {town}",
     "i would like to go to {country} tomorrow evening",
 )  # fmt: skip
-"""Utterances of a talk. Each round says them about other people and things: a vector that is known costs nothing."""
+"""Utterances of a talk. Each round uses other people and things, because a known vector takes no time."""
 
 WORDS = (
     ("Ada", "Bremen", "tea", "Peru"), ("Ben", "Delft", "chess", "France"), ("Cleo", "Turin", "cheese", "Chile"),
@@ -133,6 +133,7 @@ def _prompt() -> float:
 
 
 if __name__ == "__main__":
-    # The environment for development has PyTorch, which spaCy would load. The environment of an agent has not.
+    # The environment for development has PyTorch, and spaCy would load it. An agent's environment does not have
+    # PyTorch.
     sys.modules["torch"] = None  # type: ignore[assignment]
     serve(decide)

@@ -4,10 +4,11 @@
 - Wait: the time from the end of the user's speech to the first sound of the answer, on the clock of this machine. It has
   four parts: the pause that the settings demand, recognition, synthesis, and the rest, which is our own share.
 - End of turn: complete sentences, and beginnings of sentences that go on after a pause of a second, as a recording. A
-  false cut takes such a pause for the end; a missed end waits for the longest pause behind a complete sentence.
+  false cut ends the turn in such a pause. With a missed end, the agent waits for the longest pause after a complete
+  sentence.
 - Interruptions, back-channels and the echo: on the time line of a recording, in virtual time.
-- Heard: the words that the agent believes were heard of an interrupted story, against the words of which at least half are
-  in the loudspeaker's file.
+- Heard: the words of an interrupted story that the user heard, according to the agent and according to the
+  loudspeaker's file. A word counts if at least half of it is in the file.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from ravestate.modules.platform.voiceio import sound
 from ravestate.modules.platform.voiceio.playout import PlayOut
 
 OWN, WHOLE = 0.020, {"tiny.en": 0.9, "base": 1.5}
-"""The greatest seconds of our own share, and of the whole wait with each model."""
+"""The maximum seconds of our own share, and of the whole wait with each model."""
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
@@ -108,7 +109,7 @@ def word_error_rate(model: str) -> float:
 
 
 class LiveLine:
-    """A line on the clock of this machine: a track is the microphone, and the first sound of each answer is timed."""
+    """A line with a track as the microphone. It notes the time of each answer's first sound, by the machine's clock."""
 
     cancels_echo = True
     ended = False
@@ -213,7 +214,7 @@ def _time(thing: Any, name: str, times: dict[str, list[tuple[float, float]]]) ->
 
 
 PAUSE, APART = 1.0, 2.5
-"""The seconds of a pause within a sentence, and of the silence behind a sentence."""
+"""The seconds of a pause within a sentence, and of the silence after a sentence."""
 
 
 def ends_of_turns(model: str, many: int, open_: Any = OPEN, complete: Any = COMPLETE) -> tuple[float, float, int]:
@@ -263,7 +264,7 @@ def interruptions(many: int) -> tuple[list[float], float, float]:
         stories = [one for one in said if one.speaker == "agent"]
         for onset in onsets:
             under_way = [one for one in stories if one.start < onset < one.end]
-            delays += [min(one.end - onset, 2.0) for one in under_way]  # else nothing was there to interrupt
+            delays += [min(one.end - onset, 2.0) for one in under_way]  # else there was nothing to interrupt
             for one in under_way:
                 begin, end = (2 * round(time * rawio.OUT_RATE) for time in (one.start - 0.05, one.end + 0.1))
                 story = next(text for text in STORIES if text.startswith(one.text[:20]))

@@ -22,10 +22,10 @@ from ravestate.board.recorder import PAUSE
 
 LENGTH = 4
 WARM = 5.0
-"""Seconds for which each answers before it is timed: bursts that a recorder takes gladly are over by then."""
+"""Seconds for which each contestant answers before the measurement, so that the recorder's first burst is over."""
 
 TURN = 0.6
-"""Seconds of processor time for which one answers before the next has its turn."""
+"""Seconds of processor time for which a contestant answers, before the turn of the next contestant."""
 
 TURNS = 15
 """Turns of each contestant in one repetition."""
@@ -67,7 +67,7 @@ class Talk:
         self._number = 0
 
     async def answer(self, seconds: float) -> float:
-        """Answer for so many seconds of processor time; how many of them an answer took."""
+        """Answer for so many seconds of processor time. Return the seconds that one answer took."""
         if self._recorder is not None:
             _begin_anew(self._recorder)
         first, begin, used = self._number, time.process_time(), 0.0
@@ -81,16 +81,16 @@ class Talk:
 
 
 def _begin_anew(recorder: Any) -> None:
-    """Take from a recorder what it was granted for the time in which others had their turn."""
+    """Take away the records that a recorder may take because it was idle during the turns of the others."""
     recorder._granted = asyncio.get_running_loop().time()
     recorder._left = max(1, min(recorder._left, int(recorder._rate * PAUSE)))
     recorder._idle_share.share()
 
 
 def answered() -> list[list[float]]:
-    """Seconds for an answer without a board, recorded, and looked into: of each as many figures as there are turns.
+    """Return the seconds for an answer without a board, with a recorder, and with a board: one figure for each turn.
 
-    They take turns in one process: from one process to another the same work differs by more than what is asked for.
+    The contestants take turns in one process, because two processes would differ by more than the contestants do.
     """
     from websockets.asyncio.client import connect
 
@@ -131,7 +131,7 @@ def answered() -> list[list[float]]:
 
 
 async def _read(socket: Any) -> None:
-    """As a browser does; here it shares the loop, so what it takes is counted as well."""
+    """Read the frames as a browser does. The reader shares the loop, so its time counts as well."""
     async for _ in socket:
         pass
 

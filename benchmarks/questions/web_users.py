@@ -29,11 +29,11 @@ from benchmarks.peers.wire import serve
 
 USERS = 500
 EVERY = 10.0
-"""Seconds between what a user says and what they say next."""
+"""Seconds from one utterance of a user to the next."""
 COMING = 30.0
-"""Seconds within which all users come: each is greeted, and what is kept for each is made ready."""
+"""Seconds within which all users come. The agent greets each user, and prepares their conversation."""
 LIMIT = 0.2
-"""Seconds within which 95 % of the answers shall be there."""
+"""Seconds within which 95 % of the answers must come."""
 GIVEN_UP = 15.0
 """Seconds after which an answer counts as lost."""
 
@@ -41,7 +41,7 @@ NOT_ASKED = {"conio", "webio", "wildtalk", "telegramio"}
 """Built-in modules that take no part: other platforms, and the language model."""
 
 GREETING = "hello"
-"""Answered in words of the agent's own."""
+"""An utterance that the agent answers in its own words."""
 
 PHRASES = (
     GREETING,
@@ -143,7 +143,7 @@ async def serve_echo(tell: Any) -> None:
 
 
 def talk(port: int, kind: str, users: int, seconds: float) -> dict[str, Any]:
-    """Let all users talk for some time: how long each answer took (seconds), and what went wrong."""
+    """Let all users talk for some time. Return the time of each answer (seconds), and the faults."""
     return asyncio.run(_talk(port, kind, users, seconds))
 
 
@@ -171,7 +171,7 @@ async def _talk(port: int, kind: str, users: int, seconds: float) -> dict[str, A
 
 
 class User:
-    """Says something now and then, and looks at the clock until there is an answer."""
+    """A user who says something now and then, and measures the time until the answer."""
 
     def __init__(self, number: int, kind: str) -> None:
         self.number = number
@@ -192,7 +192,7 @@ class User:
                 pass  # the greeting has come
 
     async def talk(self, seconds: float) -> None:
-        """Say something every so often."""
+        """Say something at regular intervals."""
         await asyncio.sleep(self.random.random() * EVERY)
         end = time.monotonic() + seconds - EVERY
         while True:
@@ -217,7 +217,7 @@ class User:
             self.times.append(time.perf_counter() - began)
 
     async def _answer(self, key: str, text: str) -> None:
-        """Wait for the answer to a text. A filler is none; what only another user can have said is counted."""
+        """Wait for the answer to a text. A filler is no answer. Count answers to another user's words."""
         self.texts.add(text)
         heard = False
         while True:

@@ -710,7 +710,7 @@ def test_a_trace_without_runs_names_the_rule_alone(stage: Stage) -> None:
 
 
 def many(stage: Stage, ticks: int, slow: float) -> Simulation:
-    """Declare a cause that one rule answers many times, while another rule loses as often."""
+    """Declare rules for one cause: one rule answers many times, and another rule loses as often."""
     tick = stage.module.signal("tick")
 
     @stage.module.rule(when=stage.touch, emits=tick)

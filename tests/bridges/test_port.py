@@ -50,7 +50,7 @@ Talk = Callable[[Conversation, list[Utterance]], Awaitable[None]]
 
 
 def converse(talk: Talk, *modules: rs.Module) -> None:
-    """Run a test in virtual time with a conversation and the list of the utterances that nobody asked for."""
+    """Run a test in virtual time with a conversation, and with a list of the agent's unasked utterances."""
 
     async def main() -> None:
         spoken: list[Utterance] = []

@@ -1,4 +1,5 @@
-"""``ravestate memory``: lists, shows, exports, loads and forgets; mistakes are 2, what cannot be used is 1."""
+"""``ravestate memory``: lists, shows, exports, loads and forgets. The exit code is 2 for a mistake, and 1 if something
+cannot be used."""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ HOLD = """
 
 @pytest.fixture
 def file(folder: Path) -> Path:
-    """A memory of Ada, who lives in London, and of two Bobs, of whom Eve likes one."""
+    """A memory of Ada, who lives in London, of two Bobs, and of Eve, who likes one Bob."""
     path = folder / "memory.lbug"
     memory = open_memory(ontology.Settings(path=path))
     ada = memory.create("Person", name="Ada", born=date(1815, 12, 10)).result()

@@ -15,7 +15,7 @@ LINE = re.compile(r"(\S.*?) +(-|\d\.\d{3})  -?\d+,-?\d+,\d+,\d+  (.+)")
 
 @pytest.fixture(scope="module", autouse=True)
 def worker() -> Iterator[None]:
-    """Keep one worker for all commands, which would each start one."""
+    """Keep one worker for all commands. Otherwise each command would start one."""
     eye()
     yield
     eye().close()
@@ -23,7 +23,7 @@ def worker() -> Iterator[None]:
 
 
 def rows(text: str) -> list[tuple[str, str, str]]:
-    """The name, distance and file of each line."""
+    """Return the name, the distance and the file in each line."""
     found = [LINE.fullmatch(line) for line in text.splitlines()]
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 

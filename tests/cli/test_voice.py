@@ -1,4 +1,4 @@
-"""``ravestate voice``: what is missing, transcripts, speech, and conversations with a recording."""
+"""``ravestate voice``: missing parts, transcripts, speech, and conversations with a recording."""
 
 import re
 import signal
@@ -133,7 +133,8 @@ def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_in_order(folder: Path) -> None:
-    """A thread that waits for input holds the virtual clock, else it would reach the end before the signal comes."""
+    """A thread that waits for input stops the virtual clock. Otherwise the clock would reach the end before the
+    signal."""
     (folder / "slow.py").write_text(
         STORYTELLER
         + """

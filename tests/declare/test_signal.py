@@ -28,7 +28,7 @@ def test_signals_of_one_name_are_different_signals() -> None:
 
 
 def test_a_signal_equals_no_text() -> None:
-    """Two signals of one name would both equal it, and yet differ from each other."""
+    """If a signal equalled its name, two signals with one name would equal the name, but not each other."""
     assert rs.Module("twin").signal("s") != "twin:s"
 
 

@@ -41,6 +41,6 @@ def test_a_long_value_is_cut() -> None:
 
 
 def test_a_slot_refuses_a_value_without_a_repr() -> None:
-    """The message used to fail together with the value's own code."""
+    """In the past, the message failed if the value's own code failed."""
     with pytest.raises(rs.RuleError, match="the rule wrote <Shy without a repr> to m:mood, which takes str"):
         rs.Module("m").slot("mood", "", type=str).check(Shy(), "the rule")

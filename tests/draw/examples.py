@@ -1,4 +1,4 @@
-"""Diagrams for tests: the paper's figures as rules, and arbitrary ones from Hypothesis."""
+"""Diagrams for tests: the paper's figures as rules, and arbitrary diagrams from Hypothesis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A conversation with the complete text agent in virtual time, and which module said what."""
+"""A conversation with the complete text agent in virtual time. It names the module that said each utterance."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ WORDS = "Hm, that is small talk."
 
 
 class Model:
-    """A language model that always says the same; the language model itself has tests of its own."""
+    """A stand-in for the language model, which always gives the same answer. Other tests cover the language model."""
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Nothing is to be loaded."""
+        """Do nothing: there is nothing to load."""
 
     async def stream(self, messages: Sequence[Message], **_: Any) -> AsyncGenerator[str, None]:
         for word in WORDS.split():
             yield word + " "
 
     async def close(self) -> None:
-        """Nothing is to be let go of."""
+        """Do nothing: there is nothing to release."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """One utterance of the agent, and the module whose rule meant it."""
+    """An utterance of the agent, and the module whose rule caused it."""
 
     module: str
     text: str
@@ -45,10 +45,10 @@ class Conversation:
     """The agent of ``ravestate chat`` without its console and its model.
 
     Args:
-        folder: Where its memory and its documents are.
-        settings: For a module's name the values of its settings. With wildtalk's backend ``listen``, the listening skill
+        folder: The folder with the agent's memory and documents.
+        settings: Module's name → the values of its settings. With wildtalk's backend ``listen``, the listening skill
             makes small talk; otherwise a model that always says the same.
-        without: Modules that do not take part.
+        without: The modules to leave out.
     """
 
     def __init__(
@@ -88,11 +88,11 @@ class Conversation:
             assert self.sim.failures == []
 
     def say(self, text: str, seconds: float = 2.0) -> list[Line]:
-        """Say something; what is said in the seconds after it."""
+        """Say something; return the utterances in the seconds after it."""
         return self._while(lambda: self.sim.say(text), seconds)
 
     def silence(self, seconds: float = 12.0) -> list[Line]:
-        """Say nothing for a while; what is said meanwhile."""
+        """Say nothing for a while; return the utterances in this time."""
         return self._while(lambda: None, seconds)
 
     def _while(self, act: Any, seconds: float) -> list[Line]:
@@ -102,12 +102,12 @@ class Conversation:
         return self.lines()[known:]
 
     def lines(self) -> list[Line]:
-        """All that was said."""
+        """Return all utterances so far."""
         runs = {record.run: record for record in self.sim.trace if isinstance(record, Started)}
         spikes = {record.spike: record for record in self.sim.trace if isinstance(record, Born)}
 
         def meant(run: int) -> str:
-            """The rule that meant it, where the verbaliser only worded it."""
+            """Return the rule that caused an utterance, even if the verbaliser said it."""
             started = runs[run]
             if started.rule == "verbaliser:verbalise":
                 return meant(spikes[started.spikes[0]].source)
@@ -121,7 +121,7 @@ class Conversation:
 
 
 def spoken_by(lines: Sequence[Line]) -> list[str]:
-    """The modules that spoke, in order."""
+    """Return the modules that spoke, in order."""
     return [line.module for line in lines]
 
 

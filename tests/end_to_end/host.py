@@ -1,4 +1,4 @@
-"""Somebody to talk with, for the tests in a browser."""
+"""An agent to talk with, for the tests in a browser."""
 
 import asyncio
 
@@ -43,7 +43,7 @@ storyteller = rs.Module("storyteller", requires=(rawio,))
 
 
 class Cue:
-    """Two gates through which the story goes; the test opens them, on the same loop."""
+    """Two events for which the story waits. The test sets them on the same loop."""
 
     thought = asyncio.Event()
     told = asyncio.Event()
@@ -55,7 +55,7 @@ class Cue:
     emits=rawio.piece,
 )
 async def tell(ctx: rs.RuleContext) -> None:
-    """Think, then tell it in two pieces; the test says when to go on."""
+    """Think, and then tell the story in two pieces. The test decides when the story goes on."""
     await Cue.thought.wait()
     ctx[rawio.speaking] = True
     ctx.emit(rawio.piece, "Once upon a time ")

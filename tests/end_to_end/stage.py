@@ -1,6 +1,6 @@
-"""A stage for tests in a browser: one loop in a thread of its own, on which servers and Chromium run.
+"""Run servers and Chromium for browser tests, on one loop in a thread of its own.
 
-Playwright marks the thread that it runs in as one with a running loop; the other tests want theirs without.
+Playwright makes its thread one with a running loop, and the other tests need a thread without a loop.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from ravestate.runtime.agent import Agent
 __all__ = ["PHONE", "Host", "Stage", "hide", "on_stage"]
 
 LIMIT = 180
-"""Seconds after which a test that waits for what never comes is ended."""
+"""Seconds after which a test fails that waits in vain."""
 
-expect.set_options(timeout=30_000)  # milliseconds: a slow machine must not fail
+expect.set_options(timeout=30_000)  # milliseconds; long, because a slow machine must not fail
 
 PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
 CHROMIUM = ("chromium", "chromium-browser")
 SHELL = "chromium-headless-shell"
-"""Chromium without windows: a page costs a third of the time. It cannot refuse a microphone or a camera."""
+"""Chromium without windows, in which a page takes a third of the time. It cannot refuse a microphone or a camera."""
 FLAGS = [
     "--no-sandbox",  # for tests that run as root, in a container
     "--disable-gpu",
@@ -45,7 +45,7 @@ FLAGS = [
 
 
 async def hide(page: Page) -> None:
-    """Tell a page that it is in the background, as when the visitor opens another one."""
+    """Tell a page that it is in the background, as if the visitor had opened another tab."""
     await page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden'});"
         "document.dispatchEvent(new Event('visibilitychange'))"
@@ -53,7 +53,7 @@ async def hide(page: Page) -> None:
 
 
 class Host:
-    """A page that is served. The network to it may fail."""
+    """A page on a server. A test can make the network to it fail."""
 
     def __init__(self, server: Server) -> None:
         self.server = server
@@ -66,7 +66,7 @@ class Host:
 
     @property
     def sessions(self) -> list[Any]:
-        """The conversations that are going on."""
+        """The running conversations."""
         return list(self.app.state.sessions)
 
     def drop(self) -> None:
@@ -78,7 +78,7 @@ class Host:
 
     @contextlib.contextmanager
     def away(self) -> Iterator[None]:
-        """Lose all connections, and take no new ones within."""
+        """Lose all connections, and take no new ones within the ``with`` block."""
         access = self.app.state.access
         access.refusal = lambda headers: "away"
         self.drop()
@@ -89,7 +89,7 @@ class Host:
 
 
 class Stage:
-    """Chromium, and a loop to do things with it; to be closed."""
+    """Chromium, and the loop that controls it. Close it after use."""
 
     def __init__(self) -> None:
         self._loop = asyncio.new_event_loop()
@@ -118,7 +118,7 @@ class Stage:
         """Start a Chromium that may use a microphone and a camera, which play files.
 
         Args:
-            sound: The recording that the microphone repeats; with ``%noloop`` at its end it comes once.
+            sound: The recording that the microphone repeats. If the name ends in ``%noloop``, it plays once.
             film: The video that the camera repeats.
         """
         flags = ["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"]
@@ -129,7 +129,7 @@ class Stage:
         return self.launch(*flags)
 
     def run(self, work: Coroutine[Any, Any, Any]) -> Any:
-        """Do something on the loop, and wait for it."""
+        """Run a coroutine on the loop, and wait for its result."""
 
         async def limited() -> Any:
             async with asyncio.timeout(LIMIT):
@@ -138,7 +138,7 @@ class Stage:
         return asyncio.run_coroutine_threadsafe(limited(), self._loop).result()
 
     def close(self) -> None:
-        """End everything."""
+        """Close Chromium, and end the loop."""
         self.run(self._over.aclose())
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
@@ -155,12 +155,13 @@ class Stage:
     async def open(
         self, address: str, *, complaints: bool = False, browser: Browser | None = None, **options: Any
     ) -> AsyncGenerator[Page]:
-        """Open a page in a window of its own, which shares nothing with others.
+        """Open a page in a new window, which shares no data with other windows.
 
         Args:
             address: The address of the page.
             browser: The browser, if it is not the usual one.
-            complaints: Whether the browser may complain (of a lost connection); otherwise that is a failure.
+            complaints: Whether the browser may report errors, such as a lost connection. Otherwise an error fails the
+                test.
             options: Options of the window, e.g. `PHONE`.
         """
         window = await (browser or self.browser).new_context(reduced_motion="reduce", **options)

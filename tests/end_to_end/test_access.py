@@ -1,4 +1,4 @@
-"""The page for everybody: what axe finds, and how much has to be loaded."""
+"""Accessibility of the page, by axe, and the size of its scripts."""
 
 import asyncio
 import gzip
@@ -14,14 +14,14 @@ from ravestate.modules.platform.webio.application import PAGE
 
 AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 SCRIPT = 60_000
-"""Bytes of script, compressed, that the page may load."""
+"""The maximum number of bytes of compressed script on the page."""
 
 
 async def findings(page: Page) -> list[str]:
     """Return axe's serious and critical findings."""
     if not AXE.exists():
         raise AssertionError("the check of accessibility needs axe-core: npm ci --prefix frontend")
-    # As the browser's own tools do, not as a script of the page, which the page forbids.
+    # Run axe as the browser's own tools do, because the page forbids other scripts.
     await page.evaluate(AXE.read_text(encoding="utf-8"))
     found = await page.evaluate("axe.run({resultTypes: ['violations']})")
     return [

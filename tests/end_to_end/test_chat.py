@@ -1,4 +1,4 @@
-"""The page in a real browser: a conversation, and what may happen to one."""
+"""The page in a real browser: a conversation, and its interruptions."""
 
 import asyncio
 from typing import Any
@@ -30,7 +30,7 @@ async def say(page: Page, text: str) -> None:
 
 
 async def said(page: Page, *texts: str) -> None:
-    """Wait until exactly this was said."""
+    """Wait until the page shows exactly these messages."""
     await expect(lines(page)).to_have_text([f"{who} {text}" for who, text in map(spoken, texts)])
 
 

@@ -1,4 +1,4 @@
-"""The how-to "Connect a robot": a reader types its commands, from an empty folder on."""
+"""The how-to "Connect a robot": the test types its commands, and begins in an empty folder."""
 
 import contextlib
 import json
@@ -92,7 +92,7 @@ class Reader:
 @pytest.fixture
 def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
     network = Ros1()
-    end(network.master)  # only `ros check` is to find one
+    end(network.master)  # only `ros check` may find one
     variables = {
         **network.environment, "PYTHONPATH": str(ROOT / "src"), "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100),
         "RAVESTATE_ROBOYIO_BUS": "127.0.0.1:0",

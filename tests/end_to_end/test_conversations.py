@@ -1,4 +1,4 @@
-"""The paper's sample conversations (its appendix), and what must hold in any conversation with the complete agent."""
+"""The sample conversations in the paper's appendix, and rules for any conversation with the complete agent."""
 
 from __future__ import annotations
 

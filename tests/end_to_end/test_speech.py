@@ -24,7 +24,7 @@ guide = rs.Module("guide", requires=(rawio,))
 
 @guide.rule(when=rawio.input.changed, writes=rawio.output)
 async def answer(ctx: rs.RuleContext) -> None:
-    """Talk for so long that somebody will interrupt it."""
+    """Talk for so long that the user can interrupt."""
     ctx[rawio.output] = ANSWER
 
 

@@ -32,7 +32,7 @@ def record(file: Path, *parts: float) -> Path:
 
 
 def calls(stage: Stage, recording: Path) -> contextlib.AbstractAsyncContextManager[Browser]:
-    """A browser whose microphone plays a recording once, from the moment at which it goes on."""
+    """A browser whose microphone plays a recording once, from the moment when the microphone is turned on."""
     return stage.devices(sound=f"{recording}%noloop")
 
 

@@ -1,4 +1,4 @@
-"""Every example has: a page of code that says what it shows, no faults, no rule that cannot run."""
+"""Every example fits on a page, says what it shows, and has no faults and no rule that cannot run."""
 
 import ast
 import inspect

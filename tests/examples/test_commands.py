@@ -1,8 +1,8 @@
-"""Commands that the documentation shows print what it says they print.
+"""The commands in the documentation print the output that the documentation shows.
 
-In a `console` block a line that begins with `$ ` is a command, and what follows is what it prints; `...` stands for
-anything. Run are the commands of Ravestate and Python, in a folder with the files that the page has shown so far: a
-block titled `hello.py` makes a file, one titled `hello.py, continued` adds to it.
+In a `console` block, a line that begins with `$ ` is a command, and the next lines are its output; `...` stands for
+anything. The tests run the commands of Ravestate and Python, in a folder with the files that the page has shown so far.
+A block with the title `hello.py` makes a file, and a block with the title `hello.py, continued` adds to it.
 """
 
 import doctest
@@ -29,7 +29,7 @@ COMMAND = re.compile(r"(?:printf '[^']*' \| )?(?:\w+=\S+ )*(?:ravestate|python) 
 
 
 def shown(block: Block) -> list[tuple[str, str]]:
-    """Each command of a block, and what is shown below it."""
+    """Yield each command of a block, and the output below it."""
     found: list[tuple[str, str]] = []
     for line in block.code.splitlines():
         if line.startswith("$ "):

@@ -1,4 +1,4 @@
-"""The robot that the documentation connects, on the built-in bus; and its mouth, with a program."""
+"""The agents of the documentation: a robot on the built-in bus, and a mouth that runs a program."""
 
 import asyncio
 import os
@@ -20,7 +20,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "connect-speech-or-a-robo
 
 @pytest.fixture(autouse=True)
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The page's files, to be imported."""
+    """The page's files, ready for import."""
     for block in blocks_in(PAGE):
         save(block, tmp_path)
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])

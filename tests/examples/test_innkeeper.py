@@ -1,4 +1,4 @@
-"""The innkeeper: words, face and hands, each decided on its own."""
+"""The innkeeper: rules choose words, face and hands independently."""
 
 from examples.loading import example
 from ravestate.testing import simulate

@@ -1,4 +1,4 @@
-"""The reference names whatever a user may type."""
+"""The reference has every name that a user may type."""
 
 import re
 from pathlib import Path

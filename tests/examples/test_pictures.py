@@ -1,4 +1,4 @@
-"""The pictures of the documentation are what the code beside them gives."""
+"""The pictures of the documentation are up to date with the code on the pages."""
 
 import importlib.util
 import sys
@@ -17,7 +17,7 @@ def pictures(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "pictures", module)  # dataclasses look there
+    monkeypatch.setitem(sys.modules, "pictures", module)  # dataclasses look up the module there
     spec.loader.exec_module(module)
     return module
 

@@ -1,4 +1,4 @@
-"""The storyteller: interrupted, and continued where it was left."""
+"""The storyteller: a listener interrupts the story, and it continues at the same place."""
 
 from examples.loading import example
 from ravestate.testing import simulate

@@ -1,8 +1,8 @@
-"""An interpreter of the laws, as naive as can be: ``properties/fuzz.py`` compares the engine with it.
+"""A naive interpreter of the laws, with which ``properties/fuzz.py`` compares the engine.
 
-It keeps lists, has no index, and judges everything anew at every moment. It shares with the engine the records of the
-policy (utilities, coherence), the events and the effects, and no other code. Laws that speak of a thousand runs in one
-instant (L23, fairness) are left out: the compared plays have fewer.
+It keeps lists, has no index, and decides everything again at every moment. It shares the records of the policy
+(utilities, coherence), the events and the effects with the engine, but no other code. It leaves out laws about a
+thousand runs in one instant (L23, fairness), because the compared plays have fewer runs.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
 INSTANT = 0.5e-9
-"""Seconds within which moments are the same."""
+"""Two moments that differ by at most so many seconds count as one."""
 
 BATCH = 100
 """Rules without consent that start before the events of their runs arrive."""
 
 
 class Model:
-    """The laws, step by step. It has the four verbs of an engine."""
+    """The interpreter. It has the four methods of an engine."""
 
     def __init__(self, policy: Any, *, patience: float = 1.0, report_ends: bool = True) -> None:
         self.policy = policy
@@ -43,7 +43,7 @@ class Model:
         self.retired: set[int] = set()
         self.ran: dict[int, float] = {}
         self.failures: list[RuleFailure] = []
-        self.faults: list[tuple[int, str, Any, Exception]] = []  # the predicates that have raised
+        self.faults: list[tuple[int, str, Any, Exception]] = []  # the predicates that have raised an exception
         self.blamed: set[int] = set()
         self.chains: dict[tuple[Any, bool], set[int]] = {}
         self.out: list[Effect] = []
@@ -87,7 +87,7 @@ class Model:
         return min((time for time in times if self.now < time < inf), default=None)
 
     def tick(self) -> None:
-        """Do what is due at this moment; gains come before losses."""
+        """Do everything that is due at this moment; gains come before losses."""
         self.settle()
         for act in list(self.acts):
             if act.state == GATHERS:
@@ -103,7 +103,8 @@ class Model:
         return spike.born + need.max_age <= self.now
 
     def settle(self) -> None:
-        """Let looking constraints look, forget what nobody can hold any more, and find out what is ready."""
+        """Offer spikes to detached constraints, forget spikes that no activation can hold any more, and find the ready
+        activations."""
         for act in list(self.acts):
             if act.clause.asks_detached and act.state in (GATHERS, READY):
                 for need in act.clause.needs:
@@ -116,7 +117,7 @@ class Model:
         for act in list(self.acts):
             if act.state == GATHERS and not act.lacks() and self.ripe(act):
                 if act.gated and self.writing:
-                    continue  # gates are judged anew when the signals of a write are out
+                    continue  # check the gates again after the signals of a write
                 act.gated = not self.opens(act.clause)
                 if not act.gated:
                     act.state = READY
@@ -190,7 +191,8 @@ class Model:
         return found
 
     def consent_round(self) -> bool:
-        """L15: ask for those that are ready, older causes first, then the best. Ask again if a rival has given up (L16)."""
+        """L15: ask for consent for the ready activations: older causes first, then greater utility. Ask again if a
+        rival has given up (L16)."""
         changed, count = False, len(self.acts)
         written: set[int] = set()
         asking = sorted((a for a in self.acts if a.state == READY and self.asks(a)), key=self.order)
@@ -250,7 +252,7 @@ class Model:
         return theirs.index < mine.index
 
     def crossing(self, mine: Any, theirs: Any) -> float:
-        """Return when a clause that is behind overtakes another, if both go on as they do."""
+        """Return when a clause that is behind overtakes another clause, if both recover as now."""
         (far, fast), (their_far, their_fast) = self.recovery(mine.rule), self.recovery(theirs.rule)
         closing = mine.base * fast - theirs.base * their_fast
         if closing <= 0 or theirs.base * their_far <= mine.base * far:
@@ -270,8 +272,8 @@ class Model:
     def refusals(self, act: Act, without: Iterable[Act] = (), commit: bool = True) -> set[str]:
         """Return why groups refuse consent (L15): a slot is ``taken``, or a rival comes, ``surely`` or ``perhaps``.
 
-        A rival that only may come is pressed, or gives up (L16). With `without`, what these activations do counts for
-        nothing, and nobody is pressed.
+        A rival that only may come is pressed, or gives up (L16). With `without`, ignore the work of these activations,
+        and press no rival.
         """
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))
@@ -334,9 +336,9 @@ class Model:
         return ended
 
     def kept_by(self, act: Act) -> list[Act]:
-        """Return the activations that wait, or would wait, because of this one (L16)."""
+        """Return the activations that wait, or would wait, for this one (L16)."""
         clause, slots, groups = act.clause, act.rule.slotset, set(act.groups())
-        behind: dict[Any, bool] = {}  # many activations are of the same clause
+        behind: dict[Any, bool] = {}  # many activations belong to the same clause
         return [
             other
             for other in self.acts
@@ -469,7 +471,7 @@ class Model:
             return False
 
     def report(self) -> None:
-        """Report each predicate that has raised once, in declaration order (L5)."""
+        """Report once each predicate that has raised an exception, in declaration order (L5)."""
         for _, rule, predicate, exception in sorted(self.faults, key=lambda fault: fault[0]):
             if id(predicate) not in self.blamed:
                 self.blamed.add(id(predicate))
@@ -481,7 +483,7 @@ class Model:
         return all(self.test(guard.predicate, self.value(slot), clause) for slot, guard in clause.guards)
 
     def opens_quietly(self, slot: Any, guard: Any) -> bool:
-        """Whether a predicate on a slot is true, for the question whether a rival may come (L16)."""
+        """Return whether a predicate on a slot is true, to decide whether a rival is viable (L16)."""
         try:
             return bool(guard.predicate(self.value(slot)))
         except Exception:
@@ -528,7 +530,7 @@ class Model:
         return [act.clause.needs[n] for n, s in held if not act.clause.needs[n].detached and s.group.root() is group]
 
     def lose(self, act: Act, needs: Iterable[Any]) -> None:
-        """Give spikes up, and take the oldest ones that fit instead (L12); end when nothing is left."""
+        """Give spikes up, and take the oldest spikes that fit instead (L12). Without spikes, end the activation."""
         needs = sorted((need for need in needs if need.index in act.held), key=lambda need: need.index)
         if not needs:
             return

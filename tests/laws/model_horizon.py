@@ -1,4 +1,4 @@
-"""The part of the interpreter of the laws that finds out what may still come (L16)."""
+"""The part of the interpreter of the laws that finds out which spikes may still come (L16)."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Derivation:
                 return strength
 
     def comes(self, signal: Any, group: Group, slots: frozenset[int]) -> int:
-        """Return how a signal lies in the horizon of a group, as far as is known."""
+        """Return how a signal is in the horizon of a group, as far as is known."""
         if self.causes(signal, wide=False).isdisjoint(self.rules(group)):
             return NO  # every chain of causes in the group begins with an activation there
         return self.known.setdefault((signal, group, slots), NO)

@@ -1,4 +1,4 @@
-"""A story with a bit of everything. As a program it prints all effects and trace records of the engine."""
+"""A story that uses all features. As a program, it prints all effects and trace records of the engine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scenarios.driver import Driver
 
 
 def everything() -> rs.Module:
-    """Return a module with rules of every sort."""
+    """Return a module with rules of every kind."""
     m = rs.Module("m")
     i, j, x, y = m.signal("i", payload=str), m.signal("j"), m.signal("x"), m.signal("y")
     out, face, mood = output(m), output(m, "face"), m.slot("mood", "calm")

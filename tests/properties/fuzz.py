@@ -32,7 +32,7 @@ MOMENTS = 300
 """Moments of a play that are compared."""
 
 STEPS = 3_000
-"""Steps of derivations after which the interpreter, which has no cache, leaves a play."""
+"""The number of derivation steps after which the interpreter, which has no cache, gives up a play."""
 
 
 ENOUGH = "too long to go on"
@@ -51,7 +51,7 @@ class Enough(Exception):
 
 
 class Interpreter(Model):
-    """The interpreter; it notices when an instant has no end."""
+    """The interpreter, which detects an endless instant."""
 
     births = 0
 
@@ -68,7 +68,7 @@ class Interpreter(Model):
 
 
 def story(world: World, machine: Any) -> list[str]:
-    """Play a world; return what a machine did, a line for each effect."""
+    """Play a world; return the effects of a machine, one in each line."""
     lines: list[str] = []
 
     def told(play: Play, effect: Effect) -> None:
@@ -96,7 +96,7 @@ def story(world: World, machine: Any) -> list[str]:
 
 
 def played(play: Play) -> list[str]:
-    """Play on; return why the play ended early, if it did."""
+    """Continue the play; return the reason if it ends early."""
     try:
         for _ in range(MOMENTS):
             if not play.step():
@@ -132,8 +132,8 @@ def difference(world: World) -> str:
 def observation(world: World) -> str:
     """Return what a tracer changes, in words; an empty text if it changes nothing (L24, L25).
 
-    It must not change the effects, even if it comes and goes. A journal written with a tracer must replay without, and
-    the other way round. The trace must always have the present reasons of all that wait.
+    It must not change the effects, even if it comes and goes. A journal written with a tracer must replay without one,
+    and the other way round. The trace must always have the present reasons of all waiting activations.
     """
     reasons = Reasons()
     plain = Play(world, budget=4)

@@ -1,4 +1,4 @@
-"""Random worlds from a seed. Unlike Hypothesis' examples they cost next to nothing, so there can be thousands."""
+"""Random worlds from a seed. Unlike Hypothesis' examples, they take almost no time, so there can be thousands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Maker:
     def __init__(self, seed: int) -> None:
         self.dice = random.Random(seed)
         self.plain = seed // 100 % 4 == 3  # conditions without ages or predicates
-        self.grid = self.dice.random() < 0.4  # many things at one time, or all at different times
+        self.grid = self.dice.random() < 0.4  # many events at one time, or all events at different times
         self.signals: list[str] = []
         self.heard: list[str] = []
         self.slots: list[SlotOf] = []

@@ -1,4 +1,4 @@
-"""Shrinking: from a world with a fault to the smallest that still has it."""
+"""Shrinking: find the smallest world that still has the fault of a given world."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ravestate.errors import DeclarationErrors
 
 
 def smaller(world: World) -> Iterator[World]:
-    """Yield simpler worlds, the much simpler ones first."""
+    """Yield simpler worlds, the simplest first."""
     for n in range(len(world.rules) - 1, -1, -1):
         yield replace(world, rules=world.rules[:n] + world.rules[n + 1 :])
     for n in range(len(world.inputs) - 1, -1, -1):
@@ -107,7 +107,7 @@ def compiles(world: World) -> bool:
         return False
     try:
         compiled(world)
-    except (DeclarationErrors, KeyError):  # KeyError: the signal of a slot that has become one of another kind
+    except (DeclarationErrors, KeyError):  # KeyError: a signal of a slot whose kind has changed
         return False
     return True
 

@@ -11,7 +11,7 @@ from properties.worlds import Play, World
 
 @given(worlds(adds=True))
 def test_rules_that_exclude_each_other_never_both_finish_for_one_cause(world: World) -> None:
-    """Nor does a rule run too early, twice on the same spikes, or before a ready rule that is worth more."""
+    """Also, no rule runs too early, twice on the same spikes, or before a ready rule of greater utility."""
     Play(world, started=Exclusion()).play()
 
 

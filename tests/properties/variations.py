@@ -19,7 +19,7 @@ def varied(world: World, seed: int) -> World:
 
 
 def _scattered(world: World, chance: random.Random) -> World:
-    """Deal a world out to several modules."""
+    """Distribute a world over several modules."""
     return replace(world, modules=chance.randint(2, len(MODULES)))
 
 

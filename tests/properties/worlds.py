@@ -124,7 +124,7 @@ class Act(Brief):
     end: str = "done"
     cleanup: float = 0.0
     last: tuple[Op, ...] = ()
-    """The steps of its cleaning up after a cancellation."""
+    """The steps of the clean-up after a cancellation."""
     cancelled: str = "done"
     """The outcome after a cancellation."""
 
@@ -172,7 +172,7 @@ class SlotOf(Brief):
 class World(Brief):
     """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after a few seconds.
 
-    They are dealt out to the modules ``m, m1, m2, ...`` in turn.
+    The modules ``m, m1, m2, ...`` get them in turn.
     """
 
     signals: tuple[SignalOf, ...] = ()
@@ -282,7 +282,7 @@ class Endless(AssertionError):
 
 
 class Counted:
-    """An engine that notices when an instant has no end. It has all that an `Engine` has."""
+    """An engine that detects an endless instant. It has the whole interface of `Engine`."""
 
     def __init__(self, policy: rs.Policy, **options: Any) -> None:
         self.engine = Engine(policy, **options)
@@ -317,7 +317,7 @@ class Counted:
 
 @dataclass
 class Play:
-    """One performance of a world.
+    """A play of a world.
 
     Attributes:
         heard: The effects, in words, with the time (seconds) of each.
@@ -410,7 +410,7 @@ class Play:
         self.pump()
 
     def tell(self, *ops: Op) -> None:
-        """Perform operations from outside, now."""
+        """Perform operations from outside now."""
         for op in ops:
             self.do(0, op)
             self.pump()
@@ -485,7 +485,7 @@ class Play:
                     assert not isinstance(effect, Ended) or effect.run not in self.acts
 
     def take(self) -> list[Effect]:
-        """Take the effects, and note that in the journal."""
+        """Take the effects, and note this in the journal."""
         self.journal.append((self.now, Taken()))
         effects = self.engine.effects()
         self.taken.append(effects)

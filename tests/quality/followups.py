@@ -1,10 +1,10 @@
-"""Follow-up questions: talks with nlp and genqa over a few small documents.
+"""Measure follow-up questions, in talks with nlp and genqa about a few small documents.
 
     python tests/quality/followups.py [FILE] [--misses]
 
-A file has `documents`, each with a `title` and a `text` (or a list `sentences`), and `cases`. A case asks the questions of
-`talk`, then `follow`. The reply to that must hold one word of each group in `answer`, and no word of `not`. Silence is right
-where `answer` is empty.
+A file has `documents`, each with a `title` and a `text` (or a list `sentences`), and `cases`. A case asks the questions
+of `talk`, and then `follow`. The reply to `follow` must contain one word of each group in `answer`, and no word of
+`not`. If `answer` is empty, the right reply is silence.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def main() -> int:
     """Measure the file on the command line."""
     parser = argparse.ArgumentParser(description="Measure follow-up questions.")
     parser.add_argument("file", nargs="?", type=Path, default=ROWS)
-    parser.add_argument("--misses", action="store_true", help="also print each talk that went wrong")
+    parser.add_argument("--misses", action="store_true", help="also print each talk with a wrong reply")
     arguments = parser.parse_args()
     result = measure_followups(arguments.file)
     print(table([result]))

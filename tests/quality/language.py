@@ -1,7 +1,7 @@
-"""The sentences that nlp, idle and emotion were written with, measured as sets.
+"""Measure the sentences with which nlp, idle and emotion were developed, as sets.
 
-They show whether a change breaks what worked; how well text is understood show the sets that nobody tuned on. A
-change may lose some of these sentences as long as the floors in `test_language.py` hold.
+They show whether a change breaks sentences that worked. Only sets that were not used for tuning show how well the agent
+understands text. A change may lose some of these sentences as long as the floors in `test_language.py` hold.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SETS = ("triples_rows", "typed_rows", *LABELLED)
 
 
 def acts_of(text: str) -> frozenset[str]:
-    """The user's acts, by the room `language`."""
+    """Return the user's acts, by the package `language`."""
     bundled_matcher("acts").load()
     return frozenset(acts(heard(text)))
 

@@ -1,4 +1,4 @@
-"""How well text is understood: the sets of this folder against the functions that do the work.
+"""Measure how well the agent understands text: the sets of this folder, and the functions under test.
 
     python tests/quality/measure.py MODULE... [--misses]
 
@@ -24,7 +24,7 @@ Triples = frozenset[tuple[str, str, str]]
 
 @dataclass(frozen=True)
 class Reply:
-    """An answer of genqa, and whether it was given as sure."""
+    """An answer of genqa, and whether the agent gave it as certain."""
 
     text: str
     sure: bool
@@ -32,7 +32,8 @@ class Reply:
 
 @dataclass(frozen=True)
 class Fact:
-    """A question with what its reply must hold; with neither answers nor number, silence is right."""
+    """A question, with the content that its reply must have. Without answers and a number, the right reply is
+    silence."""
 
     question: str
     answers: tuple[str, ...] = ()
@@ -44,7 +45,7 @@ class Fact:
         return not self.answers and self.number is None
 
     def answered_by(self, reply: str) -> bool:
-        """Whether one of the answers occurs in the reply, or a figure near enough to the number."""
+        """Return whether the reply has one of the answers, or a figure close enough to the number."""
         if any(re.search(_pattern(answer), reply, re.IGNORECASE) for answer in self.answers):
             return True
         if self.number is None:
@@ -55,9 +56,9 @@ class Fact:
 
 @dataclass
 class Result:
-    """Counts of one set, in the order in which they are printed, and the sentences that went wrong.
+    """The counts of one set, in the order in which the tool prints them, and the sentences with wrong results.
 
-    `shares` are fractions from 0 to 1; what they are shares of is in the README.
+    `shares` are fractions from 0 to 1; the README defines them.
     """
 
     name: str
@@ -70,19 +71,19 @@ class Result:
 
 
 def read_yaml(file: Path) -> Any:
-    """The value of a YAML file, read by the fast loader."""
+    """Return the value of a YAML file, read by the fast loader."""
     return load_yaml(file.read_text(encoding="utf-8"), str(file))
 
 
 def labelled(name: str) -> list[tuple[str, str]]:
-    """The sentences of a set with one label each."""
+    """Return the sentences of a set, with one label each."""
     lines = (HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
     pairs = (line.split("\t") for line in lines if line and not line.startswith("#"))
     return [(text, label) for text, label in pairs]
 
 
 def facts() -> list[Fact]:
-    """The questions to genqa."""
+    """Return the questions to genqa."""
     cases = read_yaml(HERE / "genqa.yaml")
     return [
         Fact(case["question"], tuple(case.get("answers", ())), case.get("number"), case.get("tolerance", 0.0))
@@ -94,7 +95,7 @@ def facts() -> list[Fact]:
 
 
 def measure_triples(see: Callable[[str], Iterable[Iterable[str]]], cases: list[tuple[str, Triples]]) -> Result:
-    """Exact: a sentence counts when its triples are those of the set, none missing and none more."""
+    """Measure triples. A sentence counts as exact if it has exactly the triples of the set."""
     right = shared = given = wanted = 0
     misses: list[str] = []
     for text, expected in cases:
@@ -109,7 +110,7 @@ def measure_triples(see: Callable[[str], Iterable[Iterable[str]]], cases: list[t
 
 
 def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) -> Result:
-    """The share of right labels; and the F1 of all labels but `-`, where a wrong label is not a hit."""
+    """Measure the share of right labels, and the F1 score of all labels except `-`; a wrong label is not a hit."""
     right = hits = given = 0
     misses: list[str] = []
     for text, expected in cases:
@@ -125,7 +126,7 @@ def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, 
 
 
 def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Result:
-    """Answers and silences; all shares are of all questions but the last, which is of the sure answers."""
+    """Measure answers and silences. The last share is one of the certain answers; the others are of all questions."""
     counts = dict.fromkeys(("answered right", "rightly silent", "wrongly silent", "wrong, unsure", "wrong, sure"), 0)
     sure = 0
     misses: list[str] = []
@@ -157,12 +158,12 @@ def table(results: Iterable[Result]) -> str:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Measure the functions of the module that is named on the command line."""
+    """Measure the functions of the module on the command line."""
     parser = argparse.ArgumentParser(description="Measure how well text is understood.")
     parser.add_argument(
         "modules", nargs="+", metavar="MODULE", help="dotted name of a module with a function `results`"
     )
-    parser.add_argument("--misses", action="store_true", help="also print each sentence that went wrong")
+    parser.add_argument("--misses", action="store_true", help="also print each sentence with a wrong result")
     arguments = parser.parse_args(argv)
     results: list[Result] = [
         result for module in arguments.modules for result in importlib.import_module(module).results()
@@ -178,7 +179,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _pattern(answer: str) -> str:
-    """Whole words; a star at the end leaves the end of the word open."""
+    """Return a pattern for whole words; a star at the end allows any ending of the word."""
     return rf"\b{re.escape(answer[:-1])}" if answer.endswith("*") else rf"\b{re.escape(answer)}\b"
 
 
@@ -187,7 +188,7 @@ _SCALE = {"": 1.0, "thousand": 1e3, "million": 1e6, "billion": 1e9}
 
 
 def _figures(text: str) -> list[float]:
-    """The figures in a text: `1,448`, `244 million`, `0.5`."""
+    """Return the figures in a text: `1,448`, `244 million`, `0.5`."""
     return [float(digits.replace(",", "")) * _SCALE[scale] for digits, scale in _FIGURE.findall(text)]
 
 

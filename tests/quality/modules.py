@@ -111,7 +111,7 @@ def yesno_label(answer: YesNo) -> str:
 
 
 def plain(text: str) -> str:
-    """The words of a text alone, for telling whether two are the same."""
+    """Return only the words of a text, for comparing texts."""
     return " ".join(re.findall(r"[a-z0-9]+", text.lower().replace("'", "")))
 
 

@@ -1,4 +1,4 @@
-"""Sentences that worked go on working, all but a few."""
+"""Sentences that worked still work, with few exceptions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FLOORS = {
     "quiet_rows": 0.9,
     "typed_rows": 0.93,
 }
-"""Sets that are recognised by examples, no sentence of which is an example; and what people type in a hurry."""
+"""Sets for recognition by examples, without sentences that are examples; and sentences that people typed in a hurry."""
 LABELS = {
     "questions_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
     "yesno_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},

@@ -1,4 +1,4 @@
-"""The floors of answers about the world, on a set that is never used for tuning."""
+"""The minimum shares of right answers about the world, on a set that is never used for tuning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sets are well formed, and the measure counts right."""
+"""The sets are well formed, and the tool counts correctly."""
 
 from pathlib import Path
 

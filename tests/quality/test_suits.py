@@ -1,4 +1,4 @@
-"""The listener knows which replies of its bank suit, on utterances from which its judgement was not learnt."""
+"""The listener knows which replies of its bank suit an utterance. It has not learnt from these utterances."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ def test_most_replies_that_it_chooses_suit() -> None:
     found, suits = evidence("suits_kept")
     chosen = np.array([one.probability() for one in found]) >= ALIKE
     print(suits[chosen].mean(), chosen.sum(), suits[chosen].sum() / suits.sum())
-    assert suits[chosen].mean() >= 0.68  # of the entries whose sentences are as similar, less than half do
+    assert suits[chosen].mean() >= 0.68  # of the entries with equally similar sentences, less than half suit
     assert suits[chosen].sum() / suits.sum() >= 0.3

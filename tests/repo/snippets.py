@@ -1,18 +1,19 @@
 """Find and run the code blocks of a Markdown file, so that the documentation works.
 
-The rules, for who writes documentation:
+The rules for authors of documentation:
 
-- A ```` ```python ```` block is run. The blocks of one page share one namespace, so a story may run through
-  the page; `await` and `async with` may stand at the top level.
-- A ```` ```pycon ```` block is run too, and what it shows must come out.
+- The tests run each ```` ```python ```` block. The blocks of one page share a namespace, so later blocks may use names
+  of earlier blocks. `await` and `async with` are allowed at the top level.
+- The tests also run each ```` ```pycon ```` block, and compare the output with the block.
 - A block of any language with `title="hello.py"` is also saved under that name, in the folder in which all blocks of the
-  page run. A later block can read, import or run it. Its namespace is its own: later blocks import its names. `title="hello.py, continued"` adds to the file.
-- A block whose title begins with `test_` is run by pytest too, as its reader will do; and where a block has functions
-  `test_*`, it must have such a title, as else nothing would call them.
-- A block right under `<!-- in: pipecat -->` is run in the environment `.venvs/pipecat`, in a process of its own; one that
-  a shown test of that environment imports is run by that test.
-- A block right under `<!-- not run: the reason -->` is skipped, and the reason is shown. Rarely needed.
-- Blocks of other languages (`bash`, `console`, `yaml`, `text`, ...) are not run.
+  page run. A later block can read, import or run the file. The block has its own namespace: later blocks import its
+  names. `title="hello.py, continued"` adds to the file.
+- If a block's title begins with `test_`, pytest runs the block too, as a reader would. A block with functions `test_*`
+  must have such a title, because otherwise no code would call them.
+- A block right under `<!-- in: pipecat -->` runs in the environment `.venvs/pipecat`, in a process of its own. If a
+  test on the page imports the block, that test runs it.
+- The tests skip a block right under `<!-- not run: the reason -->`, and show the reason. Use this rarely.
+- The tests do not run blocks of other languages (`bash`, `console`, `yaml`, `text`, ...).
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ LANGUAGES = {"python": "python", "py": "python", "python3": "python", "pycon": "
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One fenced block; `line` is that of its first line of code, counted from 1."""
+    """A fenced block; `line` is the number of its first line of code, counted from 1."""
 
     file: Path
     line: int
@@ -54,12 +55,12 @@ class Block:
 
     @property
     def runs(self) -> bool:
-        """Whether the tests run it (or would, but for the reason given)."""
+        """Whether the tests run the block, or would run it without the reason to skip it."""
         return self.language in LANGUAGES
 
     @property
     def has_tests(self) -> bool:
-        """Whether it has functions that only pytest calls."""
+        """Whether the block has functions that only pytest calls."""
         return re.search(r"^(?:async )?def test_", self.code, re.MULTILINE) is not None
 
     def __str__(self) -> str:
@@ -67,7 +68,7 @@ class Block:
 
 
 def blocks_in(file: Path) -> list[Block]:
-    """Every fenced block of `file`, in order. Raises ValueError for a fence that is never closed."""
+    """Return the fenced blocks of `file`, in order. Raise a ValueError for a fence that is never closed."""
     found: list[Block] = []
     lines = iter(enumerate(file.read_text(encoding="utf-8").splitlines(), start=1))
     reason: str | None = None
@@ -108,7 +109,7 @@ def blocks_in(file: Path) -> list[Block]:
 
 @dataclass
 class Page:
-    """One file's blocks and the state that they share: a namespace and a folder."""
+    """The blocks of a file, and the state that they share: a namespace and a folder."""
 
     file: Path
     folder: Path
@@ -122,11 +123,11 @@ class Page:
         self.module = self._namespace("")
 
     def run(self, block: Block) -> None:
-        """Run `block`, after those before it that have not been run yet. Raises what the block raises."""
+        """Run `block`, after earlier blocks that have not run yet. Raise the exception that the block raises."""
         while self.done <= self.blocks.index(block):
             current = self.blocks[self.done]
             self.done += 1
-            with self._at_home():  # what one block imports is new to the next, as it may have become longer
+            with self._at_home():  # import a file again, because a later block may have added to it
                 self._run_next(current)
 
     def _run_next(self, block: Block) -> None:
@@ -144,13 +145,13 @@ class Page:
             run_tests(block, self.folder)
 
     def _is_imported(self, file: str) -> bool:
-        """Whether a test of an environment of its own imports a file."""
+        """Return whether a test in another environment imports a file."""
         line = rf"^(?:from|import) {re.escape(file.removesuffix('.py'))}\b"
         tests = [block for block in self.blocks if block.environment is not None and block.has_tests]
         return bool(file) and any(re.search(line, test.code, re.MULTILINE) for test in tests)
 
     def leavings(self) -> list[str]:
-        """The files that its blocks have made, apart from those that the page shows."""
+        """Return the files that the blocks have made, except the files on the page."""
         made = [path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file()]
         shown = {(block.title or "").removesuffix(", continued") for block in self.blocks}
         return sorted(str(path) for path in made if str(path) not in shown and "__pycache__" not in path.parts)
@@ -162,7 +163,7 @@ class Page:
 
     @contextlib.contextmanager
     def _known(self, module: types.ModuleType) -> Iterator[None]:
-        """With a module that can be found by its name, as pickling and pydantic ask."""
+        """Make the module available by its name, as pickle and pydantic require."""
         sys.modules[module.__name__] = module
         try:
             yield
@@ -171,7 +172,7 @@ class Page:
 
     @contextlib.contextmanager
     def _at_home(self) -> Iterator[None]:
-        """In the page's folder, and importable from it."""
+        """Work in the page's folder, and import from it."""
         before, path, known = Path.cwd(), list(sys.path), set(sys.modules)
         os.chdir(self.folder)
         sys.path.insert(0, str(self.folder))
@@ -187,7 +188,8 @@ class Page:
 
 
 def save(block: Block, folder: Path) -> str:
-    """Write a block into the file that its title names, or add it there; its name, empty if there is none."""
+    """Write a block to the file in its title, or add the block to it. Return the file's name; empty if there is no
+    title."""
     name = re.fullmatch(r"(?P<file>[\w.-]+(?:/[\w.-]+)*)(?P<more>, continued)?", block.title or "")
     if name is None:
         return ""
@@ -209,24 +211,25 @@ def run_python(block: Block, module: types.ModuleType) -> None:
 
 
 def run_pycon(block: Block, module: types.ModuleType) -> None:
-    """Run a `pycon` block and compare what it prints. Raises AssertionError with the difference."""
+    """Run a `pycon` block, and compare its output. Raise an AssertionError with the difference."""
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
     test = doctest.DocTestParser().get_doctest(block.code, module.__dict__, str(block), str(block.file), block.line - 1)
-    test.globs = module.__dict__  # the parser made a copy, which would lose what the block defines
+    test.globs = module.__dict__  # the parser made a copy, which would lose the definitions of the block
     report: list[str] = []
     doctest.DocTestRunner(optionflags=options, verbose=False).run(test, out=report.append, clear_globs=False)
     assert not report, "".join(report)
 
 
 def run_tests(block: Block, folder: Path) -> None:
-    """Run a block's file with pytest, in a separate process. Raises AssertionError with what it prints if one fails."""
+    """Run a block's file with pytest, in a separate process. If a test fails, raise an AssertionError with the
+    output."""
     name = Path(block.title or "").name
     assert name.startswith("test_") and name.endswith(".py"), f'{block}: give it title="test_....py", or drop its tests'
     run_process(block, folder, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title))
 
 
 def run_apart(block: Block, folder: Path) -> None:
-    """Run a block in the environment that it names. Raises AssertionError with what it prints if it fails."""
+    """Run a block in the environment that it names. If it fails, raise an AssertionError with the output."""
     python = ENVIRONMENTS / str(block.environment) / "bin" / "python"
     assert python.exists(), f"there is no environment {block.environment}: `make test` makes it"
     if block.has_tests:

@@ -1,4 +1,4 @@
-"""The benchmarks go with the code that they measure."""
+"""The benchmarks fit the present code."""
 
 from __future__ import annotations
 

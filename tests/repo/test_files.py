@@ -1,4 +1,4 @@
-"""Manners of every file that is kept: no addresses of registries, no folders of one machine, a docstring."""
+"""Rules for every tracked file: no addresses of registries, no folders of one machine, a docstring."""
 
 import ast
 import re
@@ -12,7 +12,7 @@ SOURCE = ROOT / "src" / "ravestate"
 
 
 def kept_files() -> list[Path]:
-    """The files that git tracks or would track: tracked files and new ones that are not ignored."""
+    """Return the files that git tracks, and new files that it does not ignore."""
     run = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT, capture_output=True, text=True, check=False,
@@ -37,7 +37,7 @@ def lines_matching(pattern: re.Pattern[str], files: list[Path]) -> list[str]:
     return found
 
 
-# Written in pieces, or this file would be its own first finding.
+# Written in pieces; otherwise, the test would find this file itself.
 REGISTRIES = [
     "pypi" r"\.org",
     "python" r"hosted\.org",
@@ -48,13 +48,13 @@ REGISTRIES = [
 
 
 def test_no_registry_is_named() -> None:
-    """Pins name packages and versions; where they come from is the installing machine's affair."""
+    """Pins name packages and versions. The installing machine chooses the registry."""
     found = lines_matching(re.compile("|".join(REGISTRIES), re.IGNORECASE), kept_files())
     assert not found, "\n".join(found)
 
 
 def test_no_folder_of_one_machine_is_named() -> None:
-    """Neither this checkout's own path nor a user's home."""
+    """No file has the path of this checkout or of a user's home."""
     folders = [re.escape(str(place)) for place in (ROOT, Path.home()) if len(place.parts) > 2]
     folders += [r"/(?:home|Users)/(?!user\b|me\b|you\b|runner\b)\w+", r"(?<![\w.])/(?:ro" r"ot|wo" r"rk)/\w"]
     found = lines_matching(re.compile("|".join(folders)), kept_files())
@@ -77,7 +77,7 @@ def test_every_source_file_says_what_it_is() -> None:
 
 
 def test_no_test_sleeps() -> None:
-    """Tests run in virtual time; a real sleep is a slow test today and a flaky one tomorrow."""
+    """Tests run in virtual time. A real sleep makes a test slow, and sometimes wrong."""
     tests = [file for file in kept_files() if file.is_relative_to(ROOT / "tests") and file.suffix == ".py"]
     found = lines_matching(re.compile(r"\b(?:time|asyncio)\.sleep\((?!0\))"), tests)
     assert not found, "\n".join(found)

@@ -50,6 +50,6 @@ def test_import_leaves_no_trace() -> None:
 
 @pytest.mark.parametrize("room", ["declare", "policy", "engine", "errors"])
 def test_pure_rooms_load_nothing_impure(room: str) -> None:
-    """Also through what they import: the clock, the loop and the threads stay in `runtime`."""
+    """This includes indirect imports: the clock, the loop and the threads stay in `runtime`."""
     loaded = set(loaded_by(f"ravestate.{room}")["loaded"])  # type: ignore[call-overload]
     assert not loaded & {"asyncio", "concurrent.futures", "queue", "pydantic", "yaml", "ravestate.runtime"}

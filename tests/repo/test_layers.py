@@ -1,6 +1,6 @@
-"""The rooms of the house: which code may know which.
+"""The layers of the source: which package may import which.
 
-`pyproject.toml` has the order of the rooms as an import-linter contract. This file
+`pyproject.toml` has the order of the layers as an import-linter contract. This file
 proves the rest from the source itself: imports of the standard library, and modules that are named lazily.
 """
 
@@ -27,7 +27,7 @@ PURE_LIBRARY = {
     "traceback", "types", "typing", "unicodedata", "weakref",
     "xml.sax.saxutils", "zlib",
 }  # fmt: skip
-"""Values and algorithms. Not here, and never: clocks, loops, threads, chance, files, logs, other people's code."""
+"""Modules of the standard library for values and algorithms. Never add clocks, loops, threads, chance, files or logs."""
 
 
 def files_of(*rooms: str) -> list[Path]:
@@ -49,7 +49,7 @@ class Import(NamedTuple):
 
 @functools.cache
 def imports_in(file: Path) -> list[Import]:
-    """Return the imports of a file; those for type checkers alone are left out."""
+    """Return the imports of a file, without imports for type checkers."""
     package = ("ravestate", *file.relative_to(SOURCE).parent.parts)
 
     def visit(node: ast.AST, late: bool) -> Iterator[Import]:

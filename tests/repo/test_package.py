@@ -21,7 +21,7 @@ NOT_SHIPPED = {".pyc", ".pyo"}
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
-    """The wheel, built without network from a copy that knows nothing of git or of this checkout."""
+    """The wheel, built without network from a copy of the files, outside of git and of this checkout."""
     place = tmp_path_factory.mktemp("wheel")
     copy = place / "ravestate"
     copy.mkdir()
@@ -66,7 +66,7 @@ def test_wheel_has_the_notices_of_what_the_pages_bundle(wheel: zipfile.ZipFile) 
 
 
 def test_readme_of_the_wheel_has_no_relative_links(wheel: zipfile.ZipFile) -> None:
-    """A package index shows this README, and relative links lead nowhere there."""
+    """A package index shows this README, and relative links do not work there."""
     (name,) = (name for name in wheel.namelist() if name.endswith(".dist-info/METADATA"))
     links = re.findall(r"\]\(([^)]*)\)", email.message_from_bytes(wheel.read(name)).get_payload())
     assert links
@@ -74,7 +74,7 @@ def test_readme_of_the_wheel_has_no_relative_links(wheel: zipfile.ZipFile) -> No
 
 
 def test_wheel_works_alone(wheel: zipfile.ZipFile, tmp_path: Path) -> None:
-    """The import finds the built files, with nothing of the checkout on the path."""
+    """The import finds the built files, because the checkout is not on the path."""
     wheel.extractall(tmp_path)
     probe = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import ravestate; print(ravestate.__file__)"
     run = subprocess.run([sys.executable, "-S", "-c", probe], capture_output=True, text=True, check=False)
@@ -93,7 +93,7 @@ def test_base_requirements_stay_small() -> None:
 
 
 def requirements_of(name: str, extra: str | None = None) -> set[str]:
-    """The installed packages that `name` (with `extra`) brings, itself left out."""
+    """Return the installed packages that `name` (with `extra`) requires, without `name` itself."""
     found: set[str] = set()
     open_ends = [(name, extra)]
     while open_ends:
@@ -118,7 +118,7 @@ def requirements_of(name: str, extra: str | None = None) -> set[str]:
 
 @pytest.mark.parametrize("extra", [None, "console", "wildtalk", "chat"])
 def test_no_requirement_is_under_the_gpl(extra: str | None) -> None:
-    """Neither the base nor what `make chat` installs binds its user to a strong copyleft."""
+    """Neither the base nor the packages of `make chat` have a strong copyleft licence."""
     packages = requirements_of("ravestate", extra)
     assert "pydantic" in packages
     guilty = {}

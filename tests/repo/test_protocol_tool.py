@@ -1,4 +1,4 @@
-"""The TypeScript of the web protocols is what their Python records make."""
+"""The TypeScript of the web protocols is up to date with the Python records."""
 
 import subprocess
 import sys

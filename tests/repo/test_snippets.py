@@ -1,4 +1,4 @@
-"""Every Python block of README.md and docs/ is run; see `snippets.py` for the rules."""
+"""Run every Python block of README.md and docs/; see `snippets.py` for the rules."""
 
 import contextlib
 import inspect

@@ -1,4 +1,4 @@
-"""The vectors that ship: each built-in example has one, so that a first start encodes nothing."""
+"""The vectors in the package: each built-in example has one, so that the first start need not encode it."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The repository's prose stays plain: no faults of the kinds that `words.py` finds."""
+"""The repository's prose is plain: `words.py` finds no fault."""
 
 from repo.words import faults
 

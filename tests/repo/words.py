@@ -3,7 +3,7 @@
     python tests/repo/words.py [PATH ...]        # default: everything that the repository says
 
 The finder reads Markdown pages, the docstrings, comments and messages of Python files, and the comments of the web
-pages' sources. It knows the worst faults only; `docs/contributing.md` has the whole rule.
+pages' sources. It knows only the worst faults.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 LIMIT = 20
-"""Seconds after which a test that waits in vain is ended; no other test takes as long."""
+"""Seconds after which a test that waits in vain fails; no other test takes so long."""
 
 
 def on_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:

@@ -1,4 +1,4 @@
-"""Rules that block the loop are named; a busy machine is not a rule's fault."""
+"""A warning names each rule that blocks the loop. Delays of a busy machine cause no warning."""
 
 import asyncio
 import logging
@@ -17,7 +17,7 @@ HERE = re.escape(__file__)
 
 @dataclass
 class Machine:
-    """A machine as the system describes it to the loop's thread."""
+    """A simulated machine: its clock, and the CPU time and context switches of the loop's thread."""
 
     time: float = 0.0
     computed: float = 0.0
@@ -58,7 +58,7 @@ WHAT = pytest.mark.parametrize("first_step", [True, False])
 
 
 def warnings_of(machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, **did: float) -> list[str]:
-    """Run a rule that does these things in one step, and return what is logged."""
+    """Run a rule that calls these methods of `machine` in one step; return the logged warnings."""
     m = rs.Module("m")
 
     @m.rule(when=rs.startup)

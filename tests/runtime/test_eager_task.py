@@ -41,7 +41,7 @@ def context_of(coroutine: Coroutine[Any, Any, Any]) -> RuleContext:
 async def step(eager: EagerTask, coroutine: Coroutine[Any, Any, Any]) -> bool:
     """Take the first step as the runner does: from a callback of the loop, where no task is current.
 
-    Returns whether the coroutine was adopted.
+    Return whether a task adopted the coroutine.
     """
     done: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
 

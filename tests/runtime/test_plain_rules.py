@@ -1,4 +1,4 @@
-"""Plain functions that wait for a worker thread: the rules that hold the threads are named, once."""
+"""Plain functions that wait for a worker thread: one warning names the rules that hold the threads."""
 
 import asyncio
 import functools
@@ -38,7 +38,7 @@ class Crowd:
 
 
 class Warnings(logging.Handler):
-    """A queue of the messages that ravestate logs while this is entered."""
+    """Collects the messages that ravestate logs within a ``with`` block, in a queue."""
 
     def __init__(self) -> None:
         super().__init__()

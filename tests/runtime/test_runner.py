@@ -169,7 +169,7 @@ async def test_a_platform_error_is_logged_without_a_traceback() -> None:
 
 
 class Records(logging.Handler):
-    """The records that ravestate logs while this is entered."""
+    """Collects the records that ravestate logs within a ``with`` block."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -488,7 +488,7 @@ class Greeter:
 
 
 class Heir(Greeter):
-    """A class that inherits its call."""
+    """A class that inherits ``__call__``."""
 
 
 class Caller:

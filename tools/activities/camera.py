@@ -19,16 +19,16 @@ class Conditions:
     bodies: float
     """The spread of the proportions of bodies, as a share."""
     tempo: float
-    """The greatest factor on the tempo, up or down."""
+    """The greatest factor by which the tempo is faster or slower than usual."""
     yaw: float
     """The greatest angle between the performer's front and the camera, in degrees."""
     near: float
     """The least distance of the camera, in torso lengths."""
     far: float
     noise: float
-    """The greatest standard deviation of a landmark, in torso lengths; that of the depth is three times as large."""
+    """The greatest standard deviation of a landmark, in torso lengths; for the depth, three times as much."""
     cut: float
-    """The share of performances of which the legs are outside the picture."""
+    """The share of performances with the legs outside the picture."""
     lost: float
     """The share of performances in which a hand or an elbow is lost for a part of the time."""
 

@@ -603,7 +603,7 @@ OTHERS: dict[str, tuple[Movement, float]] = {
     "pointing": (pointing, 0.6),
     "lifting": (lifting, 0.6),
 }
-"""Movements that the starter set knows as *none of these*."""
+"""Movements that the starter set counts as *none of the activities*."""
 
 STRANGE: dict[str, tuple[Movement, float]] = {
     "juggling": (juggling, 1.6),
@@ -621,7 +621,7 @@ STRANGE: dict[str, tuple[Movement, float]] = {
     "ironing": (ironing, 0.6),
     "digging": (digging, 0.5),
 }
-"""Movements that nothing in the starter set has seen. Only tests use them."""
+"""Movements that are not in the starter set. Only tests use them."""
 
 UNTOUCHED: dict[str, tuple[Movement, float]] = {
     "curling": (curling, 0.7),
@@ -633,4 +633,4 @@ UNTOUCHED: dict[str, tuple[Movement, float]] = {
     "skating": (skating, 0.5),
     "combing": (combing, 0.8),
 }
-"""More of them, written after the recogniser was finished: nothing was chosen by a look at them."""
+"""More such movements, written after the recogniser was finished. No choice in the recogniser depends on them."""

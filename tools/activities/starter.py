@@ -4,7 +4,7 @@
     PYTHONPATH=src .venv/bin/python tools/activities/starter.py --score    # print the confusion matrix of held-out performers
 
 No person was recorded for this set: `movements.py` describes each activity as paths of hands, feet and torso, `body.py` moves
-a skeleton along them, and `camera.py` looks at it.
+a skeleton along them, and `camera.py` turns the result into landmarks.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from ravestate.modules.modality.activity.skeleton import skeleton_of
 
 FILE = Path(__file__).parents[2] / "src/ravestate/modules/modality/activity/starter.npz"
 EXAMPLES = 200
-"""The number of performances of each movement that the set is learnt from."""
+"""The number of performances of each movement from which the set is learnt."""
 TRIALS = 60
-"""The number of further performances of each that the limit and the confidence are fitted to."""
+"""The number of further performances of each movement, for fitting the limit and the confidence."""
 KEPT = 98.5
 """The percentage of these performances that must be within the limit."""
 
@@ -101,7 +101,7 @@ class Score:
     right: float
     """The share of performances of known activities that are recognised."""
     wrong: float
-    """The share that is taken for another activity; the rest is rejected."""
+    """The share that the recogniser takes for another activity. It rejects the rest."""
     rejected: float
     """The share of performances of unknown movements that are rejected."""
     untouched: float

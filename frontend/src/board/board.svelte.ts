@@ -122,7 +122,7 @@ export class Board {
       onstatus: (status) => {
         this.status = status;
         const { session, chosen } = this.#address;
-        if (status === "gone" && session !== undefined && !chosen) this.turnTo({}); // it was this browser's last one
+        if (status === "gone" && session !== undefined && !chosen) this.turnTo({}); // that conversation is over
       },
       ...(open === undefined ? {} : { open }),
     });
@@ -238,7 +238,7 @@ export class Board {
     if (this.#lent) this.point(null);
   }
 
-  /** Ask about a cause from now on, and show its time: its runs, or else the activations that took it. */
+  /** Ask about a cause from now on. Show the time of its runs or, without runs, of the activations that took it. */
   visit(spike: Spike): void {
     this.point(spike.id);
     const bars = this.trace.made(spike);

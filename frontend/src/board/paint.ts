@@ -286,7 +286,7 @@ function paintEnd(
       context.fillRect(x, y, width, height);
       break;
     case "interrupted":
-    case "wiped": // an open frame: it did not reach its end
+    case "wiped": // an open frame: the run did not reach its end
       context.fillStyle = c.paper;
       context.fillRect(x, y, width, height);
       context.strokeStyle = c.interrupted;
@@ -315,7 +315,7 @@ function paintEnd(
       context.fillStyle = bar.phases.at(-1)?.state === "running" ? c.running : c.waiting;
       context.fillRect(x, y, width, height);
       break;
-    default: // it gave its spikes up
+    default: // the activation gave its spikes up
       context.strokeStyle = c.gathering;
       context.lineWidth = 1.5;
       context.beginPath();
@@ -417,9 +417,10 @@ function paintAncestry(context: CanvasRenderingContext2D, scene: Scene, places: 
   context.globalAlpha = 1;
 }
 
-const CROWD = 6; // children of one signal, such as the parts of an answer; with more, only the first and the last have a line
+/** The maximum number of lines to children of one signal. Beyond it, only the first and the last child have a line. */
+const CROWD = 6;
 
-/** Return the spikes of each crowd but for the first and the last. */
+/** Return the spikes without a line: those of each crowd, except the first and the last. */
 function crowds(trace: Trace, kin: ReadonlySet<number>): Set<number> {
   const found = new Set<number>();
   for (const id of kin) {
@@ -499,8 +500,8 @@ function paintGaps(context: CanvasRenderingContext2D, scene: Scene): void {
 }
 
 /**
- * Return the spike at a place, or else the bar; in the lane of a voice, the stretch of speech and the mark; in a lane of
- * the camera, what was seen.
+ * Return the spike at a place, or else the bar. In the lane of a voice, return the stretch of speech and the mark. In a
+ * lane of the camera, return what was seen.
  */
 export function at(
   scene: Scene,

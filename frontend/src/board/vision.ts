@@ -115,7 +115,7 @@ export class Vision {
       last.figure = confidence;
       return;
     }
-    // A recognition looks back, into the time of the activity before.
+    // A recognition covers the last seconds, which may overlap with the previous activity.
     const begin = last === undefined ? from : Math.min(to, Math.max(from, last.to));
     this.#begin(
       { kind: "activity", from: begin, to, text, figure: confidence, track: 0, row: 0 },

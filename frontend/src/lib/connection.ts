@@ -42,13 +42,13 @@ export interface Options {
 
 const OPEN = 1;
 
-/** Bytes that may wait to be sent; beyond them sound is dropped, since late sound is of no use. */
+/** The maximum number of bytes that wait to be sent. Beyond it, sound is dropped, because late sound is useless. */
 const MOST_WAITING = 64_000;
 
 /** Frames that the server does not answer. */
 const UNANSWERED = new Set(["writing", "played", "hush", "camera", "picture"]);
 
-/** Milliseconds without a frame from the server, by what the page waits for. */
+/** The milliseconds to wait for a frame from the server, by the reason of the wait. */
 const TIMEOUTS = {
   /** The answer to hello. Without it the connection is lost. */
   welcome: 10_000,

@@ -7,7 +7,7 @@ const HOLD = 400;
 /** Milliseconds between two reports of the play-out position. */
 const REPORT = 95;
 
-/** Milliseconds without a new caption after which the old one goes: what was said became no message. */
+/** Milliseconds after which a caption disappears if it has neither changed nor become a message. */
 const CAPTION = 6000;
 
 export interface Options {
@@ -50,7 +50,7 @@ export class Voice {
 
   constructor(private readonly options: Options) {}
 
-  /** The visitor presses the button, at a time in milliseconds: a busy page may hear of it later. */
+  /** The visitor presses the button. `at` is the time of the press (milliseconds); a busy page may get it late. */
   press(at = performance.now()): void {
     if (this.#pressed !== null) return;
     this.#pressed = at;
@@ -74,7 +74,7 @@ export class Voice {
     else if (!began) this.stop();
   }
 
-  #began = false; // whether the press that is going on has turned the voice on
+  #began = false; // whether the present press has turned the voice on
 
   /** Let the visitor talk all the time, or while they hold the button. */
   setMode(mode: "open" | "hold"): void {

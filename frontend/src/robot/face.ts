@@ -60,7 +60,7 @@ const EXPRESSIONS: Record<string, Expression> = {
   thinking: { ...CALM, smile: 0.05, lid: 0.2, brow: 0.5, tilt: -0.5, pupil: 0.95 },
 };
 
-/** The parts of an expression by its name; those of the neutral one for a name that is unknown. */
+/** Return the parts of an expression; for an unknown name, those of the neutral expression. */
 export function expressionOf(name: string): Expression {
   return EXPRESSIONS[name] ?? CALM;
 }
@@ -104,7 +104,7 @@ export function ease(value: number, target: number, seconds: number, halfLife: n
   return target + (value - target) * 0.5 ** (seconds / halfLife);
 }
 
-/** The next moment (seconds) to blink, after one; people blink every two to six seconds. */
+/** Return the time (seconds) of the blink after the one at `now`. People blink every two to six seconds. */
 export function nextBlink(now: number, random: () => number): number {
   return now + 2 + 4 * random();
 }

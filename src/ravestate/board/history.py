@@ -164,7 +164,7 @@ class History:
         return next((a for a in self._answers if a.rule in hears and is_taken(a, hears[a.rule][a.clause])), None)
 
     def before(self, run: int) -> str:
-        """Return the name of the rule that raised a spike of the group on which a run stands.
+        """Return the name of another rule that raised one of the run's spikes; only spikes of the group count.
 
         The name is empty if no other rule raised such a spike, or if the trace does not show the rule.
         """
@@ -316,7 +316,8 @@ class Rivals:
         return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that answered the group by `time` with a slot of `rule`, and its activation's number."""
+        """Return the first other rule that answered the group in a slot of `rule` by `time`, and its activation's
+        number."""
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

@@ -3,12 +3,12 @@
 Inspectors have no queues. Records are numbered, and each inspector reads the records that it lacks. A slow inspector
 misses records that are already deleted, and delays nothing else.
 
-Making records is expensive for a busy agent, so a rate limit applies: a burst, then a steady rate, and more while the
-process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine makes no records. A `Gap` says
-how many spikes the recorder missed.
+Making records is expensive for a busy agent, so each recorder has a rate limit. It allows a burst, then a steady rate,
+and a higher rate while the process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine
+makes no records. A `Gap` says how many spikes the recorder missed.
 
-All recorders of an agent share one limit on their records. If the total exceeds this limit, the recorders with the most
-records are cut to the same length.
+All recorders of an agent share one limit on the number of records. If the total exceeds this limit, the recorders with
+the most records are cut to the same length.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _kept_waiting() -> float:
 
 
 class Recorder:
-    """Keeps the records that a context makes after the recorder was made.
+    """Keeps the records that a context makes after the recorder is created.
 
     For the limits, see `KEPT`, `BURST`, `RATE` and `SPARE`. Set `whole` if the context has not started yet: the records
     then reach back to its start. The callback `grown` runs after every `BATCH` records.

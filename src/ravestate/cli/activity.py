@@ -1,4 +1,4 @@
-"""``ravestate activity``: say what somebody plays in a recording, and teach an activity."""
+"""``ravestate activity``: name the activity that somebody performs in a recording, and teach an activity."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     guessing = actions.add_parser(
         "guess",
-        help="say what somebody plays in a video or a file of landmarks",
+        help="name the activity that somebody performs in a video or a file of landmarks",
         description="Print a line for each window of some seconds: its beginning and end (seconds), the activity or "
         "'unknown', and the confidence. Exit code 1: no body can be seen.",
     )

@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 LONG = 64
 """The number of items of a list above which `echo` leaves out the rest."""
 LOOKS = 8
-"""The number of looks for a topic, because nodes of ROS 2 find each other one by one."""
+"""The number of attempts to find a topic, because nodes of ROS 2 find each other one by one."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     checking = actions.add_parser(
         "check",
-        help="show what an agent is bound to, and whether there is another end; without an agent: whether there is ROS",
-        description="Show what the slots of an agent are bound to, whether there is another end, and whether the types match. "
+        help="show the topics of an agent, and whether other nodes use them; without an agent, check ROS itself",
+        description="Show the topics, services and actions of an agent's slots, whether other nodes use them, and whether the types match. "
         "Without an agent, show whether ROS is installed and its network answers. Exit code 1: something is missing.",
     )
     checking.add_argument("modules", nargs="*", metavar="MODULE", help="the agent: modules or an agent file")
@@ -46,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         )  # fmt: skip
         if action is not checking:
             action.add_argument(
-                "--version", type=int, choices=(1, 2), help="ROS 1 or ROS 2; by default, the one that is here"
+                "--version", type=int, choices=(1, 2), help="ROS 1 or ROS 2; by default, the one on this machine"
             )
 
 
@@ -195,7 +195,7 @@ async def _topics(options: argparse.Namespace, node: Node, graph: dict[str, Any]
         ("actions", ("servers",)),
     ):
         for row in sorted(graph[kind], key=lambda row: row["name"]):
-            if any(row[noun] for noun in nouns):  # without other ends, only this command uses the topic
+            if any(row[noun] for noun in nouns):  # other nodes use it
                 ends = ", ".join(counted(row[noun], noun) for noun in nouns)
                 print(f"{kind[:-1]:<7}  {row['name']}  {', '.join(row['types']) or '?'}  {ends}")
     return 0

@@ -141,14 +141,16 @@ class Causes:
         return found
 
     def ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects leads to the signal, without detached rules."""
+        """Return the numbers of the rules from which a chain of effects leads to the signal, but not through detached
+        rules."""
         component = self.components.of[signal]  # all signals of a component have the same ancestors
         if component not in self._ancestors:
             self._ancestors[component] = self._climb(signal, self.causes, wide=False)
         return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects leads to the signal, also by detached rules.
+        """Return the numbers of the rules from which a chain of effects leads to the signal, even through detached
+        rules.
 
         A chain does not pass through an input, because an input may occur at any time anyway.
         """

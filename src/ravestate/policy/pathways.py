@@ -68,7 +68,7 @@ class Pathways:
         found: Costs = {0: 0}
         for need in needs:
             place = self.completion.place[need.signal.index]
-            if need.detached:  # a detached need is not completed
+            if need.detached:  # a detached need stands alone: the causes of its signal do not count
                 found = self._product(found, {1 << place: self.completion.information[place]})
             else:
                 found = self._product(found, (yield self._of_signal(place, 0)))

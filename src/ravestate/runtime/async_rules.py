@@ -46,7 +46,7 @@ class AsyncRules:
     def start(self, ctx: RuleContext) -> None:
         """Run a function up to its first ``await`` that suspends it. A task continues from there.
 
-        No task may be current on the loop. The caller calls `rest` when no function is to start for now.
+        No task may be current on the loop. The caller calls `rest` once it has no more functions to start.
         """
         task, self._spare = self._spare, None  # the function may start other functions
         if task is None:

@@ -17,9 +17,7 @@ except ImportError:  # Windows
 BLOCKING: Final = 0.1
 """The seconds that one step of an async rule may take before a warning names the rule: nothing else runs meanwhile."""
 
-FRESH: Final = (
-    0.01  # the seconds for which one reading of the thread's CPU time serves as the start time of further steps
-)
+FRESH: Final = 0.01  # steps that begin within so many seconds share one reading of the thread's CPU time
 
 ASLEEP = 0.05
 """A step counts as sleeping if its sleeps are longer than this on average (seconds). A thread that waits for the
@@ -33,8 +31,9 @@ class StepTimer:
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
     processor or for the interpreter's lock does not count, so a busy machine causes no warning. The system counts how
-    often the thread slept voluntarily, and how often the scheduler preempted the thread. After a preemption, there is
-    no warning. Windows and macOS do not have these numbers; there, the timer ignores sleeps.
+    often the thread slept voluntarily, and how often the scheduler preempted the thread. If the scheduler preempted the
+    thread in a step, the timer ignores the sleeps of this step. Windows and macOS do not have these numbers; there, the
+    timer ignores sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.

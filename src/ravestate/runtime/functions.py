@@ -90,7 +90,8 @@ class Functions:
             self.drop(ctx, effect.reason)
 
     def holds(self, *, halted: bool) -> bool:
-        """Return whether effects must wait, for a plain function in virtual time or for just cancelled rules.
+        """Return whether effects must wait: for a plain function in virtual time, or for rules that were just
+        cancelled.
 
         On a `halted` clock they do not wait for these rules.
         """

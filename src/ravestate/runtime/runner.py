@@ -33,7 +33,8 @@ BATCH: Final = 512  # the number of rounds of effects after which the loop gets 
 TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""The number of waits for a signal that may end without a turn of the loop, before it gets one (`Runner.settle`)."""
+"""How many waits for a signal may end in a row without a turn of the loop. Then the loop gets a turn
+(`Runner.settle`)."""
 
 ENDED = "the context has ended"
 
@@ -139,7 +140,7 @@ class Runner:
             self.receive(Write(slot, value, run))
 
     def short_way(self) -> Parts | None:
-        """Return the engine's parts for an event that nothing records, or None if the event must go to `receive`."""
+        """Return the engine's parts if an event may go to them directly; None if it must go to `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:

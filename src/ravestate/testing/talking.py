@@ -112,7 +112,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
     waiting: list[Said] = []
 
     def show_waiting() -> None:
-        """Note the user's waiting utterances, unless an utterance of the agent is not over yet."""
+        """Note the user's waiting utterances, unless the agent is still speaking."""
         if not any(one.start and not one.over for one in begun):
             for one in waiting:
                 note(one)

@@ -56,7 +56,7 @@ noticed = listener.slot("noticed", 0)
 
 @listener.rule(when=rawio.input.changed, reads=(rawio.heard, captions, noticed), writes=rawio.output)
 async def tell(ctx: rs.RuleContext) -> None:
-    """Tell what the agent knows about the user's ears and mouth, and then talk as `talker` does after "wait"."""
+    """Say what the agent knows about the user's speech and hearing. Then talk as `talker` does after "wait"."""
     ctx[rawio.output] = f"heard {ctx[rawio.heard]!r}, captions {ctx[captions]!r}, speech {ctx[noticed]}"
 
 

@@ -1,4 +1,4 @@
-"""interloc: who comes and goes is signalled with key and name."""
+"""interloc: signals report the key and the name of each user who comes or goes."""
 
 import ravestate as rs
 from ravestate.modules import interloc

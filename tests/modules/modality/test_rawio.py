@@ -1,4 +1,4 @@
-"""rawio: each utterance counts, and anybody may say one."""
+"""rawio: each utterance raises the signal, and code outside the rules may say one."""
 
 import asyncio
 

@@ -1,6 +1,6 @@
 """Run a real Bolt server (ArcadeDB): ``python bolt_server.py FOLDER BOLT_PORT HTTP_PORT PASSWORD DATABASE``.
 
-It prints ``ready``, and ends when its standard input does: with the tests, however they end.
+It prints ``ready``. It ends when its standard input ends, so it never outlives the tests.
 """
 
 import os
@@ -19,7 +19,7 @@ def main(folder: str, bolt_port: int, http_port: int, password: str, database: s
             "server_plugins": "Bolt:com.arcadedb.bolt.BoltProtocolPlugin",
             "bolt_port": bolt_port,
         },
-        # The tests end before the thorough compiler has earned back its time.
+        # The tests are too short for the optimising compiler to pay off.
         jvm_kwargs={"heap_size": "256m", "jvm_args": ["-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC"]},
     )
     server.start()

@@ -1,4 +1,4 @@
-"""Memory to test with, in a file and on a real Bolt server."""
+"""Memory for the tests, in a file and on a real Bolt server."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def free_ports(count: int) -> list[int]:
 
 @pytest.fixture(scope="session")
 def bolt_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
-    """The settings of a server that runs as long as the tests."""
+    """Start a server for the time of the tests; yield its settings."""
     folder = tmp_path_factory.mktemp("bolt")
     ports = free_ports(2)
     with (folder / "server.txt").open("wb") as said:
@@ -65,7 +65,7 @@ def bolt_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, 
 
 @pytest.fixture(params=["file", "server"])
 def place(request: pytest.FixtureRequest, tmp_path: Path) -> dict[str, Any]:
-    """The settings of an empty memory, once in a file and once on a server."""
+    """Return the settings of an empty memory: once in a file, and once on a server."""
     if request.param == "file":
         return {"path": tmp_path / "memory.lbug"}
     settings: dict[str, Any] = request.getfixturevalue("bolt_server")
@@ -97,5 +97,5 @@ def open_here() -> Iterator[Open]:
 
 @pytest.fixture
 def memory(place: dict[str, Any], open_here: Open) -> ontology.Memory:
-    """An empty memory, open."""
+    """An open, empty memory."""
     return open_here(**place)

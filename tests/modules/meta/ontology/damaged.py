@@ -1,6 +1,6 @@
 """Open damaged copies of a memory, one after the other: ``python damaged.py MEMORY SEED CASES``.
 
-It prints a line for each: ``read``, or the exception. A copy that ends the process leaves its line out.
+It prints a line for each copy: ``read``, or the exception. If a copy ends the process, its line is missing.
 """
 
 import random

@@ -1,4 +1,4 @@
-"""Servers that cannot be used: each is a clear error, and none blocks memory."""
+"""Unusable servers: each causes a clear error, and none blocks memory."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ravestate.modules.meta.ontology.opening import open_memory
 
 
 def failure(**settings: Any) -> str:
-    """Why memory cannot be opened; no message has the password."""
+    """Return the reason why memory cannot be opened; no message has the password."""
     memory = open_memory(ontology.Settings(**settings))
     with pytest.raises(PlatformError) as caught:
         memory.opened().result(60)
@@ -31,7 +31,7 @@ def failure(**settings: Any) -> str:
 
 
 class Proxy:
-    """A proxy between client and server that can stall and hang up."""
+    """A proxy between client and server. It can stall, and close connections."""
 
     def __init__(self, port: int) -> None:
         self._port = port

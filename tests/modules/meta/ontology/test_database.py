@@ -1,4 +1,4 @@
-"""A damaged file is broken in plain words; it ends no process."""
+"""A damaged file causes a plain message, and ends no process."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ HERE = Path(__file__).parent
 
 
 def failure(**settings: Any) -> str:
-    """Why memory cannot be opened."""
+    """Return the reason why memory cannot be opened."""
     memory = open_memory(ontology.Settings(**settings))
     with pytest.raises(PlatformError) as caught:
         memory.opened().result(60)
@@ -36,7 +36,7 @@ def failure(**settings: Any) -> str:
 
 @pytest.fixture
 def file(tmp_path: Path, open_here: Open) -> Path:
-    """A closed file of memory with Ada in it."""
+    """A closed memory file with the person Ada."""
     path = tmp_path / "memory.lbug"
     memory = open_here(path=path)
     memory.create("Person", name="Ada").result()
@@ -46,7 +46,7 @@ def file(tmp_path: Path, open_here: Open) -> Path:
 
 @pytest.fixture
 def writer(tmp_path: Path) -> Iterator[tuple[Path, subprocess.Popen[str]]]:
-    """A process that writes to a file of memory."""
+    """A process that writes to a memory file."""
     path = tmp_path / "memory.lbug"
     process = subprocess.Popen([sys.executable, HERE / "writer.py", path], stdout=subprocess.PIPE, text=True)
     with process:
@@ -69,7 +69,7 @@ def test_acknowledged_writes_survive_a_kill(
     [here] = memory.find("City").result()
     names = [node["name"] for node in memory.related(here, "lives_in", back=True).result()]
     assert names[:acknowledged] == [f"person {number}" for number in range(acknowledged)]
-    assert len(names) <= acknowledged + 1  # one may be written, and not yet acknowledged
+    assert len(names) <= acknowledged + 1  # one write may be on disk, but not yet acknowledged
     assert memory.create("Person", name="after").result()["name"] == "after"
 
 
@@ -124,7 +124,7 @@ def test_one_process_opens_a_file_once_however_it_is_named(tmp_path: Path, open_
     ada = first.create("Person", name="Ada").result()
     assert second.find("Person").result() == [ada]
     first.close().result()
-    second.update(ada, age=36).result()  # it is open as long as anybody uses it
+    second.update(ada, age=36).result()  # the file is open as long as somebody uses it
     second.close().result()
     assert open_here(path=tmp_path / "memory.lbug").get(ada.id).result() == ada.with_properties(age=36)
 
@@ -159,7 +159,7 @@ def test_nothing_is_written_when_there_is_hardly_space(
     assert len(memory.find("Person").result()) == 1
     memory.close().result()
     assert "the disk is full" in failure(path=file.with_name("new.lbug"))
-    memory = open_here(path=file)  # what is there can be read, also now
+    memory = open_here(path=file)  # reading still works
     assert len(memory.find("Person").result()) == 1
     monkeypatch.undo()
     memory.create("Person", name="Bob").result()
@@ -238,7 +238,7 @@ def test_a_damaged_log_is_read_up_to_the_damage_and_kept(
     memory = open_here(path=path)
     memory.create("Person", name="Ada").result()
     memory.close().result()
-    monkeypatch.setattr(EmbeddedStore, "_shorten_log", lambda *_, **__: None)  # as if the power had failed
+    monkeypatch.setattr(EmbeddedStore, "_shorten_log", lambda *_, **__: None)  # as after a power failure
     memory = open_here(path=path)
     for name in ("Bob", "Cy"):
         memory.create("Person", name=name).result()
@@ -286,7 +286,7 @@ def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_he
     types.write_text("Person: {has: {shoe_size: number, hat_size: number}}")
     said = failure(path=file, types=(types,))
     assert "has Person.shoe_size as text, but the types say number: write shoe_size: text" in said
-    types.write_text("Person: {has: {shoe_size: date}}")  # kept as a text too, so it comes out when it is read
+    types.write_text("Person: {has: {shoe_size: date}}")  # the store keeps a date as text, too
     memory = open_here(path=file, types=(types,))
     with pytest.raises(RuleError, match=r"memory has Person\.shoe_size = '38 or so', which is not a valid date"):
         memory.find("Person").result()
@@ -309,7 +309,7 @@ def test_a_forgotten_person_leaves_no_byte_in_any_file(tmp_path: Path, open_here
     memory.relate(ada, "lives_in", memory.create("City", name="Ockham in Surrey").result()).result()
     memory.close().result()
 
-    memory = open_here(path=path)  # without that file of types, which its nodes survive
+    memory = open_here(path=path)  # without that file of types; its nodes stay in memory
     assert [node["name"] for node in memory.forget(ada).result()] == [ada["name"], "Ockham in Surrey"]
     for file in tmp_path.iterdir():
         content = file.read_bytes()

@@ -1,4 +1,4 @@
-"""The files of a memory: the user alone may read them, and none of them is overlooked."""
+"""The files of a memory: only the user may read them, and memory overlooks none of them."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def test_the_log_of_a_deleted_memory_is_set_aside_and_named(
 def test_the_log_of_another_memory_is_set_aside(
     crashed: Path, tmp_path: Path, open_here: Open, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """As an earlier version left it: a new database beside the log of the deleted one."""
+    """An earlier version could leave a new database beside the log of a deleted database."""
     other = open_here(path=tmp_path / "other" / "memory.lbug")
     other.create("Person", name="Ada").result()
     other.close().result()

@@ -1,4 +1,4 @@
-"""The operations of memory, equal in a file and on a server."""
+"""The operations of memory, which behave alike in a file and on a server."""
 
 from __future__ import annotations
 
@@ -197,7 +197,7 @@ def test_unrelate_may_forget_the_other_node(memory: Memory) -> None:
     assert (memory.get(kim.id).result(), memory.get(bob.id).result()) == (
         None,
         bob,
-    )  # he has a life of his own
+    )  # memory knows more about him than his name
     memory.unrelate(bob, "lives_in", london, forget=True).result()
     assert memory.get(london.id).result() is None
 
@@ -363,7 +363,7 @@ def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_
         {"name": "Ada 😀", "born": "1815-12-10"},
         {"name": "London"},
     ]
-    assert memory.load(document).result() == 2  # known already: nothing changes
+    assert memory.load(document).result() == 2  # memory has it already, so nothing changes
     assert memory.export().result() == document
     other = open_here(path=tmp_path / "other.lbug")
     assert other.load(document).result() == 2
@@ -425,11 +425,11 @@ def test_types_grow_and_nothing_is_lost(open_here: Open, place: dict[str, Any], 
     memory.update(found, shoe_size=38.5).result()
     boat = memory.create("Boat", name="Lady", length=7).result()
     memory.relate(found, "owns", boat).result()
-    memory.relate(found, "likes", boat).result()  # a relation of before to a type of now
+    memory.relate(found, "likes", boat).result()  # an old relation to a node of a new type
     memory.relate(boat, "sails_to", memory.create("City", name="Ham").result()).result()
     memory.close().result()
 
-    narrower = open_here(**place)  # without that file what it has is unseen, and stays
+    narrower = open_here(**place)  # without that file, its data is hidden, but stays
     assert narrower.undeclared().result() == ["Boat"]
     assert narrower.find("Thing", name="Lady").result() == []
     assert narrower.related(found, "likes").result() == []

@@ -1,4 +1,4 @@
-"""Memory against a plain model of it: whatever is done, both hold the same."""
+"""Memory against a plain model: after any operations, both hold the same data."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PROPERTIES = {
     "age": st.integers(-(2**63), 2**63 - 1),
     "born": st.dates(),
 }
-RELATIONS = {  # some of the built-in types: from, to
+RELATIONS = {  # some of the built-in relations: source type, target type
     "lives_in": (("Person", "Robot"), ("City", "Place")),
     "friend_of": (("Person", "Robot"), ("Person", "Robot")),
     "likes": (("Person", "Robot"), TYPES),
@@ -38,7 +38,7 @@ def contents(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
 
 
 class MemoryAgainstModel(RuleBasedStateMachine):
-    """Each step is done in memory and in a dictionary."""
+    """Each step runs in memory and on a dictionary."""
 
     nodes = Bundle("nodes")
 
@@ -122,7 +122,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
             assert gone == set()
             return
         assert node.id in gone
-        for source, _, target in self.relations:  # nothing went that something which stays is related to
+        for source, _, target in self.relations:  # no node is gone to which a remaining node is related
             assert target not in gone - {node.id} or source in gone
         for id in gone:
             del self.known[id]
@@ -130,7 +130,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
 
     @rule()
     def carry_over(self) -> None:
-        """An export, loaded elsewhere, gives an equal memory."""
+        """Loading an export elsewhere gives an equal memory."""
         document = self.memory.export().result(60)
         with tempfile.TemporaryDirectory() as folder:
             other = open_memory(ontology.Settings(path=Path(folder) / "other.lbug"))

@@ -1,4 +1,4 @@
-"""A reply is waited for on a loop or in a thread, and no error is lost."""
+"""Code can wait for a reply on a loop or in a thread, and no error is lost."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ begun = host.slot("begun", "")
 
 @host.rule(when=rs.startup, reads=ontology.memory, writes=begun)
 async def begin(ctx: rs.RuleContext) -> None:
-    """Memory may be used from the first moment."""
+    """Rules may use memory from the first moment."""
     memory = ctx[ontology.memory]
     ctx[begun] = "no memory" if memory is None else f"{len(await memory.find('Person'))} known"
 
@@ -99,7 +99,7 @@ def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
             blocker = memory._worker.submit(lambda _: held.wait(20))
             context.emit(ask, "Ada")
             turns = 0
-            while turns < 100:  # the loop goes round while memory is held up
+            while turns < 100:  # the loop continues while memory is blocked
                 await asyncio.sleep(0)
                 turns += 1
             assert not blocker.done() and context.read(answer) == ""

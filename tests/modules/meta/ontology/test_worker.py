@@ -12,7 +12,7 @@ from ravestate.modules.meta.ontology.worker import StoreWorker
 
 
 class Recorder:
-    """A store that notes its calls and their threads."""
+    """A store that records its calls and their threads."""
 
     def __init__(self, log: list[str]) -> None:
         self.log = log
@@ -76,7 +76,7 @@ def test_a_shared_store_is_opened_once_closed_last_and_opened_again_after() -> N
     third = share()
     assert third is not first
     opened = third.submit(lambda store: store.touch("again"))  # type: ignore[attr-defined]
-    assert not opened.done()  # not before the first has been closed
+    assert not opened.done()  # not before the first store is closed
     go_on.set()
     opened.result(20)
     assert closing.done() and log == ["open", "used", "close", "open", "again"]

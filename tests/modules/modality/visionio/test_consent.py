@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("reader")
 
 
 def chatter() -> Any:
-    """A module that says something whenever its signal comes."""
+    """A module that speaks whenever its signal is raised."""
     module = rs.Module("chatter", requires=[rawio])
     speak = module.signal("speak", input=True)
 

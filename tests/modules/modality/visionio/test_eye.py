@@ -38,7 +38,7 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 async def see(eye: Eye, at: float) -> int | None:
-    """The number of faces at a time of the video; None without a new picture."""
+    """Return the number of faces at a time of the video; None without a new picture."""
     seen = await eye.look(["faces"], {"most": 0}, at=at)
     return None if seen is None else len(seen["faces"])
 

@@ -1,4 +1,4 @@
-"""Faces in memory: filed, found, merged, forgotten."""
+"""Faces in memory: the functions store, find, merge and forget them."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Where the packages of the eyes are."""
+"""Finding the packages of the eyes."""
 
 import sys
 from pathlib import Path

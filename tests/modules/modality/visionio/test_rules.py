@@ -130,7 +130,7 @@ def test_a_person_who_does_not_answer_is_not_remembered(memory: Path) -> None:
         stage.show(sim, "biden", seconds=5)
         sim.say("the weather is nice")
         stage.show(sim, "biden", seconds=70, rate=1)
-        sim.say("yes")  # to nothing in particular, by now
+        sim.say("yes")  # by now, the yes answers no question
         stage.empty(sim)
     assert remembered(memory) == {"Joe": 0}
 
@@ -313,7 +313,7 @@ def test_remember_my_face(memory: Path) -> None:
 
 def test_a_person_who_is_taken_for_another_says_so(memory: Path) -> None:
     stage = Stage()
-    with agent(memory, threshold=1.0) as sim:  # so careless that all men are one
+    with agent(memory, threshold=1.0) as sim:  # a threshold so high that all men count as one person
         meet(sim, stage, "obama", "Barack")
         stage.empty(sim)
         stage.show(sim, "biden")
@@ -330,7 +330,7 @@ def test_a_person_who_is_taken_for_another_says_so(memory: Path) -> None:
 
 
 def test_a_person_whose_face_has_another_name_in_memory_says_so(memory: Path) -> None:
-    """Somebody told a wrong name in jest. The face leaves that person, and gets the right name."""
+    """Memory has a face under a wrong name. The agent moves the face to the person with the right name."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Joe")
@@ -364,7 +364,7 @@ def test_a_name_that_was_only_told_is_denied_as_well(memory: Path) -> None:
 
 
 def test_two_people_of_one_name_and_one_face_become_one(memory: Path) -> None:
-    """In bad light the agent took Barack for a stranger, and for another person of that name."""
+    """In bad light, the agent took Barack for a stranger, and stored him as a second person of that name."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")

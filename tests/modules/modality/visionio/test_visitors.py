@@ -1,4 +1,4 @@
-"""From a history of faces to people: decisions, tracks, visitors. Vectors of a few numbers do."""
+"""From a history of faces to people: decisions, tracks, visitors. Short vectors are enough for these tests."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec
@@ -81,6 +81,6 @@ def test_tracks_places_and_absence() -> None:
 
 
 def test_texts_of_records_have_no_vectors() -> None:
-    """Traces show them."""
+    """Traces show these texts."""
     assert "Ada" in repr(face(0.123456, ADA)) and "0.123456" not in repr(face(0.123456, ADA))
     assert "0.98765" not in repr(Visitor("a", ADA, vectors=((1.0, (0.98765,)),)))

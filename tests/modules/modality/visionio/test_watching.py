@@ -96,7 +96,7 @@ def test_black_pictures_are_told_once(monkeypatch: pytest.MonkeyPatch, caplog: p
 
 
 def looks_of(*spent: float) -> list[float]:
-    """Return the times at which looks begin that take so many seconds each, at 10 a second and a load of a half."""
+    """Return the start times of looks that take the given seconds, at 10 looks a second and a load of 0.5."""
 
     async def began() -> list[float]:
         now, found = 0.0, list[float]()

@@ -1,4 +1,4 @@
-"""The vision worker on real photos: finds, recognises, and bears any picture."""
+"""The vision worker on real photos: it finds and recognises faces, and survives any picture."""
 
 import asyncio
 from itertools import combinations
@@ -93,7 +93,7 @@ def test_raw_pixels(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("encoding", ["bgr8", "rgba8", "mono8"])
 def test_a_picture_of_ros(tmp_path: Path, encoding: str) -> None:
-    """With rows that are longer than their pixels."""
+    """The rows have more bytes than their pixels."""
     file = tmp_path / "raw"
     make(
         """

@@ -14,7 +14,7 @@ class UserCamera:
     Attributes:
         picture: A JPEG; None once the camera is off.
         asked: The number of pictures that the agent has asked for.
-        marks: All that the agent has shown.
+        marks: All faces that the agent has shown.
         refused: Why the agent has turned the camera off.
     """
 
@@ -26,7 +26,7 @@ class UserCamera:
 
     async def next(self) -> bytes | None:
         self.asked += 1
-        await turns(1)  # a camera takes its time; others have their turn
+        await turns(1)  # a camera takes some time, so let other tasks run
         return self.picture
 
     def mark(self, faces: Sequence[rawio.Face]) -> None:

@@ -1,4 +1,5 @@
-"""People are known by their accounts: two of one name are not confused, and a person is known again later."""
+"""The agent knows people by their accounts: it does not confuse two people with one name, and knows a person again
+later."""
 
 import asyncio
 from pathlib import Path

@@ -116,7 +116,7 @@ async def test_a_slow_answer_may_be_interrupted(tmp_path: Path) -> None:
         await past(5.0)
         opened.receive([letter("stop")])
         assert await post.said(1) == ["a: You said stop."]
-        assert post.shown  # it was seen to write
+        assert post.shown  # the chat shows that the agent is writing
 
 
 @in_virtual_time

@@ -1,4 +1,4 @@
-"""Secrets stay out of the log, also of other libraries."""
+"""Secrets stay out of the log, even if other libraries log them."""
 
 import logging
 

@@ -1,4 +1,4 @@
-"""The store: what it keeps over the death of a process, and what it forgets."""
+"""The store: the messages that survive the death of a process, and the messages that it forgets."""
 
 import sqlite3
 import stat
@@ -146,7 +146,7 @@ def test_the_keys_of_old_messages_are_deleted_while_the_agent_runs(
 
 
 def test_a_failed_commit_leaves_no_transaction_open(tmp_path: Path) -> None:
-    """SQLite checks a deferred reference at the commit: a way to let this step alone fail."""
+    """SQLite checks a deferred reference only at the commit, so only this step fails."""
     store = opened(tmp_path)
     store._db.execute("PRAGMA foreign_keys=ON")
     store._db.execute("CREATE TABLE child (n REFERENCES inbox (n) DEFERRABLE INITIALLY DEFERRED)")

@@ -1,4 +1,4 @@
-"""Voice notes: with the real recogniser and voice, and where these are missing."""
+"""Voice notes, with the real recogniser and voice, and without them."""
 
 import asyncio
 import sys

@@ -1,4 +1,4 @@
-"""The webhook: it takes what shows the secret, and acknowledges it afterwards."""
+"""The webhook: it accepts requests with the secret, and acknowledges them after storing their messages."""
 
 import asyncio
 import contextlib

@@ -261,7 +261,7 @@ def test_only_a_terminal_needs_preparation(monkeypatch: pytest.MonkeyPatch, is_t
     assert ("ravestate.modules.platform.conio.terminal" in sys.modules) is is_terminal
     monkeypatch.setitem(sys.modules, "prompt_toolkit", None)
     monkeypatch.delitem(sys.modules, "ravestate.modules.platform.conio.terminal", raising=False)
-    prepare()  # without the package it is the console that complains
+    prepare()  # without the package, the console raises the error
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
@@ -281,7 +281,7 @@ def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
     seen = b""
 
     def wait_for(text: bytes) -> None:
-        """Act as the terminal until it shows `text`."""
+        """Play the terminal until it shows `text`."""
         nonlocal seen
         while text not in seen:
             received = os.read(ours, 4096)
@@ -303,7 +303,7 @@ def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
         os.write(ours, keys)
         if keys.startswith(b"bye"):
             wait_for(b"'bye'")
-        # On a Unix terminal the end of the other side is an error of reading.
+        # On a Unix terminal, reading raises an error once the other side is closed.
         try:
             while received := os.read(ours, 4096):
                 os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))

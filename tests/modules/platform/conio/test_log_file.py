@@ -50,7 +50,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
     again = 6  # keys typed while the prompt is suspended may be lost, as on any terminal
 
     def read() -> bool:
-        """Act as the terminal; return whether the other side is still there."""
+        """Play the terminal; return whether the other side is still open."""
         nonlocal seen, again
         while not select.select([ours], [], [], 5.0)[0]:
             again -= 1
@@ -58,7 +58,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
             os.write(ours, typed)
         try:
             received = os.read(ours, 4096)
-        except OSError:  # on a Unix terminal the end of the other side is an error of reading
+        except OSError:  # on a Unix terminal, reading raises an error once the other side is closed
             return False
         seen += received
         os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))

@@ -117,7 +117,7 @@ class Account:
         return answer.raise_for_status().json()
 
     async def room(self, *others: str, **options: Any) -> str:
-        """Open a room with others; in one with a single other the two talk directly."""
+        """Open a room with others. With one other person, it is a direct chat."""
         body = {"invite": others, "is_direct": len(others) == 1, "preset": "trusted_private_chat", **options}
         return (await self.call("POST", "client/v3/createRoom", body))["room_id"]
 
@@ -168,7 +168,7 @@ class Account:
 
 
 async def register(server: Homeserver, http: httpx.AsyncClient, name: str, password: str = "password") -> Account:
-    """Make an account."""
+    """Create an account."""
     path = f"{server.url}/_synapse/admin/v1/register"
     nonce = (await http.get(path)).json()["nonce"]
     user = f"{name.lower()}{next(_numbers)}"
@@ -180,7 +180,7 @@ async def register(server: Homeserver, http: httpx.AsyncClient, name: str, passw
 
 @asynccontextmanager
 async def accounts(server: Homeserver, *names: str) -> AsyncGenerator[list[Account]]:
-    """Accounts with these names."""
+    """Yield accounts with these names."""
     async with httpx.AsyncClient(timeout=60.0, trust_env=False) as http:
         yield [await register(server, http, name) for name in names]
 

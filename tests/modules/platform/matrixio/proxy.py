@@ -11,7 +11,7 @@ from aiohttp import web
 class Fault:
     """A fault of the next `times` requests whose method and path contain a text.
 
-    The kinds: an HTTP status; ``lost``: the server acts, and its answer never arrives; ``garbage``: the answer is cut;
+    The kinds: an HTTP status; ``lost``: the server acts, but its answer never arrives; ``garbage``: the answer is cut;
     ``hang``: neither an answer nor an end; ``refuse``: the connection ends at once, and the server hears nothing.
     """
 

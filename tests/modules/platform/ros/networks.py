@@ -202,12 +202,12 @@ async def opened(node: Node) -> AsyncIterator[Node]:
 
 
 async def pause(seconds: float) -> None:
-    """Give the world outside some real time."""
+    """Give the other processes some real time."""
     await Clock(asyncio.get_running_loop()).sleep(seconds)
 
 
 async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
-    """Wait until something outside is reached; repeat an action meanwhile, because discovery takes its time."""
+    """Wait until a condition holds in other processes. Repeat an action meanwhile, because discovery takes time."""
     async with asyncio.timeout(PATIENCE):
         while not reached():
             again()

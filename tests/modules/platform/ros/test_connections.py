@@ -24,7 +24,7 @@ def wire(*bodies: bytes) -> bytes:
 
 
 class Reader:
-    """In the place of a node: it keeps what its channels take."""
+    """A stand-in for a node: it keeps the messages that its channels take."""
 
     def __init__(self) -> None:
         self.taken: dict[int, list[bytes]] = {}
@@ -136,7 +136,7 @@ def test_the_rate_of_a_channel_holds_for_both_ways_of_its_messages_together() ->
 
 
 class Link:
-    """In the place of a bridge: it hands over sockets, and keeps the frames of the node."""
+    """A stand-in for a bridge: it hands over sockets, and keeps the node's frames."""
 
     def __init__(self, handle: Handle, ready: Callable[[], None]) -> None:
         self.failed: PlatformError | None = None

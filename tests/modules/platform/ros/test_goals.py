@@ -49,7 +49,7 @@ def test_an_action_without_a_server_fails(ros1_network: Network) -> None:
 
 
 def test_a_goal_that_its_server_no_longer_knows_is_lost(ros1_network: Network) -> None:
-    """The test is the server: one that began anew lists no goals."""
+    """The test is the server. A restarted server lists no goals."""
 
     async def main() -> None:
         async with ros1_network.lent() as node:

@@ -56,7 +56,7 @@ def test_all_of_a_fast_topic_arrives_in_order(either: Network) -> None:
             )
             node.subscribe(
                 "/numbers", "std_msgs/Int32", lambda message: None, qos=ALL
-            )  # one that skips skips for itself alone
+            )  # a channel that skips messages does so only for itself
             assert await numbers(node, got, 400) == list(range(400))
 
     either.run(main)
@@ -156,7 +156,7 @@ def test_a_killed_bridge_comes_back_with_all_its_channels(either: Network, caplo
             assert node.restarts == before + 1
             signs: list[str] = []
             node.subscribe("/sign", "std_msgs/String", lambda message: signs.append(message.data), qos=LATCHED)
-            await until(lambda: signs)  # what was latched is so again
+            await until(lambda: signs)  # the latched message is latched again
             assert signs == ["open"]
 
     with caplog.at_level(logging.CRITICAL, "ravestate"):
@@ -320,7 +320,7 @@ def test_the_graph_names_topics_services_and_types(either: Network) -> None:
             assert found["/back"]["types"] in (["std_msgs/String"], ["std_msgs/msg/String"])
             assert found["/lamp"]["types"] in (["std_srvs/SetBool"], ["std_srvs/srv/SetBool"])
             assert found["/lamp"]["servers"] == 1
-            assert found.get(own.name, {"publishers": 0})["publishers"] == 0  # others alone count
+            assert found.get(own.name, {"publishers": 0})["publishers"] == 0  # only other nodes count
 
     either.run(main)
 

@@ -73,7 +73,7 @@ def test_the_clock_loses_no_time_while_it_changes_hands() -> None:
             self.time, self.driven = max(self.now, time), True
 
     class Simulation:
-        """A node that hears of the simulation's time alone."""
+        """A node that receives only the simulation's time."""
 
         def subscribe(self, topic: str, type: str, take: Any, **options: Any) -> None:
             self.take = take

@@ -1,7 +1,7 @@
 """A Bot API server on loopback, for tests: the methods that the agent calls, the rules of Telegram, and faults on demand.
 
-It keeps everything in a file, so that it can be killed and started again: ``python api_server.py PORT FILE``. Every token
-that looks like one is a bot of its own, so tests do not disturb each other. Tests play the users through ``/control``.
+It keeps everything in a file, so that it can be killed and started again: ``python api_server.py PORT FILE``. Every
+well-formed token is a separate bot, so tests do not disturb each other. Tests play the users through ``/control``.
 """
 
 from __future__ import annotations
@@ -340,7 +340,7 @@ class Server:
         return JSONResponse(await getattr(self, f"do_{order}")(bot, **a))
 
     async def do_say(self, bot: str, chat: int, text: str | None = None, user: int | None = None, **fields: Any) -> Any:
-        """A user writes; `fields` go into the message."""
+        """Let a user write a message with these `fields`."""
         user = user or chat
         self.db.execute("INSERT OR REPLACE INTO chats VALUES (?, ?, 'open')", (bot, chat))
         sender = {"id": user, "is_bot": False, "first_name": f"User{user}", "username": f"user{user}"}
@@ -350,26 +350,26 @@ class Server:
         return message
 
     async def do_crowd(self, bot: str, messages: list[dict[str, Any]]) -> Any:
-        """Many users write at once."""
+        """Let many users write at once."""
         for message in messages:
             await self.do_say(bot, **message)
 
     async def do_edit(self, bot: str, chat: int, id: int, text: str) -> Any:
-        """A user changes a message."""
+        """Let a user edit a message."""
         [(data,)] = self.all("SELECT data FROM messages WHERE bot = ? AND chat = ? AND id = ?", bot, chat, id)
         message = {**json.loads(data), "text": text, "edit_date": int(time.time())}
         self.keep(bot, message)
         return await self.update(bot, "edited_message", message)
 
     async def do_react(self, bot: str, chat: int, id: int, emoji: str) -> Any:
-        """A user reacts to a message."""
+        """Let a user react to a message."""
         user = {"id": chat, "is_bot": False, "first_name": f"User{chat}"}
         return await self.update(bot, "message_reaction", {
             "chat": self.chat(chat), "message_id": id, "user": user, "date": 0, "old_reaction": [],
             "new_reaction": [{"type": "emoji", "emoji": emoji}]})  # fmt: skip
 
     async def do_state(self, bot: str, chat: int, state: str) -> Any:
-        """A user blocks the bot, or it leaves a group, or the group moves."""
+        """Let a user block the bot, a group remove it, or a group get another id."""
         self.db.execute("INSERT OR REPLACE INTO chats VALUES (?, ?, ?)", (bot, chat, state))
         if state in ("left", "blocked"):
             me = self.me(bot)
@@ -380,19 +380,19 @@ class Server:
                     "user": me, "status": "kicked", "until_date": 0}})  # fmt: skip
 
     async def do_update(self, bot: str, data: dict[str, Any]) -> Any:
-        """The server reports anything, such as a malformed update."""
+        """Report any update, such as a malformed one."""
         return await self.update(bot, "", data)
 
     async def do_upload(self, bot: str, size: int = 0, text: str = "", hexed: str = "") -> Any:
-        """A user uploads a file."""
+        """Let a user upload a file."""
         return self.file(bytes.fromhex(hexed) if hexed else text.encode() or b"\xff\xd8" + bytes(size - 2))
 
     async def do_fault(self, bot: str, method: str, kind: str, times: int = 1, **more: Any) -> Any:
-        """The next calls of a method go wrong."""
+        """Make the next calls of a method fail."""
         self.faults[bot, method].append({"kind": kind, "times": times, **more})
 
     async def do_heal(self, bot: str) -> Any:
-        """No more faults."""
+        """End all faults."""
         for key in [key for key in self.faults if key[0] == bot]:
             del self.faults[key]
 
@@ -410,7 +410,8 @@ class Server:
         return said()
 
     async def do_called(self, bot: str, method: str, count: int = 0, wait: float = 100.0) -> Any:
-        """The calls of a method, once there are `count`, or after some seconds; and how many came in a flood wait."""
+        """Return the calls of a method, once there are `count`, or after some seconds; and the number of calls during a
+        flood wait."""
 
         def calls() -> list[Any]:
             return [call for call in self.calls[bot] if call["method"] == method]
@@ -421,12 +422,12 @@ class Server:
         return {"calls": calls(), "early": self.early[bot]}
 
     async def do_message(self, bot: str, chat: int, id: int) -> Any:
-        """A message as it is now."""
+        """Return a message in its present form."""
         [(data,)] = self.all("SELECT data FROM messages WHERE bot = ? AND chat = ? AND id = ?", bot, chat, id)
         return json.loads(data)
 
     async def do_left(self, bot: str) -> Any:
-        """The number of updates that are not confirmed."""
+        """Return the number of unconfirmed updates."""
         return len(self.updates(bot))
 
 
@@ -438,7 +439,7 @@ METHODS = [
 
 
 class Broken(Response):
-    """An answer that ends before it is whole."""
+    """An answer that ends too early."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"1000")]})
@@ -454,7 +455,7 @@ class Announced(uvicorn.Server):
 
 
 async def form(request: Request) -> dict[str, Any]:
-    """The arguments of a call, from a form of either kind."""
+    """Return the arguments of a call, from either kind of form."""
     body = await request.body()
     kind = request.headers.get("content-type", "")
     if not kind.startswith("multipart/form-data"):

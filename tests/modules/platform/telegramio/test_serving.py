@@ -151,7 +151,7 @@ async def test_an_edited_message_changes_its_answer(bot: Bot, tmp_path: Path) ->
         assert await settled(bot) == ["7: I like tea"]
         await bot.say(7, "And coffee")
         await bot.said(3)
-        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # the talk has moved on
+        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # the conversation has moved on
         assert await settled(bot) == ["7: I like tea", "7: And coffee"]
 
 

@@ -1,4 +1,4 @@
-"""Recordings for the tests: synthesised speech at given times, and people."""
+"""Recordings for the tests: synthesised speech at given times, and speech of people."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def voice(name: str = "piper") -> Synthesiser:
 
 @lru_cache(maxsize=256)
 def spoken(text: str, name: str = "piper") -> bytes:
-    """The text as the microphone hears it, without silence at its ends.
+    """Return the sound of a text, as the microphone hears it, without silence at its ends.
 
-    The voice is monotonous: otherwise it would vary with what it has spoken before, and so with the order of the tests.
+    The voice is monotonous. Otherwise, its sound would depend on earlier texts, and so on the order of the tests.
     """
     pcm = sound.resample(voice(name).speak(text, Prosody(range=0.0)).sound, 24000, 16000)
     loud = np.flatnonzero(np.abs(sound.samples(pcm).astype(int)) > 150)
@@ -40,7 +40,7 @@ def spoken(text: str, name: str = "piper") -> bytes:
 
 
 def track(*parts: tuple[float, str | bytes], length: float = 0.0, name: str = "piper") -> bytes:
-    """A track with each text (or sound) at its time."""
+    """Return a track with each text (or sound) at its time."""
     found = np.zeros(round(length * 16000))
     for at, what in parts:
         part = sound.samples(spoken(what, name) if isinstance(what, str) else what).astype(float)
@@ -112,7 +112,7 @@ def storyteller(slow: float = 0.0) -> rs.Module:
 
 
 class Scripted:
-    """A recogniser that returns given texts, one after another; then the last one again."""
+    """A recogniser that returns the given texts, one after another, and then repeats the last text."""
 
     busy = False
 

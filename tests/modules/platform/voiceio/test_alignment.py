@@ -1,4 +1,4 @@
-"""Written words get the times of spoken ones, also where they are not one to one."""
+"""Written words get the times of spoken words, even if they do not correspond one to one."""
 
 from ravestate.modules.platform.voiceio.alignment import by_phonemes, by_places, places_of
 
@@ -13,7 +13,7 @@ def test_a_word_without_an_event_lies_between_its_neighbours() -> None:
 
 
 def test_a_spoken_word_may_be_several_written_ones() -> None:
-    # "there was" is one word of eight phonemes in the voice's eyes.
+    # For the voice, "there was" is one word of eight phonemes.
     words = by_phonemes("time there was a robot", [(0.0, 3), (0.4, 7), (0.9, 1), (1.0, 6)], 1.5)
     assert [round(word.time, 2) for word in words][:2] == [0.0, 0.4]
     assert [round(word.time, 2) for word in words][3:] == [0.9, 1.0]

@@ -1,4 +1,4 @@
-"""The agent's own voice is taken out of the microphone's sound; the user's stays."""
+"""The canceller removes the agent's own voice from the microphone's sound, and keeps the user's voice."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ravestate.modules.platform.voiceio.echo import FRAME, EchoCanceller
 
 
 def room(far: np.ndarray, decibels: float = -10.0, delay: float = 0.03) -> np.ndarray:
-    """The echo of a sound: delayed, softer, with two reflections."""
+    """Return the echo of a sound: delayed, softer, with two reflections."""
     out = np.zeros(len(far))
     for late, gain in ((0.0, 1.0), (0.012, 0.4), (0.031, 0.2)):
         shift = round((delay + late) * 16000)

@@ -17,7 +17,7 @@ def sound(*parts: tuple[float, str | bytes]) -> np.ndarray:
 
 
 def hidden(near: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, Leak]:
-    """Whether each chunk is hidden; one frame is heard with each chunk, and no canceller works."""
+    """Return for each chunk whether it is hidden. Each chunk comes with one frame, without a canceller."""
     leak, found, chunk = Leak(), list[bool](), 0
     for at in range(0, len(near) - FRAME, FRAME):
         leak.play(near[at : at + FRAME].astype("<i2"), far[at : at + FRAME].astype("<i2"))
@@ -64,7 +64,7 @@ def test_an_echo_that_comes_later_is_found() -> None:
 
 
 def articulate(near: np.ndarray, far: np.ndarray) -> list[float]:
-    """The times at which an ear with a canceller is sure that somebody speaks, while the agent speaks."""
+    """Return the times at which an ear with a canceller is sure of the user's speech while the agent speaks."""
     ear, found = Ear(canceller=EchoCanceller()), list[float]()
     a, b = (np.clip(each, -32768, 32767).astype("<i2").tobytes() for each in (near, far))
     for at in range(0, len(a) - 640, 640):

@@ -1,4 +1,4 @@
-"""Models that are fetched: what stays behind a failure."""
+"""Downloads of models: the files that a failure leaves behind."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The mouth: text that grows, what was heard of it, and holding and going on."""
+"""The mouth: growing text, the part that the user heard, and pauses of the speech."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""Opening a conversation: the parts that a line needs, and what is closed with it."""
+"""Opening a conversation: the parts that a line needs, and their end."""
 
 import asyncio
 import gc
@@ -129,7 +129,7 @@ def test_the_model_of_melodies_stays_loaded(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 class Devices(WavLine):
-    """The machine's devices, in place of PortAudio."""
+    """A stand-in for the machine's devices, in place of PortAudio."""
 
     def __init__(self, *names: str) -> None:
         super().__init__(None)
@@ -230,7 +230,7 @@ def test_a_short_sound_interrupts_the_agent_only_if_its_words_are_clear_or_deman
         conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
         heard = Recognised(text, confidence)
         assert conversation.verdict(Turn(3.0, 3.0 + length, agent_spoke=True), heard)[0] == what
-        assert conversation.verdict(Turn(3.0, 3.0 + length), heard)[0] == "utterance"  # nobody is interrupted
+        assert conversation.verdict(Turn(3.0, 3.0 + length), heard)[0] == "utterance"  # the agent is not interrupted
         conversation.close()
 
     monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))

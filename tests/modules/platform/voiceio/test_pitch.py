@@ -1,4 +1,4 @@
-"""Two voices are told apart by their pitch; one person stays one."""
+"""The pitch shows whether two people speak; one person never counts as two."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Floors for the shares that `benchmarks/questions/voice.py` measures in full."""
+"""Limits for the shares that `benchmarks/questions/voice.py` measures in full."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recognition of people's speech by the real models, and what a recogniser writes for sounds that are no speech."""
+"""Recognition of people's speech by the real models, and the text for sounds other than speech."""
 
 import runpy
 import threading
@@ -165,7 +165,7 @@ def test_a_sound_of_the_greatest_length_fits_into_the_models_window() -> None:
 
 
 def test_unwanted_words_are_not_recognised(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Neither the pieces that are left, nor a second time."""
+    """It recognises neither the remaining pieces, nor the sound a second time."""
     one, unwanted, asked = Recogniser(Settings(model="tiny.en")), threading.Event(), list[bytes]()
 
     def request(_: object, data: bytes, **options: Any) -> Any:

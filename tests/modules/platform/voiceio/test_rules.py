@@ -48,7 +48,7 @@ def settings(**changed: Any) -> dict[str, dict[str, Any]]:
 
 
 def loud(file: Path, begin: float, end: float) -> bool:
-    """Whether the loudspeaker sounds in this time."""
+    """Return whether the loudspeaker sounds in this time."""
     with wave.open(str(file)) as out:
         sound = np.frombuffer(out.readframes(out.getnframes()), "<i2").astype(int)
     part = sound[round(begin * 24000) : round(end * 24000)]

@@ -9,7 +9,7 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 LOUD = 0.02
-"""The level from which a block is loud (1 is the greatest)."""
+"""The minimum level of a loud block (1 is the maximum)."""
 
 PAUSE = 0.4
 """Seconds of quiet that end an utterance."""
@@ -22,20 +22,20 @@ level = ears.slot("level", 0.0)
 
 
 def level_of(block: bytes) -> float:
-    """The level of 16-bit samples, from 0 to 1."""
+    """Return the level of 16-bit samples, from 0 to 1."""
     samples = array.array("h", block)
     return math.sqrt(sum(sample * sample for sample in samples) / max(1, len(samples))) / 32768
 
 
 def tone(seconds: float, rate: int = rawio.OUT_RATE) -> bytes:
-    """A tone of 440 Hz."""
+    """Return a tone of 440 Hz."""
     return array.array(
         "h", (round(12000 * math.sin(2 * math.pi * 440 * n / rate)) for n in range(round(seconds * rate)))
     ).tobytes()
 
 
 def babble(seconds: float, rate: int = rawio.IN_RATE) -> bytes:
-    """Something like a voice, so that a browser does not take it for noise: a hoarse tone in syllables."""
+    """Return a sound like a voice (a hoarse tone in syllables), which a browser does not take for noise."""
     samples = array.array("h")
     for n in range(round(seconds * rate)):
         time = n / rate
@@ -53,7 +53,7 @@ def babble(seconds: float, rate: int = rawio.IN_RATE) -> bytes:
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Turn each loud stretch into an utterance that tells its length."""
+    """Turn each loud stretch into an utterance with its length."""
     line = ctx.payload(rawio.sound.changed)
     loud = quiet = told = 0.0
     async for block in line.blocks():
@@ -107,5 +107,5 @@ SAGA = "I heard a sound, and that reminds me of" + 30 * " far" + " hills."
 
 @saga.rule(when=rawio.input.changed, writes=rawio.output)
 async def tell_at_length(ctx: rs.RuleContext) -> None:
-    """Say something so long that somebody will interrupt it."""
+    """Say something so long that the visitor can interrupt."""
     ctx[rawio.output] = SAGA

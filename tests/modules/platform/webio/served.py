@@ -20,8 +20,9 @@ class Served:
     """``with Served(port=0) as served``: an agent that says again what it hears.
 
     Args:
-        patience: Seconds that it waits for the silent, and for those who do not read, so that tests need not wait long.
-        settings: Those of ``webio``.
+        patience: The seconds that the server waits for silent clients, and for clients that do not read. Short, for
+            quick tests.
+        settings: The settings of ``webio``.
     """
 
     def __init__(self, patience: float | None = None, **settings: Any) -> None:
@@ -62,29 +63,29 @@ class Served:
         return self.process.returncode
 
     def connect(self, **options: Any) -> connect:
-        """A WebSocket to it."""
+        """Open a WebSocket to the server."""
         return connect(f"ws://{self.host}/ws", ping_interval=None, compression=None, **options)
 
     def peak(self) -> int:
-        """The most memory that it has had so far (bytes); Linux tells."""
+        """Return the maximum memory of the process so far (bytes). Linux only."""
         status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
         found = re.search(r"VmHWM:\s+(\d+) kB", status)
         assert found is not None
         return int(found[1]) * 1024
 
     def files(self) -> int:
-        """How many files and sockets it has open; Linux tells."""
+        """Return the number of open files and sockets of the process. Linux only."""
         return len(os.listdir(f"/proc/{self.process.pid}/fd"))
 
 
 async def hello(socket: ClientConnection, **fields: Any) -> dict[str, Any]:
-    """Say hello; the welcome."""
+    """Say hello, and return the welcome."""
     await socket.send(json.dumps({"type": "hello", "v": 1, **fields}))
     return json.loads(await socket.recv())
 
 
 async def talk(socket: ClientConnection, said: Sequence[str]) -> None:
-    """Say something, and be sure that each answer is the right one."""
+    """Say something, and check that each answer is right."""
     for text in said:
         await socket.send(json.dumps({"type": "say", "id": text.replace(" ", "-"), "text": text}))
         answered = ""

@@ -1,4 +1,4 @@
-"""Clients that mean no good, or are broken: what they cost is bounded, and others do not notice."""
+"""Hostile and broken clients: their cost is bounded, and other clients do not notice them."""
 
 import asyncio
 import contextlib
@@ -21,7 +21,7 @@ ELSEWHERE = ("127.0.0.2", 0)  # another address of this machine
 
 @pytest.fixture(autouse=True)
 def _many_files() -> Iterator[None]:
-    """Those who mean no good may open more than is usual."""
+    """Allow this process more open files than usual, for the hostile clients."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, min(hard, 4096)), hard))
     yield
@@ -30,7 +30,7 @@ def _many_files() -> Iterator[None]:
 
 @contextlib.asynccontextmanager
 async def unharmed(served: Served, megabytes: int) -> AsyncGenerator[None]:
-    """Within, a visitor from elsewhere talks all the time; memory does not grow by more than so much."""
+    """Within the ``with`` block, a visitor talks all the time. Memory must not grow by more than the given amount."""
     async with served.connect(local_addr=ELSEWHERE) as visit:
         await hello(visit)
         await talk(visit, ["before"])
@@ -148,7 +148,7 @@ async def test_a_client_that_stops_reading_is_dropped_and_costs_little() -> None
             with upgraded(served) as deaf:
                 deaf.sendall(masked('{"type": "hello", "v": 1}'))
                 deaf.setblocking(False)
-                # Each is said again; megabytes would wait for it.
+                # The agent repeats each utterance, so megabytes would wait for this client.
                 with contextlib.suppress(BlockingIOError, ConnectionError):
                     for number in range(400):
                         deaf.sendall(masked(json.dumps({"type": "say", "id": f"{number}", "text": text})))
@@ -179,7 +179,7 @@ def until_closed(one: socket.socket) -> bytes:
 
 @contextlib.contextmanager
 def upgraded(served: Served) -> Iterator[socket.socket]:
-    """A WebSocket by hand, with little room for what is not read."""
+    """A hand-made WebSocket with small buffers for unread data."""
     with socket.socket() as one:
         one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         one.settimeout(10)
@@ -193,7 +193,7 @@ def upgraded(served: Served) -> Iterator[socket.socket]:
 
 
 def masked(text: str) -> bytes:
-    """A client's text frame."""
+    """Return a text frame of a client."""
     data = text.encode()
     size = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + len(data).to_bytes(2, "big")
     return b"\x81" + size + b"\0\0\0\0" + data

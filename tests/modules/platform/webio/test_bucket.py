@@ -1,4 +1,4 @@
-"""The token bucket: a burst at once, then so many a second, and never more."""
+"""The token bucket: a burst at once, then a fixed rate, and never more."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,7 +12,7 @@ def test_within_any_stretch_no_more_get_through_than_burst_and_rate_allow(gaps: 
     now, through = 0.0, []
     for gap in gaps:
         now += gap
-        now += bucket.wait(now)  # who comes has to wait before the next one is looked at
+        now += bucket.wait(now)  # each event waits before the next event is counted
         through.append(now)
     for n, begin in enumerate(through):
         for count, end in enumerate(through[n:], start=1):

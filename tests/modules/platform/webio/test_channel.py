@@ -1,4 +1,4 @@
-"""A WebSocket with manners: what is read and written on it ends together, and faults are not lost."""
+"""A channel: its reading and its writing end together, and no fault is lost."""
 
 import asyncio
 from typing import Any
@@ -11,7 +11,7 @@ from ravestate.modules.platform.webio.fields import CLOSING_CODES, ProtocolError
 
 
 class Socket:
-    """One end of a WebSocket, which keeps what is done with it."""
+    """One end of a WebSocket, which records all calls."""
 
     def __init__(self) -> None:
         self.done: list[Any] = []

@@ -11,7 +11,7 @@ from ravestate.testing import CHECKS, Driver, echo
 
 
 class Visitor:
-    """A visitor with a page that connects again, and then says again what was not confirmed."""
+    """A visitor whose page reconnects, and then repeats unconfirmed words."""
 
     def __init__(self) -> None:
         self.visit: Visit | None = None

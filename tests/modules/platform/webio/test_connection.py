@@ -1,4 +1,4 @@
-"""One connection: its manners, and what is done about bad ones."""
+"""One connection: its protocol, and the reaction to faulty clients."""
 
 import asyncio
 import json

@@ -16,10 +16,10 @@ from ravestate.modules.platform.webio.limits import LOWEST_RATE, TIMEOUT, Limite
 
 
 class Reader:
-    """An application that reads what is sent and then says how much it was.
+    """An application that reads a request, and answers with the number of bytes.
 
     Args:
-        before, after: Seconds that it takes before it reads, and before it answers.
+        before, after: The seconds before it reads, and before it answers.
     """
 
     def __init__(self, before: float = 0.0, after: float = 0.0) -> None:
@@ -60,9 +60,9 @@ class Caller(asyncio.Transport):
         self.limits = LimitedHTTP(config=config, server_state=state, app_state={}, per_address=9, most=9)
         self.answer = b""
         self.reads = True
-        """Whether the server reads what is sent."""
+        """Whether the server reads the client's data."""
         self.hung_up: float | None = None
-        """When the server has closed the connection (seconds)."""
+        """The time at which the server closed the connection (seconds)."""
         self.limits.connection_made(self)
 
     def send(self, data: bytes) -> None:
@@ -71,7 +71,7 @@ class Caller(asyncio.Transport):
         self.limits.data_received(data)
 
     async def send_slowly(self, data: bytes, rate: float) -> None:
-        """Send something, so many bytes in each second, as far as the server reads it."""
+        """Send data at a rate of so many bytes a second, as far as the server reads it."""
         while data and self.hung_up is None:
             await past(1.0)
             if self.reads and self.hung_up is None:
@@ -198,7 +198,7 @@ async def test_who_sends_on_after_the_answer_is_hung_up_on() -> None:
 async def test_who_does_not_read_the_answer_is_hung_up_on() -> None:
     caller = Caller(Reader(after=1.0))
     caller.send(request(5) + b"hello")
-    caller.limits.pause_writing()  # as the transport does when nothing is read
+    caller.limits.pause_writing()  # as the transport does when the client reads nothing
     await past(5 * TIMEOUT)
     assert caller.hung_up == 2 * TIMEOUT
 

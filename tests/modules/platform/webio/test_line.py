@@ -32,7 +32,7 @@ class Speaker:
 
 
 async def taken(line: PageLine, count: int) -> list[bytes]:
-    """The next blocks of a line."""
+    """Return the next blocks of a line."""
     blocks = line.blocks()
     found = [await anext(blocks) for _ in range(count)]
     await blocks.aclose()
@@ -86,7 +86,7 @@ async def test_the_position_is_what_the_window_reports() -> None:
     window.played(0.5)
     assert line.played == 0.5
     await past(0.1)
-    assert line.played == 0.6  # it went on since then, as far as one can tell
+    assert line.played == 0.6  # by estimate, the loudspeaker has gone on since then
     await past(1.0)
     assert line.played == 0.7  # a report is missing
     window.played(0.6)

@@ -1,4 +1,4 @@
-"""Frames: whatever comes, a record or a `ProtocolError`; what is written can be read."""
+"""Frames: any text gives a record or a `ProtocolError`, and `parse` reads all that `serialise` writes."""
 
 import json
 from typing import Any
@@ -83,7 +83,7 @@ def test_what_the_server_writes_is_read(frame: Any) -> None:
 
 
 def understood(text: str | bytes) -> bool:
-    """Whether a text is a client's frame. Anything but a `ProtocolError` is a failure of the test."""
+    """Return whether a text is a client's frame. Any error other than a `ProtocolError` fails the test."""
     try:
         frame = parse(text, CLIENT)
     except ProtocolError as error:

@@ -1,4 +1,4 @@
-"""A visitor sees messages, pieces, and the agent at work."""
+"""The page shows messages, utterances as they grow, and whether the agent is thinking."""
 
 import asyncio
 
@@ -21,7 +21,7 @@ speaker = rs.Module("speaker", requires=(rawio,))
 
 @speaker.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), emits=rawio.piece)
 async def speak(ctx: rs.RuleContext) -> None:
-    """Say each word for itself, a second apart; what is said in full is what stands behind a /."""
+    """Say each part of the input before the `/`, one a second; then say the text after the `/` as one utterance."""
     words, _, whole = ctx.payload(rawio.input.changed).partition("/")
     ctx[rawio.speaking] = True
     for word in words.split("|"):
@@ -53,7 +53,7 @@ async def chat(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_who_answers_at_once_is_not_shown_thinking() -> None:
+async def test_an_agent_that_answers_at_once_is_not_shown_thinking() -> None:
     async with page(slow) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("0.2")
@@ -64,7 +64,7 @@ async def test_who_answers_at_once_is_not_shown_thinking() -> None:
 
 
 @in_virtual_time
-async def test_who_takes_longer_is_shown_thinking_until_the_answer() -> None:
+async def test_a_slower_agent_is_shown_thinking_until_the_answer() -> None:
     async with page(slow) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("2.0")
@@ -77,7 +77,7 @@ async def test_who_takes_longer_is_shown_thinking_until_the_answer() -> None:
 
 
 @in_virtual_time
-async def test_after_a_filler_it_still_thinks_and_then_answers() -> None:
+async def test_after_a_filler_the_agent_still_thinks_and_then_answers() -> None:
     async with page(doubter, fillers) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("who?")
@@ -101,12 +101,12 @@ async def think(ctx: rs.RuleContext) -> None:
 
 @thinker.rule(when=rawio.output.changed.detached(), emits=rawio.typing)
 async def take_note(ctx: rs.RuleContext) -> None:
-    """Work on after the answer, on something else."""
+    """Continue with other work after the answer."""
     await ctx.sleep(60.0)
 
 
 @in_virtual_time
-async def test_it_is_shown_thinking_until_the_answer_though_fillers_are_said() -> None:
+async def test_fillers_do_not_end_the_thinking() -> None:
     async with page(thinker, fillers) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("why?")
@@ -123,7 +123,7 @@ async def test_it_is_shown_thinking_until_the_answer_though_fillers_are_said() -
 
 
 @in_virtual_time
-async def test_a_paused_clock_is_shown_and_that_it_goes_on() -> None:
+async def test_the_page_shows_that_the_clock_pauses_and_resumes() -> None:
     async with page(slow) as app, Visit(app) as visit:
         await visit.hello()
         (session,) = app.state.sessions
@@ -154,7 +154,7 @@ async def test_an_utterance_is_shown_as_it_grows() -> None:
 
 
 @in_virtual_time
-async def test_what_never_became_an_utterance_was_said_all_the_same() -> None:
+async def test_pieces_without_an_utterance_become_a_message() -> None:
     async with page(speaker) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("I, |I")
@@ -162,7 +162,7 @@ async def test_what_never_became_an_utterance_was_said_all_the_same() -> None:
 
 
 @in_virtual_time
-async def test_who_comes_in_the_middle_of_an_utterance_sees_what_there_is_of_it() -> None:
+async def test_a_window_that_opens_during_an_utterance_shows_its_beginning() -> None:
     async with page(speaker) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("one |two/one two")

@@ -1,4 +1,4 @@
-"""The web server: where it listens, what it sends, how it ends."""
+"""The web server: its sockets, its answers, its end."""
 
 import asyncio
 import io
@@ -223,7 +223,7 @@ def test_it_can_be_mounted_in_an_application() -> None:
 
 @pytest.mark.parametrize(("path", "host"), [("/else", b"localhost"), ("/ws", b"evil.example")])
 def test_a_websocket_is_refused_on_a_server_without_denial_responses(path: str, host: bytes) -> None:
-    """As under daphne, which has no such ASGI extension."""
+    """Some servers, such as daphne, lack this ASGI extension."""
     chat = webio.app(Agent(parrot, webio))
     sent: list[Any] = []
 
@@ -255,7 +255,7 @@ def test_others_may_add_routes_behind_the_same_checks() -> None:
 
 @pytest.fixture
 def ask(tmp_path: Path) -> Callable[[str], subprocess.CompletedProcess[str]]:
-    """The client that the protocol's page shows, sent to a host."""
+    """Return a function that runs the example client of the protocol's page with a host."""
 
     def run(host: str) -> subprocess.CompletedProcess[str]:
         [client] = [block for block in blocks_in(PROTOCOL) if block.title == "ask.py"]

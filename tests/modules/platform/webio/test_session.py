@@ -1,4 +1,4 @@
-"""A conversation beside its words: writing, the agent's name, the reasons for its end."""
+"""A conversation apart from its messages: writing, the agent's name, the reasons for its end."""
 
 import asyncio
 
@@ -137,7 +137,7 @@ async def test_the_page_is_called_as_the_agent_calls_itself_and_by_its_new_name_
         async with Visit(app) as again:
             assert (await again.hello(session=visit.session, last=2))["agent"] == "Elske"
             visit.tell("bye")
-            assert (await again.next())["type"] == "ended"  # it is not told what it knows
+            assert (await again.next())["type"] == "ended"  # it gets no name that it already has
         async with Visit(app) as other:
             await other.hello()
             assert await other.next() == {"type": "renamed", "agent": "Robin"}  # a conversation of its own

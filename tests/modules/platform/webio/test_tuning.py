@@ -1,4 +1,4 @@
-"""How the interpreter is set while a page is served."""
+"""The settings of the interpreter while a page is served."""
 
 import contextlib
 import gc

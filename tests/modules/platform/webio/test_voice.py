@@ -32,7 +32,7 @@ class Caller(Visit):
         """The samples of the present stream that have come."""
 
     async def call(self, **fields: Any) -> dict[str, Any]:
-        """Say hello and turn the microphone on."""
+        """Say hello, and turn the microphone on."""
         welcome = await self.hello(**fields)
         self.tell("microphone", on=True)
         await self.until("flush")
@@ -44,7 +44,7 @@ class Caller(Visit):
             self.send(sound[at : at + 1280])
 
     async def next(self) -> dict[str, Any]:
-        """The next frame; sound is counted."""
+        """Return the next frame; count sound on the way."""
         frame = await super().next()
         if frame["type"] == "sound":
             self.sound += len(frame["sound"]) // 2
@@ -53,11 +53,11 @@ class Caller(Visit):
         return frame
 
     async def until(self, type: str) -> dict[str, Any]:
-        """The next frame of a type."""
+        """Return the next frame of a type."""
         return (await self.frames(type))[-1]
 
     async def rest(self) -> list[dict[str, Any]]:
-        """The frames that have come and were not looked at."""
+        """Return the frames that have come since the last look."""
         found: list[dict[str, Any]] = []
         while not self.nothing_more():
             found.append(await self.next())
@@ -165,7 +165,7 @@ async def test_a_visitor_who_types_gets_no_sound_and_no_mark() -> None:
         assert await visit.messages(2) == ["user: words", "agent: I heard words, and that pleases me."]
         await past(60.0)
         assert visit.nothing_more()
-        assert session_of(app).context.read(rawio.sound) is None  # so nobody made sound
+        assert session_of(app).context.read(rawio.sound) is None  # so no sound came
         visit.tell("hush")  # without a line, too
 
 

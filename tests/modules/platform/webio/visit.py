@@ -34,7 +34,8 @@ async def repeat(ctx: rs.RuleContext) -> None:
 
 
 def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
-    """Run an async test function on a loop whose time jumps to what is due next; what never comes is an error."""
+    """Run an async test function on a loop in virtual time. If it waits for something that never comes, raise an
+    error."""
 
     @functools.wraps(test)
     def run(*arguments: Any, **named: Any) -> None:
@@ -45,7 +46,7 @@ def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[
 
 
 async def past(seconds: float) -> None:
-    """Let virtual time go by."""
+    """Let virtual time pass."""
     loop = asyncio.get_running_loop()
     over = loop.create_future()
     loop.call_later(seconds, over.set_result, None)
@@ -54,7 +55,7 @@ async def past(seconds: float) -> None:
 
 @contextlib.asynccontextmanager
 async def page(*modules: Any, **settings: Any) -> AsyncGenerator[Starlette]:
-    """The page of an agent, which says again what it hears if no modules are given."""
+    """The page of an agent. Without modules, the agent repeats what it hears."""
     app = webio.app(Agent(*(modules or (parrot,)), webio, settings={"webio": settings}))
     async with app.router.lifespan_context(app):
         yield app
@@ -69,11 +70,11 @@ class Visit:
         self._in: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         self._out: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         self.reading = asyncio.Event()
-        """Cleared, nothing more is taken from the server, which then waits in its `send`."""
+        """While this event is cleared, the client takes nothing, and the server waits in its `send`."""
         self.reading.set()
         self.accepted = False
         self.closed: int | None = None
-        """The code with which the server has closed."""
+        """The code with which the server has closed the WebSocket."""
         self.session = ""
         self._said = 0
         self._task: asyncio.Task[None] | None = None
@@ -104,7 +105,7 @@ class Visit:
         await self.drop()
 
     async def over(self) -> None:
-        """Wait until the server has done with it."""
+        """Wait until the server has ended the connection."""
         assert self._task is not None
         await self._task
 
@@ -124,7 +125,7 @@ class Visit:
         self._out.put_nowait(message)
 
     def send(self, text: str | bytes) -> None:
-        """Send a message as it is."""
+        """Send a message without changes."""
         self._in.put_nowait({"type": "websocket.receive", "text" if isinstance(text, str) else "bytes": text})
 
     def tell(self, type: str, **fields: Any) -> None:
@@ -137,28 +138,28 @@ class Visit:
         self.tell("say", id=id or f"{self.session[:8]}-{self._said}", text=text)
 
     async def hello(self, **fields: Any) -> dict[str, Any]:
-        """Say hello; the welcome."""
+        """Say hello, and return the welcome."""
         self.tell("hello", v=1, **fields)
         welcome = await self.next()
         self.session = welcome.get("session", "")
         return welcome
 
     async def next(self) -> dict[str, Any]:
-        """The next frame; or what ends the connection."""
+        """Return the next frame, or the message that ends the connection."""
         message = await self._out.get()
         if message["type"] != "websocket.send":
             return message
         return json.loads(message["text"]) if "text" in message else {"type": "sound", "sound": message["bytes"]}
 
     async def frames(self, until: str) -> list[dict[str, Any]]:
-        """The next frames, up to the first of a type."""
+        """Return the next frames, up to the first frame of a type."""
         found = [await self.next()]
         while found[-1]["type"] != until:
             found.append(await self.next())
         return found
 
     async def messages(self, count: int) -> list[str]:
-        """The next messages, as "speaker: text"; whatever comes in between is left aside."""
+        """Return the next messages, as "speaker: text", without other frames."""
         found: list[str] = []
         while len(found) < count:
             frame = await self.next()
@@ -167,5 +168,5 @@ class Visit:
         return found
 
     def nothing_more(self) -> bool:
-        """Whether everything that has come was looked at."""
+        """Return whether the test has read all frames that came."""
         return self._out.empty()

@@ -531,7 +531,7 @@ def test_every_question_can_be_repeated() -> None:
 
 
 def test_stop_ends_the_game_beside_modules_that_answer_it_themselves() -> None:
-    """The agent does not only promise to be quiet."""
+    """The agent is really quiet after its promise."""
     loud = rs.Module("loud", requires=[rawio, idle])
 
     @loud.rule(when=idle.hushed, writes=rawio.output, weight=20.0)

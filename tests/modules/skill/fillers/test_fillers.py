@@ -1,4 +1,4 @@
-"""fillers fills a pause, and takes no other rule's turn."""
+"""fillers fills a pause, and never answers in place of another rule."""
 
 import pytest
 
@@ -97,7 +97,7 @@ model = rs.Module("model", requires=[rawio])
 
 @model.rule(when=rawio.input.changed, writes=rawio.output, until=rawio.input.changed)
 async def think(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Think for so many seconds as are said, and then answer, unless the seconds are negative."""
+    """Think for the seconds in the input, and then answer. If the number is negative, do not answer."""
     seconds = float(ctx.payload(rawio.input.changed))
     await ctx.sleep(abs(seconds))
     if seconds < 0:
@@ -236,7 +236,7 @@ both = rs.Module("both", requires=[rawio])
 
 @both.rule(when=rawio.input.changed, writes=rawio.output)
 async def ponder(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer after the seconds that are said, whatever else is said; resign if they are negative."""
+    """Answer after the seconds in the input, even if the user speaks meanwhile. If the number is negative, resign."""
     seconds = float(ctx.payload(rawio.input.changed))
     await ctx.sleep(abs(seconds))
     if seconds < 0:

@@ -181,7 +181,7 @@ class EmbeddedStore:
             return ENDS_PROCESS
         try:
             self._database, self._connection = connect(self._path, whole_log=whole_log)
-        except Exception as error:  # a damaged file may raise any exception
+        except Exception as error:  # opening a damaged file may raise any exception
             return said_by(error)
         return ""
 

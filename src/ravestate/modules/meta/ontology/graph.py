@@ -15,7 +15,8 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of people and robots. If a node is forgotten, a related agent stays if memory has more than their name."""
+"""The type of people and robots. Forgetting a node does not remove a related person or robot if memory has more than
+their name."""
 
 
 class Graph:

@@ -1,4 +1,4 @@
-"""Numbers that describe a normalised movement, independently of the movement's tempo and first moment."""
+"""The features of a normalised movement. They do not depend on its tempo, or on the time at which it starts."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ if TYPE_CHECKING:
 
 LEFT_WRIST, RIGHT_WRIST = 3, 4
 TRACKS = 12
-"""The number of coordinates whose common movement counts: wrists, height and depth of the knees, torso, rise."""
+"""The number of coordinates between which correlations are features: wrists, height and depth of the knees, depth of
+the torso, rise."""
 
 
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
     """Return the features. A feature is NaN if the joints that it needs are not visible.
 
-    The features are the mean place of each joint, the size of its movement, and the common movement of pairs of
-    coordinates. Rotations of the wrists and their distances from the face follow. All features are statistics over
-    time, so tempo and phase do not matter.
+    The features are the mean place of each joint, the size of its movement, and the correlations between pairs of
+    coordinates. Next come the rotations of the wrists, the distance between them, and their distances from the face.
+    All features are statistics over time, so tempo and phase do not matter.
     """
     import numpy as np
 

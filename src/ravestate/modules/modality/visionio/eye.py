@@ -107,7 +107,7 @@ class Eye:
 
     def close(self) -> None:
         """Close the camera. The worker ends with its last user."""
-        if self._process.busy:  # with a look for this stream or another stream, so do not make the loop wait
+        if self._process.busy:  # with a look of this or another stream; the loop must not wait
             threading.Thread(target=self._close, name="visionio-close", daemon=True).start()
         else:
             self._close()

@@ -18,9 +18,11 @@ RELATION = "has_face"
 """The relation from a person to their faces."""
 NUMBERS = 128
 MERGE = 0.45
-"""The distance up to which two faces surely belong to one person. Two people of the same name are then one person."""
+"""The distance up to which two faces surely belong to one person. If two people have the same name and such faces,
+memory merges them."""
 MARGIN = 0.05
-"""The minimum lead (distance) of the nearest person over the next person. With less, nobody is recognised."""
+"""How much farther the second nearest person must be than the nearest person. Otherwise, the agent recognises
+nobody."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +34,7 @@ class Nearest:
 
 
 def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest | None:
-    """Return the person with the nearest stored vector; None beyond `threshold`, or if another person is as near."""
+    """Return the person with the nearest stored vector; None beyond `threshold`, or if two people are about as near."""
     faces = stored(graph)
     ranked = sorted((dist(vector, known), number) for number, (_, known) in enumerate(faces))
     if not ranked or ranked[0][0] > threshold:

@@ -1,4 +1,4 @@
-"""The rules that look and follow faces. They report people who come and leave, with names, to other modules."""
+"""The rules that look at pictures and follow faces. They report people who come and leave to other modules."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context. Then the machine's camera is not for the user."""
+    """Return whether a platform with many users runs this context. Then the machine's camera does not show the user."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 

@@ -17,7 +17,7 @@ from .places import default_camera
 AGAIN = 5.0
 """The seconds between two attempts to open a lost camera."""
 MADE_UP = 0.5
-"""The greatest delay (seconds) for which later looks may come faster."""
+"""The greatest delay (seconds) for which later looks may make up."""
 FAULTS = 5
 """The number of failures in a row after which the agent gives up a video, a folder or a worker."""
 
@@ -126,7 +126,7 @@ class Watch:
         """Wait until the next look is due. Return whether there is a next look.
 
         A look is due one period after the last look was due. So a slow look, such as a thorough look, does not lower
-        the rate. The agent never exceeds its share of the time.
+        the rate. The agent never exceeds the share of the time in the setting `load`.
 
         Args:
             began: The time at which this look began (seconds).

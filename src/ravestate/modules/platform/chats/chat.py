@@ -246,7 +246,7 @@ class Chat:
             self.rest()
 
     def _keep_for_later(self, gone: Person) -> None:
-        """Let the next conversation answer other people's messages that have no answer yet."""
+        """Put other people's messages that have no answer yet back into the queue, for the next conversation."""
         others = [entry for entry in self._open if entry.message.person.id != gone.id]
         self._open = [entry for entry in self._open if entry not in others]
         self._waiting.extendleft(reversed(others))

@@ -25,7 +25,7 @@ GROWTH = 1.0
 
 
 class Draft:
-    """An answer of the agent in a chat that is still growing."""
+    """A growing answer of the agent in a chat."""
 
     def __init__(self, chat: str) -> None:
         self.text = ""

@@ -122,7 +122,7 @@ class Room:
         return False
 
     def warn(self, concerned: str, what: str) -> None:
-        """Log a warning about somebody or something, once."""
+        """Log a warning, but only once for each subject."""
         if concerned not in self._warned:
             self._warned.add(concerned)
             self.log.warning("%s %s", concerned, what)

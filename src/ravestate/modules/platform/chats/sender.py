@@ -157,7 +157,7 @@ class Sender:
         """Try to deliver an item once; return the error of a failure."""
         async with self._attempts:
             await self.pace.turn()
-            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft after it would stay
+            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft after the message would stay
                 await asyncio.wait((showing,), timeout=SHOWN)
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:

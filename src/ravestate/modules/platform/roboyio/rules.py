@@ -88,7 +88,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _not_now(ctx: rs.RuleContext) -> str | None:
-    """Return the reason for which this run of `connect` shall not connect; None if it shall connect."""
+    """Return the reason for which this run of `connect` must not connect; None if it may connect."""
     link: str = ctx.settings.link
     others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
     if others and not ctx[here]:

@@ -1,4 +1,4 @@
-"""Recorded bags, played into an agent in virtual time."""
+"""Play recorded bags of ROS into an agent, in virtual time."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
     Args:
         sim: The simulation. The bag's first message comes at the simulation's present time.
         bag: A ``.bag`` file of ROS 1, or a folder or file of ROS 2.
-        types: The types of the bag's messages, if the bag does not bring their definitions.
+        types: The types of the bag's messages, if the bag does not contain their definitions.
 
     Returns:
         The number of messages that were written to slots.

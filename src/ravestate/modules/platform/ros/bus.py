@@ -284,7 +284,7 @@ class BusLink:
         self.start()
 
     async def close(self) -> None:
-        """Take leave of the bus."""
+        """Tell the bus that the node leaves, and close the connection."""
         if self._task is not None:
             self._task.cancel()
         if self._frames is not None:

@@ -1,4 +1,4 @@
-"""The check of an agent's slots: whether there is another end, whether the types match, and the remedy for faults."""
+"""Check the slots of an agent: whether other nodes use their topics, whether the types match, and how to fix faults."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from .naming import resolve
 from .types import Types
 
 TOLD = 100
-"""The maximum number of different texts that a node logs. Good news or a new link resets the count."""
+"""The maximum number of different texts that a node logs. A text of level `info`, or a new link, resets the count."""
 WAITING = 1000
 """The maximum number of messages that wait while the bridge starts. Beyond it, the node drops the oldest message."""
 LEAVING = 2.0

@@ -24,7 +24,8 @@ HEARD = 0.5
 FAINT = 0.1
 """The share of a word's greatest level below which the end of the word counts as a pause after it."""
 DRIFT = 0.06
-"""The seconds by which the play-out may differ from a regular course, before the echo's reference jumps to it."""
+"""The echo's reference advances with the microphone's sound. If it is this far (seconds) from the play-out, it
+jumps."""
 LEAD = 4.0
 """The seconds of sound in the loudspeaker's queue above which the mouth synthesises no more text."""
 KEPT = 30.0
@@ -195,7 +196,8 @@ class Mouth:
             await self._released.wait()
 
     async def room(self) -> None:
-        """Wait until little sound is left in the queue. This also works for a line that drops unheard sound."""
+        """Wait until little sound is left in the queue. This also works for a line that drops sound without playing
+        it."""
         while (left := self.lead - LEAD) > 0.0:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(max(0.05, left)):

@@ -23,9 +23,9 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(rs.Settings):
-    """Devices, models, and the manners of a conversation."""
+    """The settings of voiceio: devices, models, and the timing of a conversation."""
 
-    model_config = ConfigDict(protected_namespaces=())  # `model` is our own field
+    model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
     source: str = "default"
     """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` goes first."""

@@ -112,7 +112,7 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     recogniser = await asyncio.to_thread(Recogniser, settings)
     voice = line = None
     try:
-        recorded = given is None and is_file(settings.source)  # the same recording shall lead to the same conversation
+        recorded = given is None and is_file(settings.source)  # the same recording must lead to the same conversation
         voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         if (melody := await asyncio.to_thread(_melody)) is None:

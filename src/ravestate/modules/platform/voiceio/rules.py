@@ -88,7 +88,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context. Then the machine's devices are not for the user."""
+    """Return whether a platform with many users runs this context. Then the user is not at the machine's devices."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 

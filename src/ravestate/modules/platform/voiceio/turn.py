@@ -1,4 +1,4 @@
-"""The end of a turn, judged by the melody, the words, and silence."""
+"""Decide when the user's turn is over, from its melody, its words, and the silence after it."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .names import Settings
 
 WINDOW = 8.0
-"""The number of last seconds of a turn that the model of the melody hears."""
+"""The number of seconds at the end of a turn that the melody model hears."""
 
 UNFINISHED = 0.3
-"""The share of the setting `complete` below which the melody alone shows that the turn goes on."""
+"""If the melody's probability is below this share of the setting `complete`, the turn goes on, whatever the words
+are."""
 
 ANOTHER = 0.03
-"""The probability of another candidate, whose sentence goes on, above which the last word proves nothing."""
+"""If words after which a sentence goes on have this probability together, the last word proves nothing."""
 UNCLEAR = 0.3
-"""The probability below which the last word is unclear, like a word that breaks off."""
+"""If no candidate has this probability, the last word is unclear, for example because it breaks off."""
 
 _SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+[-.]?)+|m(?:[-.][a-z]{1,2})*[-.][mnh]+")
 """Laughter, and hums as a recogniser writes or spells them: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""
@@ -110,7 +111,7 @@ def completeness(text: str, language: str = "en") -> Literal["open", "doubtful",
 
 
 def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
-    """Return whether the last word is unclear, or may be another word whose sentence goes on.
+    """Return whether the last word is unclear, or may be a word after which the sentence goes on.
 
     A recogniser has learnt from whole sentences, so it may hear "a photograph of mine" in "a photograph of my".
     """

@@ -1,4 +1,4 @@
-"""A WebSocket for any protocol. It limits the size of frames and the wait for the first one, and has closing codes."""
+"""A WebSocket for any protocol, with closing codes, and limits on the size of frames and the wait for the first."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame: 0.2 s."""
 
 AHEAD = rawio.OUT_RATE
-"""The maximum number of samples that a window has and has not played: 1 s, so that `stop` drops little sound."""
+"""The maximum number of samples that wait in a window to be played: 1 s, so that `stop` drops little sound."""
 
 BETWEEN = 0.2
 """The seconds after a report for which `played` assumes that the loudspeaker goes on."""
@@ -78,7 +78,7 @@ class PageLine:
     cancels_echo = True
     """Whether the visitor's sound comes without the loudspeaker's echo: browsers remove it."""
     ended = False
-    """Whether the visitor's sound has come to its end: they may turn the microphone on again."""
+    """Whether the visitor's sound has ended: never, because they may turn the microphone on again."""
 
     def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
         self.window: Window | None = None

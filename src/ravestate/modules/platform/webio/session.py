@@ -99,7 +99,7 @@ class Session:
         self._left: asyncio.Event = asyncio.Event()
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
-        self._put: deque[str] = deque()  # words that `show_input` will see, and that the history has already
+        self._put: deque[str] = deque()  # words in the history; `note_input` must not add them again
         # The part that the visitor heard of a growing utterance whose speech was cut.
         self._heard_part: str | None = None
         self._hanging_up: asyncio.TimerHandle | None = None
@@ -181,7 +181,7 @@ class Session:
         """Note an input of the agent. If it did not come through `hear`, add it to the history."""
         if text in self._put:
             while self._put.popleft() != text:
-                pass  # a later input in the same instant stands for this one
+                pass  # a later input in the same instant has replaced these words
             return
         self.caption = ""
         self.spoken = True

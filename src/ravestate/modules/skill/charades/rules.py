@@ -307,7 +307,8 @@ def ranked(seen: Iterable[activity.Activity]) -> tuple[str, ...]:
     detached=True,
 )
 async def remind(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a silence, ask again; after a second, end the game. In the step ``choosing``, start the countdown."""
+    """After a silence, ask again. After a second silence, end the game. In the step ``choosing``, start the
+    countdown."""
     if ctx[game].turn != ctx.payload(prompted):
         return rs.Resign("the game has gone on")
     carry_out(ctx, play(ctx[game], Move("silence"), world_of(ctx)))
@@ -322,7 +323,7 @@ async def remind(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def be_patient(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Wait on while the user types or speaks."""
+    """Keep waiting while the user types or speaks."""
     now = ctx[game]
     if not now.is_waiting:
         return rs.Resign("the agent does not wait for the user")

@@ -6,8 +6,8 @@ It runs in its own environment, and imports nothing from Ravestate. A request is
     {"do": "look", "stream": "a", "want": ["faces", "pose"], "at": 1.5, "known": [{"track": 3, "box": [x, y, w, h], "fresh": true}]}
     {"do": "close", "stream": "a"}
 
-An answer has ``fault`` if a camera or a picture has a fault. An answer without a new picture has no ``picture``. A look
-without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``.
+An answer has ``fault`` if a camera or a picture has a fault. Without a new picture, the answer has no field
+``picture``. A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``.
 
 The bytes of a look are an encoded picture (JPEG, PNG), or raw pixels. For raw pixels, the record has
 ``"shape": [height, width]``, and may have ``"encoding"`` (``rgb8``) and ``"step"``, the bytes of a row.
@@ -84,7 +84,7 @@ class Worker:
 
 
 class Stream:
-    """The pictures of one agent: its camera, if the worker has one, and the body from earlier pictures."""
+    """The state for one agent: its camera, if the worker opened one, and the pose finder, which follows a body."""
 
     def __init__(self) -> None:
         self._camera: Any = None

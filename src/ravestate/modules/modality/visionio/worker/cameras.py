@@ -16,7 +16,7 @@ SUFFIXES = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".tif", ".tiff"}
 BEHIND = 1.0
 """The maximum number of seconds that one look may spend on skipping pictures of a video."""
 WHOLE = 0.9
-"""The share of a video's pictures below which it counts as damaged."""
+"""The minimum share of a video's pictures that must be readable. With fewer, the video counts as damaged."""
 SILENT = 5.0
 """The seconds without a picture after which a device counts as lost."""
 

@@ -112,7 +112,7 @@ class Ros1Node:
         self._rospy = rospy
         rospy.topics.QueuedConnection = self._to_subscriber  # instead of rospy's own queue and thread
         rospy.impl.tcpros_pubsub.TCPROSTransport = transport_class(self)
-        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy would follow /clock; only the agent shall
+        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy would follow /clock; only the agent may
         self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
@@ -231,7 +231,7 @@ class Ros1Node:
         return service._response_class(bytes(done[1]))
 
     def message(self, channel, body):
-        """Drop a message, because its topic has no subscriber if the agent sends it here."""
+        """Drop a message. The agent sends a message here only if its topic has no subscriber."""
 
     def call(self, channel, number, body):
         # A persistent proxy keeps its connection, which `cancel` closes.
