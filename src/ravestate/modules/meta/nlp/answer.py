@@ -64,9 +64,10 @@ _NO = re.compile(
 )
 """The word *no*, unless a noun follows, as in *no brothers*."""
 _SHORT = re.compile(
-    rf"(?:i|you|he|she|it|we|they|that|this|there) (?:\w+ly |sure |just |still |always )?(?:{_VERB})(?: really)?( not)?$"
+    rf"(?:i|you|he|she|it|we|they|that|this|there|(?:all|both|each|most|every\w+)(?: of \w+)?|(?:my|our|his|her|their|the) "
+    rf"\w+(?: \w+)?) (?:\w+ly |sure |just |still |always )?(?:{_VERB})(?: really)?( not)?$"
 )
-"""A short answer: *I do*, *she certainly is not*."""
+"""A short answer: *I do*, *she certainly is not*, *my sister does*."""
 _SOMEBODY = word_set("my our his her their the he she they some most others everyone everybody")
 """The first word after *but* if the answer is about somebody else: *no, but my cousin does*."""
 _LEAD = 2
