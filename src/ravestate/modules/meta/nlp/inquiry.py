@@ -21,11 +21,13 @@ _OPENERS = word_set(
 _TELLING = word_set("tell say explain show remind describe ask inform clarify specify confirm mention point")
 _KNOWING = word_set("know remember guess wonder see find hear understand recall")
 """Verbs before an indirect question. Verbs of telling are not listed: a person follows them, as in *tell me where*."""
+_MINDING = word_set("remember recall understand see hear")
+"""Verbs that make no question if they are a request: *remember who you are*."""
 _SETTLING = word_set("decide check figure work realise realize notice imagine discover determine")
 """Verbs before an indirect question, if the clause asks by itself: *have you decided where*, but not *I decided where*."""
 _THEM = word_set("him her them")
-_HINTS = word_set("idea clue")
-"""Nouns before an indirect question: *any clue who*."""
+_HINTS = word_set("idea clue reason sure")
+"""Words before an indirect question that need no verb: *any clue who*, *are you sure when*."""
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight that again to not")
 """Words for things to perform, such as jokes. A request for a performance is not a question."""
 _ANY = word_set("any ever anyone anybody anything")
@@ -77,13 +79,18 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
     parts = _parts(words)
     for part in parts:
         inside = _inside(part, clauses)
-        beside = len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in ("like", *QUESTION_WORDS)
+        led = ("ADP", "SCONJ", "ADV") if asked else ("ADP", "SCONJ")
+        beside = len(part) > 1 and part[0].pos in led and part[0].low not in ("like", *QUESTION_WORDS)
         rest = part[beside:]
         kind = kind_at(rest, 0)
         sure = likely and part == parts[-1] and rest[0].low not in ("when", "where")
         exclaims = tree.text[part[-1].end :].startswith("!")
         called = len(part) == 1 and part != parts[-1] and not asked  # as in "why, that is lovely!"
-        if kind is not None and not called and _opens_question(rest, inside, sure, exclaims=exclaims):
+        if (
+            kind is not None
+            and not called
+            and _opens_question(rest, inside, sure, exclaims=exclaims, apart=_stands_apart(parts, part, tree))
+        ):
             return kind
         if part[0].low in ("any", "got", "have") and _HINTS & {word.low for word in part[:4]}:
             return next((kind for place in range(len(part)) if (kind := kind_at(part, place))), None)
@@ -120,10 +127,14 @@ def _in_place(words: Sequence[Word], clauses: Sequence[Clause], asked: bool, sta
 
 
 def _lacks_auxiliary(words: Sequence[Word], clauses: Sequence[Clause]) -> bool:
-    """Return whether a question leaves out its auxiliary: *you coming*, *you okay*, *want to play*."""
+    """Return whether a question leaves out its auxiliary: *you coming*, *you okay*, *want to play*, *had lunch yet*."""
     first, *rest = words
-    if first.low == "want":
+    if first.low in ("want", "fancy"):
         return bool(rest) and rest[0].low in ("to", "a", "an", "some", "any", "me")
+    if first.tag in ("VBD", "VBN") and rest and rest[-1].low in ("yet", "lately"):
+        return not any(clause.negated or clause.own_subjects for clause in clauses)
+    if first.low == "everything" and rest and not any(word.pos in VERBAL for word in rest):
+        return rest[-1].pos in ("ADJ", "ADV")
     if first.low != "you" or not rest:
         return False
     if rest[0].low == "got":
@@ -156,18 +167,32 @@ def _parts(words: Sequence[Word]) -> list[list[Word]]:
     return [part for part in parts if part]
 
 
-def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool, *, exclaims: bool) -> bool:
-    """Return whether a part that begins with a question word is a question; `exclaims`: an exclamation mark follows it."""
+def _stands_apart(parts: Sequence[Sequence[Word]], part: Sequence[Word], tree: Tree) -> bool:
+    """Return whether a part is no relative clause, because a colon or a single word precedes it: *Mum, who made the moon*."""
+    before = tree.before(part[0])
+    return before is not None and (before.low == ":" or (before.low == "," and parts.index(part) == len(parts[0]) == 1))
+
+
+def _opens_question(
+    part: Sequence[Word], clauses: Sequence[Clause], asked: bool, *, exclaims: bool, apart: bool
+) -> bool:
+    """Return whether a part that begins with a question word is a question.
+
+    Args:
+        part: The words.
+        clauses: The clauses in them.
+        asked: Whether a question mark follows.
+        exclaims: Whether an exclamation mark follows.
+        apart: Whether the words before do not belong to the same clause.
+    """
     first, second = part[0], part[1].low if len(part) > 1 else ""
-    before = clauses[0].tree.before(first) if clauses else None
     if first.low == "which" and second in AUXILIARIES and part[2:] and part[2].low in QUESTION_WORDS:
         return False  # as in "which is why I came"
     if (first.low, second) in (("what", "about"), ("how", "about"), ("how", "come"), ("what", "if")):
         return True
     clause = next((clause for clause in clauses if first.index in [word.index for word in clause.own]), None)
     subordinate = ("csubj", "relcl") if second in AUXILIARIES else ("advcl", "csubj", "relcl")
-    after_colon = before is not None and before.low == ":"
-    if clause is not None and not clause.inverted and clause.verb.dep in subordinate and not after_colon:
+    if clause is not None and not clause.inverted and clause.verb.dep in subordinate and not apart:
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
@@ -211,7 +236,9 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
         "mean",
         "hope",
     )
-    others = bool(_THEM & set(own)) or (wishes and lemma in _TELLING and lemma != "ask")  # as in "I want to show you where"
+    others = bool(_THEM & set(own)) or (
+        wishes and lemma in _TELLING and lemma != "ask"
+    )  # as in "I want to show you where"
     wonders = bool({"wonder", "wondering", "curious"} & set(own)) or (clause.inverted and _HINTS & set(own))
     wonders = wonders or any(word.low == "question" for word in clause.own_subjects)  # as in "my question is who pays"
     demands = (
@@ -221,8 +248,11 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
         or (asked and own[0] == "you")
         or (own[0] in _ANYBODY and clause.chain[0].tag in ("VB", "VBP"))
         or ({"you", "could", "me"} <= set(own))  # as in "I hoped that you could tell me when"
+        or (asked and own[0] == "mind")  # as in "mind telling me who"
     )
-    settles = (clause.inverted or own[0] in _ANYBODY) and (lemma in _SETTLING or {"are", "sure"} <= set(own))
+    if clause.requests and not clause.inverted and lemma in _MINDING:
+        demands = False
+    settles = (clause.inverted or own[0] in _ANYBODY) and lemma in _SETTLING
     let = clause.head_clause is not None and clause.head_clause.requests and lemma in ("know", "ask")
     told = demands and not others and lemma in _TELLING | _KNOWING
     if told or (settles and (lemma != "work" or "out" in own)) or wonders or let:
@@ -240,4 +270,5 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
         if objects - {"i", "we"} and not objects & _PERFORMED and lemma == ("know" if asker else "tell"):
             return QuestionWord.OBJECT if asker or "me" in own or "us" in own else None
     did = lemma == "do" and len(clause.chain) == 1 and all(word.pos != "PRON" for word in clause.own_subjects)
-    return QuestionWord.YES_NO if clause.inverted and not did else None  # no question: "did my homework"
+    did = did or own[:2] == ["do", "it"]
+    return QuestionWord.YES_NO if clause.inverted and not did else None  # no question: "did my homework", "do it now"
