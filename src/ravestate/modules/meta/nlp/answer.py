@@ -92,6 +92,8 @@ def yesno_of(text: str) -> YesNo:
         score = other
     elif score is not None and other and score * other <= 0 and others[0].split()[0] not in _SOMEBODY:
         score = 1 if other > 0 else -1
+    if score is None and len([*_parts(" ".join([first, *others]))]) + len(others) > 1 and "?" not in text:
+        score = _score_of_sentence(text)  # as in "thanks, but I'm fine"
     return YesNo() if score is None else YesNo(max(score, 0), max(-score, 0), score == 0)
 
 
@@ -113,7 +115,8 @@ def _score(text: str) -> int | None:
         elif score and score * found < 0:
             if hedged:
                 return 0
-            return found if opened else _score_of_sentence(text, found)
+            whole = None if opened else _score_of_sentence(text)
+            return found if whole is None else whole
         elif score:
             found = max(found, score, key=abs)
         if not {*".!?…\n"}.isdisjoint(marks):
@@ -153,8 +156,7 @@ def _explicit(part: str) -> int | None:
     return 2 if _YES.match(part) else -2 if _NO.match(part) else None
 
 
-def _score_of_sentence(text: str, otherwise: int) -> int:
-    """Return the score of the first sentence of a text as a whole, because its parts contradict each other: *heavens, no*."""
-    [sentence, *_] = sentences(text)
-    match = bundled_matcher("answers").match(sentence)
-    return otherwise if match is None else _SCORES[match.name]
+def _score_of_sentence(text: str) -> int | None:
+    """Return the score of the first sentence of a text as a whole: the parts of *heavens, no* contradict each other."""
+    match = next(iter(bundled_matcher("answers").match_all(sentences(text)[:1])), None)
+    return None if match is None else _SCORES[match.name]
