@@ -18,7 +18,7 @@ from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 
 LABELLED = (
-    "questions_rows", "yesno_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
+    "questions_rows", "kinds_rows", "yesno_rows", "answers_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
 )  # fmt: skip
 SETS = ("triples_rows", "typed_rows", *LABELLED)
 
@@ -61,7 +61,9 @@ def feelings(text: str) -> str:
 
 SEE: dict[str, Callable[[str], str]] = {
     "questions_rows": modules.questions,
+    "kinds_rows": modules.questions,
     "yesno_rows": lambda text: modules.yesno_label(answered(text)),
+    "answers_rows": modules.yesno,
     "intents_rows": intents,
     "quiet_rows": quiet,
     "emotion_rows": feelings,
@@ -105,7 +107,13 @@ def measured(name: str) -> Result:
         modules.prepare(text for text, _ in rows)
         result = measure_triples(lambda text: cased(modules.triples(text)), cases)
         return Result(name, result.cases, result.shares, result.misses)
-    if name in ("questions_rows", "intents_rows", "flags_rows"):  # the others need no tree
+    if name in (
+        "questions_rows",
+        "kinds_rows",
+        "answers_rows",
+        "intents_rows",
+        "flags_rows",
+    ):  # the others need no tree
         modules.prepare(text for text, _ in labelled(name))
     return measure_labels(name, SEE[name], labelled(name))
 

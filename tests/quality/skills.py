@@ -33,6 +33,7 @@ __all__ = ["FLOORS", "SETS", "result", "results"]
 FLOORS = {
     "persqa_facts": 0.97,
     "agentqa_asks": 0.96,
+    "about_rows": 0.95,
     "agentqa_remarks": 0.96,
     "genqa_declined": 0.97,
     "wildtalk_facts": 0.97,
@@ -121,6 +122,11 @@ def agentqa_asks(sentence: str) -> str:
     return found.topic if isinstance(found, Match) else "-"
 
 
+def about_rows(sentence: str) -> str:
+    """Return the topic about the agent that a sentence asks for, in a set of many voices."""
+    return agentqa_asks(sentence)
+
+
 @cache
 def agentqa_remarks(sentence: str) -> str:
     """Return the topic of a remark that the agent must not take for small talk."""
@@ -149,7 +155,7 @@ def hibye_words(sentence: str) -> str:
 SETS: dict[str, Callable[[str], str]] = {
     function.__name__: function
     for function in (
-        persqa_facts, agentqa_asks, agentqa_remarks, genqa_declined, wildtalk_facts, hibye_words,
+        persqa_facts, agentqa_asks, about_rows, agentqa_remarks, genqa_declined, wildtalk_facts, hibye_words,
     )
 }  # fmt: skip
 

@@ -19,10 +19,14 @@ FLOORS = {
     "emotion_rows": 0.95,
     "quiet_rows": 0.9,
     "typed_rows": 0.93,
+    "answers_rows": 0.86,
+    "kinds_rows": 0.95,
 }
 """Sets for recognition by examples, without sentences that are examples; and sentences that people typed in a hurry."""
 LABELS = {
     "questions_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
+    "kinds_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
+    "answers_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
     "yesno_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
     "intents_rows": {"hi", "bye", "play", "-"},
     "quiet_rows": {"quiet", "leave", "-"},

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from ravestate.language.contractions import word_set
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.normal import plain
+from ravestate.language.sentences import sentences
 from ravestate.language.shape import shape
 
 
@@ -63,9 +64,12 @@ _NO = re.compile(
 )
 """The word *no*, unless a noun follows, as in *no brothers*."""
 _SHORT = re.compile(
-    rf"(?:i|you|he|she|it|we|they|that|this|there) (?:\w+ly |sure |just |still |always )?(?:{_VERB})(?: really)?( not)?$"
+    rf"(?:i|you|he|she|it|we|they|that|this|there|(?:all|both|each|most|every\w+)(?: of \w+)?|(?:my|our|his|her|their|the) "
+    rf"\w+(?: \w+)?) (?:\w+ly |sure |just |still |always )?(?:{_VERB})(?: really)?( not)?$"
 )
-"""A short answer: *I do*, *she certainly is not*."""
+"""A short answer: *I do*, *she certainly is not*, *my sister does*."""
+_SOMEBODY = word_set("my our his her their the he she they some most others everyone everybody")
+"""The first word after *but* if the answer is about somebody else: *no, but my cousin does*."""
 _LEAD = 2
 """The maximum number of words before a comma that introduce an answer: *I mean, sure*."""
 _LONGEST = 400
@@ -86,15 +90,17 @@ def yesno_of(text: str) -> YesNo:
     score, other = _score(first), _score(others[0]) if others else None
     if not any(_parts(first)):  # as in "thanks, but no"
         score = other
-    elif score is not None and other and score * other <= 0:
+    elif score is not None and other and score * other <= 0 and others[0].split()[0] not in _SOMEBODY:
         score = 1 if other > 0 else -1
+    if score is None and len([*_parts(" ".join([first, *others]))]) + len(others) > 1 and "?" not in text:
+        score = _score_of_sentence(text)  # as in "thanks, but I'm fine"
     return YesNo() if score is None else YesNo(max(score, 0), max(-score, 0), score == 0)
 
 
 def _score(text: str) -> int | None:
     """Return the score of the first sentence of a text that has more than fillers."""
     found: int | None = None
-    hedged = False
+    opened = hedged = False
     for part, marks in _parts(text):
         score = _score_of_part(part, asks="?" in marks)
         if (hedge := _HEDGE.search(part)) is not None:
@@ -105,8 +111,12 @@ def _score(text: str) -> int | None:
             if score is None and len(part.split()) > _LEAD:
                 break
             found = found if score is None else score
+            opened = _explicit(part) is not None
         elif score and score * found < 0:
-            return 0 if hedged or abs(found) == 1 else found
+            if hedged:
+                return 0
+            whole = None if opened else _score_of_sentence(text)
+            return found if whole is None else whole
         elif score:
             found = max(found, score, key=abs)
         if not {*".!?…\n"}.isdisjoint(marks):
@@ -137,4 +147,16 @@ def _score_of_part(part: str, asks: bool) -> int | None:
         return score
     if short := _SHORT.match(part):
         return -2 if short[1] else 2
-    return 2 if _YES.match(part) else -2 if _NO.match(part) else score
+    word = _explicit(part)
+    return score if word is None else word
+
+
+def _explicit(part: str) -> int | None:
+    """Return the score of a part that begins with *yes* or *no*; None for any other."""
+    return 2 if _YES.match(part) else -2 if _NO.match(part) else None
+
+
+def _score_of_sentence(text: str) -> int | None:
+    """Return the score of the first sentence of a text as a whole: the parts of *heavens, no* contradict each other."""
+    match = next(iter(bundled_matcher("answers").match_all(sentences(text)[:1])), None)
+    return None if match is None else _SCORES[match.name]

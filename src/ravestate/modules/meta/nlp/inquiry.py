@@ -18,13 +18,22 @@ _OPENERS = word_set(
     "me thanks great fine yes no yeah nice cool right alright also actually just by the way anyway sure wow haha"
 )
 """Words without meaning before a question."""
-_TELLING = word_set("tell say explain show remind describe ask")
+_TELLING = word_set("tell say explain show remind describe ask inform clarify specify confirm mention point")
 _KNOWING = word_set("know remember guess wonder see find hear understand recall")
 """Verbs before an indirect question. Verbs of telling are not listed: a person follows them, as in *tell me where*."""
+_MINDING = word_set("remember recall understand see hear")
+"""Verbs that make no question if they are a request: *remember who you are*."""
+_SETTLING = word_set("decide check figure work realise realize notice imagine discover determine")
+"""Verbs before an indirect question, if the clause asks by itself: *have you decided where*, but not *I decided where*."""
+_THEM = word_set("him her them")
+_HINTS = word_set("idea clue reason sure")
+"""Words before an indirect question that need no verb: *any clue who*, *are you sure when*."""
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight that again to not")
 """Words for things to perform, such as jokes. A request for a performance is not a question."""
 _ANY = word_set("any ever anyone anybody anything")
 """Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
+_ANYBODY = word_set("anyone anybody someone somebody any")
+"""The subjects of questions and requests that leave out their auxiliary: *anyone know who*, *somebody tell me how*."""
 _NO_PREDICATE = word_set("too either neither again first next")
 """Words after *you* that make no question: *you too*."""
 _REPORTING = (
@@ -36,6 +45,7 @@ _REPORTING = (
 _BEFORE_TAG = word_set("here there me you him her them us")
 """After one of these words, as after a noun or an adjective, *right* is a question tag even without a comma."""
 _SUBJECTS = word_set("i he she we they it")
+_NOMINAL = ("PRON", "DET", "NOUN", "PROPN")
 _TAGS = word_set("right correct huh eh yes no ok okay")
 
 
@@ -69,14 +79,20 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
     parts = _parts(words)
     for part in parts:
         inside = _inside(part, clauses)
-        beside = len(part) > 1 and part[0].pos in ("ADP", "SCONJ") and part[0].low not in ("like", *QUESTION_WORDS)
+        led = ("ADP", "SCONJ", "ADV") if asked else ("ADP", "SCONJ")
+        beside = len(part) > 1 and part[0].pos in led and part[0].low not in ("like", *QUESTION_WORDS)
         rest = part[beside:]
         kind = kind_at(rest, 0)
         sure = likely and part == parts[-1] and rest[0].low not in ("when", "where")
         exclaims = tree.text[part[-1].end :].startswith("!")
-        if kind is not None and _opens_question(rest, inside, sure, exclaims=exclaims):
+        called = len(part) == 1 and part != parts[-1] and not asked  # as in "why, that is lovely!"
+        if (
+            kind is not None
+            and not called
+            and _opens_question(rest, inside, sure, exclaims=exclaims, apart=_stands_apart(parts, part, tree))
+        ):
             return kind
-        if [word.low for word in part[:2]] == ["any", "idea"]:
+        if part[0].low in ("any", "got", "have") and _HINTS & {word.low for word in part[:4]}:
             return next((kind for place in range(len(part)) if (kind := kind_at(part, place))), None)
         for clause in inside:
             if (found := _of_clause(clause, asked)) is not None:
@@ -88,7 +104,8 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         return kind
     if not words or asked or (stated and "any" in low):  # as in "you know any songs"
         return QuestionWord.YES_NO if low or asked else None
-    if (likely and low[0] in AUXILIARIES and low[1:2] == ["n't"]) or _lacks_auxiliary(words, clauses):
+    denied = low[0] in AUXILIARIES and low[1:2] == ["n't"] and words[2:3] and words[2].pos in _NOMINAL
+    if (likely and denied) or _lacks_auxiliary(words, clauses):
         return QuestionWord.YES_NO
     if low[-2:] == ["or", "not"] and not {"if", "whether"} & set(low):
         return QuestionWord.YES_NO
@@ -98,9 +115,9 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
 
 def _in_place(words: Sequence[Word], clauses: Sequence[Clause], asked: bool, stated: bool) -> QuestionWord | None:
     """Return the kind of a question word at the end of a statement: *you live where*, *you paid how much?*"""
-    for place in range(max(len(words) - 3, 1), len(words)):
+    for place in range(1 if asked else max(len(words) - 3, 1), len(words)):
         kind, rest = kind_at(words, place), words[place + 1 :]
-        if kind is None or any(word.pos in (*VERBAL, "PRON", "ADP") for word in rest):
+        if kind is None or any(word.pos in (VERBAL if asked else (*VERBAL, "PRON", "ADP")) for word in rest):
             continue
         verb = next((clause for clause in clauses if words[place] in clause.own), None)
         told = lemma_of(words[place - 1]) in _REPORTING if verb is None else verb.lemma in _REPORTING or verb.negated
@@ -110,10 +127,14 @@ def _in_place(words: Sequence[Word], clauses: Sequence[Clause], asked: bool, sta
 
 
 def _lacks_auxiliary(words: Sequence[Word], clauses: Sequence[Clause]) -> bool:
-    """Return whether a question leaves out its auxiliary: *you coming*, *you okay*, *want to play*."""
+    """Return whether a question leaves out its auxiliary: *you coming*, *you okay*, *want to play*, *had lunch yet*."""
     first, *rest = words
-    if first.low == "want":
+    if first.low in ("want", "fancy"):
         return bool(rest) and rest[0].low in ("to", "a", "an", "some", "any", "me")
+    if first.tag in ("VBD", "VBN") and rest and rest[-1].low in ("yet", "lately"):
+        return not any(clause.negated or clause.own_subjects for clause in clauses)
+    if first.low == "everything" and rest and not any(word.pos in VERBAL for word in rest):
+        return rest[-1].pos in ("ADJ", "ADV")
     if first.low != "you" or not rest:
         return False
     if rest[0].low == "got":
@@ -146,14 +167,32 @@ def _parts(words: Sequence[Word]) -> list[list[Word]]:
     return [part for part in parts if part]
 
 
-def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool, *, exclaims: bool) -> bool:
-    """Return whether a part that begins with a question word is a question; `exclaims`: an exclamation mark follows it."""
+def _stands_apart(parts: Sequence[Sequence[Word]], part: Sequence[Word], tree: Tree) -> bool:
+    """Return whether a part is no relative clause, because a colon or a single word precedes it: *Mum, who made the moon*."""
+    before = tree.before(part[0])
+    return before is not None and (before.low == ":" or (before.low == "," and parts.index(part) == len(parts[0]) == 1))
+
+
+def _opens_question(
+    part: Sequence[Word], clauses: Sequence[Clause], asked: bool, *, exclaims: bool, apart: bool
+) -> bool:
+    """Return whether a part that begins with a question word is a question.
+
+    Args:
+        part: The words.
+        clauses: The clauses in them.
+        asked: Whether a question mark follows.
+        exclaims: Whether an exclamation mark follows.
+        apart: Whether the words before do not belong to the same clause.
+    """
     first, second = part[0], part[1].low if len(part) > 1 else ""
+    if first.low == "which" and second in AUXILIARIES and part[2:] and part[2].low in QUESTION_WORDS:
+        return False  # as in "which is why I came"
     if (first.low, second) in (("what", "about"), ("how", "about"), ("how", "come"), ("what", "if")):
         return True
     clause = next((clause for clause in clauses if first.index in [word.index for word in clause.own]), None)
     subordinate = ("csubj", "relcl") if second in AUXILIARIES else ("advcl", "csubj", "relcl")
-    if clause is not None and not clause.inverted and clause.verb.dep in subordinate:
+    if clause is not None and not clause.inverted and clause.verb.dep in subordinate and not apart:
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
@@ -166,7 +205,9 @@ def _opens_question(part: Sequence[Word], clauses: Sequence[Clause], asked: bool
     # As in "how much you have grown!".
     exclaimed = clause is not None and exclaims
     ends = clause is None or clause.verb.dep == "ROOT"
-    if addressed and ends and not exclaimed and not (part[2:] and part[2].pos == "AUX"):
+    if exclaims and first.low == "how":  # as in "how time flies!"
+        return False
+    if addressed and ends and not exclaimed and not (part[2:] and part[2].pos == "AUX" and part[2].tag != "VBN"):
         return True  # as in "where you live"
     nice = (
         len(part) > 1 and part[1].pos in ("ADJ", "ADV") and kind_at(part, 0) in (QuestionWord.FORM, QuestionWord.OBJECT)
@@ -192,16 +233,29 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
         "like",
         "love",
         "need",
+        "mean",
+        "hope",
     )
-    wonders = bool({"wonder", "wondering", "curious"} & set(own)) or (clause.inverted and "idea" in own)
+    others = bool(_THEM & set(own)) or (
+        wishes and lemma in _TELLING and lemma != "ask"
+    )  # as in "I want to show you where"
+    wonders = bool({"wonder", "wondering", "curious"} & set(own)) or (clause.inverted and _HINTS & set(own))
+    wonders = wonders or any(word.low == "question" for word in clause.own_subjects)  # as in "my question is who pays"
     demands = (
         clause.inverted
         or (clause.requests and not clause.negated)
         or (wishes and len(clause.chain) > 1)
         or (asked and own[0] == "you")
+        or (own[0] in _ANYBODY and clause.chain[0].tag in ("VB", "VBP"))
+        or ({"you", "could", "me"} <= set(own))  # as in "I hoped that you could tell me when"
+        or (asked and own[0] == "mind")  # as in "mind telling me who"
     )
-    let = clause.head_clause is not None and clause.head_clause.requests and lemma == "know"
-    if (demands and lemma in _TELLING | _KNOWING) or wonders or let:
+    if clause.requests and not clause.inverted and lemma in _MINDING:
+        demands = False
+    settles = (clause.inverted or own[0] in _ANYBODY) and lemma in _SETTLING
+    let = clause.head_clause is not None and clause.head_clause.requests and lemma in ("know", "ask")
+    told = demands and not others and lemma in _TELLING | _KNOWING
+    if told or (settles and (lemma != "work" or "out" in own)) or wonders or let:
         words = [word for word in tree.subtree(clause.verb) if word.index > verb.index]
         for word, after in zip_longest(words, words[1:]):
             kind = QuestionWord.YES_NO if word.low in ("if", "whether") else kind_at(tree.words, word.index)
@@ -211,8 +265,10 @@ def _of_clause(clause: Clause, asked: bool) -> QuestionWord | None:
                 word.pos in ("NOUN", "PRON") and lemma not in _TELLING and not wonders
             ):
                 break
-        told = {word.lemma.lower() for word in clause.own if word.index > verb.index and word.pos != "PUNCT"}
+        objects = {word.lemma.lower() for word in clause.own if word.index > verb.index and word.pos != "PUNCT"}
         asker = "i" in own
-        if told - {"i", "we"} and not told & _PERFORMED and lemma == ("know" if asker else "tell"):
+        if objects - {"i", "we"} and not objects & _PERFORMED and lemma == ("know" if asker else "tell"):
             return QuestionWord.OBJECT if asker or "me" in own or "us" in own else None
-    return QuestionWord.YES_NO if clause.inverted else None
+    did = lemma == "do" and len(clause.chain) == 1 and all(word.pos != "PRON" for word in clause.own_subjects)
+    did = did or own[:2] == ["do", "it"]
+    return QuestionWord.YES_NO if clause.inverted and not did else None  # no question: "did my homework", "do it now"
