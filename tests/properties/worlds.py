@@ -199,6 +199,7 @@ class Names:
 
     def __init__(self, world: World) -> None:
         self.world = world
+        self.added: dict[tuple[Policy, RuleOf], Policy | None] = {}
         self.modules = [rs.Module(name) for name in MODULES[: world.modules]]
         self.signals: dict[str, Any] = {}
         self.slots: dict[str, Any] = {}
@@ -225,6 +226,15 @@ class Names:
     def home(self, name: str) -> rs.Module:
         """Return the module that declares a signal, a slot or a rule."""
         return self.modules[self.world.home(name)]
+
+    def extended(self, policy: Policy, spec: RuleOf, name: str) -> Policy | None:
+        """Return a policy with one more rule, or None if the rule does not fit; plays of the same world share it."""
+        if (policy, spec) not in self.added:
+            try:
+                self.added[policy, spec] = policy.with_rule(rule_of(self, spec, name))
+            except rs.DeclarationErrors:
+                self.added[policy, spec] = None
+        return self.added[policy, spec]
 
     def condition(self, clauses: tuple[Clause, ...]) -> Any:
         found: Any = None
@@ -450,11 +460,9 @@ class Play:
                 self.receive(events.Stop())
             case ("add", spec):
                 assert self.names is not None
-                number = len(self.engine.policy.declared)
-                name = f"r{number}"
-                try:
-                    more = self.engine.policy.with_rule(rule_of(self.names, spec, name))
-                except rs.DeclarationErrors:
+                name = f"r{len(self.engine.policy.declared)}"
+                more = self.names.extended(self.engine.policy, spec, name)
+                if more is None:
                     return  # it does not fit what is there
                 self.specs[self.world.full(name)] = spec
                 self.receive(events.AddRule(more))
