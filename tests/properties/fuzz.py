@@ -15,12 +15,13 @@ from itertools import zip_longest
 from typing import Any
 
 from laws.model import Model
+from properties.counted import BIRTHS, Counted, Endless
 from properties.crowd_worlds import crowd_world_of
 from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
 from properties.variations import varied
-from properties.worlds import Counted, Endless, Names, Play, World, compiled
+from properties.worlds import Names, Play, World, compiled
 from ravestate.declare.core import RuleFailure
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.engine.engine import Engine
@@ -28,7 +29,6 @@ from ravestate.engine.trace import Record, Tracer, Waits
 from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Entry, replay
 
-BIRTHS = 2_000
 MOMENTS = 300
 """Moments of a play that are compared."""
 
