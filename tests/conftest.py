@@ -8,6 +8,8 @@
 No profile has a deadline: benchmarks measure time. Choose with `HYPOTHESIS_PROFILE`.
 """
 
+import contextlib
+import ctypes
 import functools
 import gc
 import os
@@ -21,6 +23,13 @@ from hypothesis import HealthCheck, settings
 # Each test process has one core, so several threads for a matrix product would only wait for each other.
 for _library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+
+# Freed memory stays with the process of the tests: the next test with models would take the same pages again. These are
+# M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of glibc's malloc.h, in bytes, at their maxima.
+with contextlib.suppress(AttributeError, OSError, TypeError):
+    _malloc = ctypes.CDLL(None)
+    _malloc.mallopt(-1, 2**31 - 1)
+    _malloc.mallopt(-3, 32 * 2**20)
 
 _folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
 os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well

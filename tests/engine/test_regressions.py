@@ -728,3 +728,15 @@ def test_those_that_wait_for_the_same_rule_to_recover_ask_in_the_same_instant() 
     )
     inputs = ((1.0, ("emit", "s0", 0)), (0.0, ("emit", "s0", 2)), (1.5, ("emit", "s0", 2)))
     assert difference(World(S3[:1], V1, rules, inputs)) == ""
+
+
+def test_faults_of_one_clause_are_reported_in_the_order_of_their_calls() -> None:
+    # L5: r1 raises choosy's fault first, but r0 is declared first, and raised fussy's fault before choosy's.
+    both = "fussy choosy"
+    world = World(
+        S3,
+        rules=(RuleOf(when=((Want("s2", where=both),),)), RuleOf(when=((Want("s0", where=both),),))),
+        inputs=((0.0, ("emit", "s0", 1)), (0.0, ("emit", "s2", 2)), (0.0, ("emit", "s2", 1))),
+        together=True,
+    )
+    assert not difference(world)

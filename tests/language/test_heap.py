@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from ravestate.language.heap import give_back
+from ravestate.language.heap import give_back, note_load
 
 
-def test_the_c_library_returns_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_c_library_returns_the_memory_once_for_each_load(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[int] = []
 
     class Library:
@@ -18,6 +18,8 @@ def test_the_c_library_returns_the_memory(monkeypatch: pytest.MonkeyPatch) -> No
             self.malloc_trim = asked.append
 
     monkeypatch.setattr(ctypes, "CDLL", Library)
+    note_load()
+    give_back()
     give_back()
     assert asked == [0]
 
@@ -28,4 +30,5 @@ def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: py
         raise error
 
     monkeypatch.setattr(ctypes, "CDLL", refuse)
+    note_load()
     give_back()

@@ -15,19 +15,20 @@ from itertools import zip_longest
 from typing import Any
 
 from laws.model import Model
+from properties.counted import BIRTHS, Counted, Endless
 from properties.crowd_worlds import crowd_world_of
 from properties.pair_worlds import pair_world_of
 from properties.random_worlds import world_of
 from properties.shrinking import shrink
 from properties.variations import varied
-from properties.worlds import Counted, Endless, Play, World
+from properties.worlds import Names, Play, World, compiled
 from ravestate.declare.core import RuleFailure
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.engine.engine import Engine
 from ravestate.engine.trace import Record, Tracer, Waits
+from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Entry, replay
 
-BIRTHS = 2_000
 MOMENTS = 300
 """Moments of a play that are compared."""
 
@@ -67,8 +68,8 @@ class Interpreter(Model):
         super().birth(*args)
 
 
-def story(world: World, machine: Any) -> list[str]:
-    """Play a world; return the effects of a machine, one in each line."""
+def story(world: World, machine: Any, names: Names, policy: Policy) -> list[str]:
+    """Play a world that `compiled` has made; return what a machine did, a line for each effect."""
     lines: list[str] = []
 
     def told(play: Play, effect: Effect) -> None:
@@ -91,7 +92,7 @@ def story(world: World, machine: Any) -> list[str]:
                 line += repr(effect)
         lines.append(line)
 
-    lines += played(Play(world, started=told, machine=machine, budget=4))
+    lines += played(Play(world, policy, names, started=told, machine=machine, budget=4))
     return lines
 
 
@@ -117,7 +118,8 @@ def shown(payload: Any) -> str:
 
 def difference(world: World) -> str:
     """Return where the engine departs from the laws, in words; an empty text if it does not."""
-    laws, engine = story(world, Interpreter), story(world, Counted)
+    made = compiled(world)
+    laws, engine = story(world, Interpreter, *made), story(world, Counted, *made)
     for number in range(max(len(laws), len(engine))):
         one = laws[number] if number < len(laws) else "nothing more"
         other = engine[number] if number < len(engine) else "nothing more"
@@ -136,10 +138,11 @@ def observation(world: World) -> str:
     and the other way round. The trace must always have the present reasons of all waiting activations.
     """
     reasons = Reasons()
-    plain = Play(world, budget=4)
-    traced = Play(world, budget=4, before=reasons.compare)
+    names, policy = compiled(world)
+    plain = Play(world, policy, names, budget=4)
+    traced = Play(world, policy, names, budget=4, before=reasons.compare)
     traced.engine.tracer = reasons.note
-    now_and_then = Play(world, budget=4, before=_switch)
+    now_and_then = Play(world, policy, names, budget=4, before=_switch)
     told = [[*play.heard, *ends] for play in (plain, traced, now_and_then) for ends in [played(play)]]
     for name, lines in zip(("traced", "traced now and then"), told[1:], strict=True):
         for one, other in zip_longest(told[0], lines, fillvalue="nothing more"):

@@ -13,9 +13,9 @@ from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
 import ravestate as rs
+from properties.counted import Counted, Endless
 from ravestate.engine import events
 from ravestate.engine.effects import Cancel, Effect, Ended, Run
-from ravestate.engine.engine import Engine
 from ravestate.engine.events import Event
 from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Taken
@@ -41,9 +41,6 @@ MODULES = ("m", "m1", "m2")
 
 BUDGET = 8
 """Runs after which a rule retires, so that every loop ends."""
-
-BIRTHS = 2_000
-"""Spikes in one instant after which it counts as endless."""
 
 STEPS = 5_000
 """Moments of a play after which it counts as endless."""
@@ -199,6 +196,7 @@ class Names:
 
     def __init__(self, world: World) -> None:
         self.world = world
+        self.added: dict[tuple[Policy, RuleOf], Policy | None] = {}
         self.modules = [rs.Module(name) for name in MODULES[: world.modules]]
         self.signals: dict[str, Any] = {}
         self.slots: dict[str, Any] = {}
@@ -225,6 +223,15 @@ class Names:
     def home(self, name: str) -> rs.Module:
         """Return the module that declares a signal, a slot or a rule."""
         return self.modules[self.world.home(name)]
+
+    def extended(self, policy: Policy, spec: RuleOf, name: str) -> Policy | None:
+        """Return a policy with one more rule, or None if the rule does not fit; plays of the same world share it."""
+        if (policy, spec) not in self.added:
+            try:
+                self.added[policy, spec] = policy.with_rule(rule_of(self, spec, name))
+            except rs.DeclarationErrors:
+                self.added[policy, spec] = None
+        return self.added[policy, spec]
 
     def condition(self, clauses: tuple[Clause, ...]) -> Any:
         found: Any = None
@@ -275,44 +282,6 @@ def compiled(world: World) -> tuple[Names, Policy]:
     for number, rule in enumerate(world.rules):
         rule_of(names, rule, f"r{number}")
     return names, rs.compile(*names.modules)
-
-
-class Endless(AssertionError):
-    """The engine does not come to rest within one instant."""
-
-
-class Counted:
-    """An engine that detects an endless instant. It has the whole interface of `Engine`."""
-
-    def __init__(self, policy: rs.Policy, **options: Any) -> None:
-        self.engine = Engine(policy, **options)
-        self.before = 0
-
-    @property
-    def births(self) -> int:
-        """The number of spikes in this instant."""
-        return self.engine.state.spikes - self.before
-
-    @births.setter
-    def births(self, number: int) -> None:
-        self.before = self.engine.state.spikes - number
-
-    @property
-    def tracer(self) -> Any:
-        """The function that gets the trace's records, or None."""
-        return self.engine.tracer
-
-    @tracer.setter
-    def tracer(self, tracer: Any) -> None:
-        self.engine.tracer = tracer
-
-    def receive(self, event: Event, now: float) -> None:
-        self.engine.receive(event, now)
-        if self.births > BIRTHS:
-            raise Endless(f"more than {BIRTHS} spikes at {self.now} s")
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.engine, name)
 
 
 @dataclass
@@ -450,11 +419,9 @@ class Play:
                 self.receive(events.Stop())
             case ("add", spec):
                 assert self.names is not None
-                number = len(self.engine.policy.declared)
-                name = f"r{number}"
-                try:
-                    more = self.engine.policy.with_rule(rule_of(self.names, spec, name))
-                except rs.DeclarationErrors:
+                name = f"r{len(self.engine.policy.declared)}"
+                more = self.names.extended(self.engine.policy, spec, name)
+                if more is None:
                     return  # it does not fit what is there
                 self.specs[self.world.full(name)] = spec
                 self.receive(events.AddRule(more))

@@ -13,6 +13,7 @@ import pytest
 
 from ravestate.language import plain
 from ravestate.yaml_text import load_yaml
+from repo.words import nodes
 
 ROOT = Path(__file__).parents[2]
 BLIND = ROOT / "tests" / "quality" / "blind"
@@ -41,7 +42,7 @@ def _sentences(file: Path) -> Iterator[str]:
     elif file.suffix == ".yaml":
         yield from _strings(load_yaml(text, file.name))
     else:
-        for node in ast.walk(ast.parse(text)):
+        for node in nodes(ast.parse(text)):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and len(node.value) < LONGEST:
                 yield node.value
 

@@ -9,14 +9,13 @@ pages' sources. It knows only the worst faults.
 from __future__ import annotations
 
 import ast
-import io
 import re
 import subprocess
 import sys
-import tokenize
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST = 25
@@ -160,8 +159,7 @@ def of_docstring(text: str, first: int) -> Iterator[tuple[int, str]]:
 
 def of_python(text: str) -> Iterator[tuple[int, str]]:
     """Yield the docstrings, the comments and the messages of Python code."""
-    tree = ast.parse(text)
-    for node in ast.walk(tree):
+    for node in nodes(ast.parse(text)):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             yield from of_docstring(node.value.value, node.lineno)
         elif isinstance(node, ast.Raise) and node.exc is not None:
@@ -175,23 +173,43 @@ def of_python(text: str) -> Iterator[tuple[int, str]]:
                 if keyword.arg in TEXT:
                     yield from _strings(keyword.value)
     begin, held = 0, list[str]()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type == tokenize.COMMENT:
-            comment = token.string.lstrip("#:").strip()
-            own = token.line.strip().startswith("#")
-            if re.match(r"(?:type|pyright|noqa|fmt|ruff|mypy|pragma)\b|!|[-=]{4}", comment):
-                continue
-            if own and held and token.start[0] == begin + len(held):
-                held.append(comment)
-                continue
-            if held:
-                yield begin, " ".join(held)
-            begin, held = token.start[0], [comment]
-            if not own:
-                yield begin, comment
-                held = []
+    for number, comment, own in comments(text):
+        if re.match(r"(?:type|pyright|noqa|fmt|ruff|mypy|pragma)\b|!|[-=]{4}", comment):
+            continue
+        if own and held and number == begin + len(held):
+            held.append(comment)
+            continue
+        if held:
+            yield begin, " ".join(held)
+        begin, held = number, [comment]
+        if not own:
+            yield begin, comment
+            held = []
     if held:
         yield begin, " ".join(held)
+
+
+def nodes(tree: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a tree, as ``ast.walk`` does in twice the time."""
+    found: list[Any] = [tree]
+    for node in found:
+        yield node
+        for name in node._fields:
+            inner = getattr(node, name, None)
+            if isinstance(inner, list):
+                found += [one for one in inner if isinstance(one, ast.AST)]
+            elif isinstance(inner, ast.AST) and name != "ctx":
+                found.append(inner)
+
+
+def comments(text: str) -> Iterator[tuple[int, str, bool]]:
+    """Yield the comments of Python code: the line, the text, and whether the comment has the line for itself."""
+    number, place = 1, 0
+    for match in TOKEN.finditer(text):
+        if match["comment"] is not None:
+            number, place = number + text.count("\n", place, match.start()), match.start()
+            own = not text[text.rfind("\n", 0, place) + 1 : place].strip()
+            yield number, match["comment"].lstrip("#:").strip(), own
 
 
 def _strings(node: ast.AST) -> Iterator[tuple[int, str]]:
@@ -209,6 +227,12 @@ def _strings(node: ast.AST) -> Iterator[tuple[int, str]]:
             yield from _strings(child)
 
 
+TOKEN = re.compile(
+    r"""(?P<comment>\#[^\n]*)"""
+    r"""|(?:\"{3}(?:[^\\]|\\.)*?\"{3}|'{3}(?:[^\\]|\\.)*?'{3}|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*')""",
+    re.DOTALL,
+)
+"""A comment or a string of Python code: a ``#`` within a string begins no comment."""
 COMMENT = re.compile(r"/\*\*?(.*?)\*/|<!--(.*?)-->|(?<![:\"'\w])//[ \t](.*?)$", re.DOTALL | re.MULTILINE)
 
 

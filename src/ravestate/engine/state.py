@@ -337,6 +337,7 @@ class State(Memory):
             self.faults = {}
         known = self.faults.get(id(predicate))
         if known is None or clause.index < known[0].index:
+            self.faults.pop(id(predicate), None)  # so that the faults of one clause stay in the order of their calls
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:

@@ -5,9 +5,13 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import threading
 
 _ARENA_MAX = -8
 """The number of the option M_ARENA_MAX in glibc's malloc.h."""
+
+_loaded = threading.Event()
+"""Set if something was loaded after the last `give_back`."""
 
 
 def keep_few_heaps() -> None:
@@ -21,11 +25,19 @@ def keep_few_heaps() -> None:
             ctypes.CDLL(None).mallopt(_ARENA_MAX, 2)
 
 
+def note_load() -> None:
+    """Note that a model or examples were loaded, which leaves tens of megabytes in the heap of the thread."""
+    _loaded.set()
+
+
 def give_back() -> None:
     """Return freed memory from the C library to the system; if the library is not glibc, do nothing.
 
-    Loading a model leaves tens of megabytes in the heap of its thread.
+    If nothing was loaded after the last call, do nothing: the process would soon take the same memory again.
     """
+    if not _loaded.is_set():
+        return
+    _loaded.clear()
     try:
         trim = ctypes.CDLL(None).malloc_trim
     except (AttributeError, OSError, TypeError):

@@ -19,6 +19,7 @@ from .cache import cached
 from .encoder import Encoder
 from .entity import Entity
 from .examples import bundled
+from .heap import note_load
 from .loading import LOADING
 from .normal import plain
 from .recent import keep_latest
@@ -133,6 +134,7 @@ class Matcher:
                 except ImportError as error:
                     raise ModelMissing("sentence models need numpy: pip install 'ravestate[sentences]'") from error
                 self._learnt = _Learnt(self._pairs, self._encoder, self._shapes, self._centre)
+                note_load()
 
     def confusions(self) -> list[tuple[str, str, str]]:
         """Return the examples that the other examples put into a wrong class: example, its class, the wrong class.

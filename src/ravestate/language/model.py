@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import SENTENCE_MODELS, ModelMissing, folders_of, requirement
 from ravestate.language.cores import cores
-from ravestate.language.heap import keep_few_heaps
+from ravestate.language.heap import keep_few_heaps, note_load
 from ravestate.language.loading import LOADING
 
 if TYPE_CHECKING:
@@ -109,6 +109,7 @@ class SentenceModel:
         self._tokenizer.no_padding()
         self._tokenizer.enable_truncation(TOKENS)
         self._inputs = [taken.name for taken in self._session.get_inputs()]
+        note_load()
 
     @property
     def width(self) -> int:

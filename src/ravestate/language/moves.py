@@ -17,6 +17,7 @@ from .cache import cached
 from .contractions import word_set
 from .encoder import Encoder
 from .examples import bundled
+from .heap import note_load
 from .loading import LOADING
 from .matcher import SHARPNESS, calibrated, margins_of, shared_encoder
 from .normal import plain
@@ -115,6 +116,7 @@ class Moves:
                 with LOADING:
                     import_module("numpy")
                 self._learnt = _Learnt(self._examples, self._encoder)
+                note_load()
 
     def move(self, sentences: Sequence[str], *, asks: bool) -> Move | None:
         """Return the move that answers an utterance; None before `load`, and for an utterance without words.

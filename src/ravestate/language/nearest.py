@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .encoder import Encoder
+from .heap import note_load
 from .matcher import shared_encoder
 from .normal import plain
 from .shape import likeness, opens_question, shape
@@ -65,6 +66,7 @@ class Nearest:
             if self._learnt is None:
                 self._encoder.load()
                 self._learnt = _Learnt(self._examples, self._encoder, self._searched)
+                note_load()
 
     @property
     def loaded(self) -> bool:

@@ -157,12 +157,12 @@ with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}, "persqa": {"c
     print(sim.said[-1])
 """
 
-    def run(*texts: str) -> str:
-        command = [sys.executable, "-c", code, str(file), *texts]
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
-
-    run("i'm called Ada", "i live in hannover")
-    assert meant(said := run("i'm called ada"), "welcome_back") and "you live in Hannover" in said
+    with agent(file) as sim:
+        sim.say("i'm called Ada")
+        sim.say("i live in hannover")
+    command = [sys.executable, "-c", code, str(file), "i'm called ada"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    assert meant(said, "welcome_back") and "you live in Hannover" in said
 
 
 def test_the_papers_sample_conversation(file: Path, look: Look) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
-from ravestate.language.heap import keep_few_heaps
+from ravestate.language.heap import keep_few_heaps, note_load
 from ravestate.language.lexicon import load_lexicon
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
@@ -76,6 +76,7 @@ class Pipeline:
                     self._nlp = self._load()
                     if self._nlp.lang == "en":
                         load_lexicon()
+                note_load()
 
     def normalise(self, text: str, names: Collection[str] = ()) -> Normal:
         """Return the normal form of the first `LONGEST` characters of `text`. Text in another language stays as it is.

@@ -1,0 +1,50 @@
+"""An engine that notices when an instant has no end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import ravestate as rs
+from ravestate.engine.engine import Engine
+from ravestate.engine.events import Event
+
+BIRTHS = 2_000
+"""Spikes in one instant after which it counts as endless."""
+
+
+class Endless(AssertionError):
+    """The engine does not come to rest within one instant."""
+
+
+class Counted:
+    """An engine that notices when an instant has no end. It has all that an `Engine` has."""
+
+    def __init__(self, policy: rs.Policy, **options: Any) -> None:
+        self.engine = Engine(policy, **options)
+        self.before = 0
+
+    @property
+    def births(self) -> int:
+        """The number of spikes in this instant."""
+        return self.engine.state.spikes - self.before
+
+    @births.setter
+    def births(self, number: int) -> None:
+        self.before = self.engine.state.spikes - number
+
+    @property
+    def tracer(self) -> Any:
+        """The function that gets the trace's records, or None."""
+        return self.engine.tracer
+
+    @tracer.setter
+    def tracer(self, tracer: Any) -> None:
+        self.engine.tracer = tracer
+
+    def receive(self, event: Event, now: float) -> None:
+        self.engine.receive(event, now)
+        if self.births > BIRTHS:
+            raise Endless(f"more than {BIRTHS} spikes at {self.now} s")
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.engine, name)
