@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from contextvars import Context
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +95,20 @@ def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
     for thread in threads:
         thread.join()
     assert found == [["Where", "do", "you", "live", "?"]] * 20
+
+
+def test_readers_in_new_contexts_do_not_look_for_a_backend_again(
+    reader: Pipeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each rule runs in a context of its own, and in each context spaCy would look for its way to compute."""
+    reader.read("The kettle is on.")
+    looked: list[str] = []
+    import thinc.backends
+
+    monkeypatch.setattr(thinc.backends, "get_ops", lambda name: looked.append(name))
+    tree, _ = Context().run(reader.read, "The kettle is off.")
+    assert len(tree.words) == 5
+    assert not looked
 
 
 def test_load_does_not_wait_for_readers_of_a_loaded_pipeline(reader: Pipeline) -> None:

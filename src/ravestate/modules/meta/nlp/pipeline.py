@@ -6,6 +6,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Collection
+from contextvars import Context
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -54,6 +55,8 @@ class Pipeline:
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
+        # spaCy keeps its way to compute in a context variable. In a new context it would look for one, for milliseconds.
+        self._context = Context()
         self._nlp: Any = None  # spacy.Language: spaCy is not imported before it is needed
 
     @property
@@ -100,7 +103,7 @@ class Pipeline:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
                 # If the queue is empty, an earlier thread took this text but was interrupted before it read the text.
-                self._read(waiting or [order])
+                self._context.run(self._read, waiting or [order])
         if order.error is not None:
             raise order.error
         assert order.found is not None
