@@ -64,9 +64,9 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     except ModelMissing as error:
         warn_once(ctx.log, error)
         return rs.Resign(str(error))
-    if turn is None:
+    if not answer.text:
         return rs.Resign(answer.reason)
-    if answer.confidence < settings.unsure:
+    if turn is None:
         return rs.Resign(f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}")
     ctx[thread] = (*turns, turn)[-KEPT:]
     ctx.emit(found, answer)
