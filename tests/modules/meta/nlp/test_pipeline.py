@@ -220,7 +220,8 @@ def test_without_spacy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> No
 def test_optional_libraries_are_not_imported() -> None:
     code = (
         "import sys; from ravestate.modules.meta.nlp.pipeline import pipeline; pipeline('').read('hello'); "
-        "print({'torch', 'tensorflow', 'mxnet', 'cupy'} & set(sys.modules))"
+        "print({'torch', 'tensorflow', 'mxnet', 'cupy', 'spacy.cli'} & set(sys.modules)); "
+        "import spacy.cli; spacy.cli.validate"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"

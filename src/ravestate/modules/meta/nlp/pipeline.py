@@ -18,7 +18,7 @@ from ravestate.language.lexicon import load_lexicon
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
 
-from .blocking import blocked
+from .blocking import blocked, postponed
 from .preprocessing import READ_AS, preprocess
 from .tree import Tree, Word
 
@@ -139,8 +139,11 @@ class Pipeline:
     def _load(self) -> Any:
         try:
             # The small pipelines need none of these packages, which would cost a second and 190 MB. A pipeline that
-            # the user names may need them.
-            with blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
+            # the user names may need them. The commands of spaCy (`spacy.cli`) import 360 modules more.
+            with (
+                blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))),
+                postponed("spacy.cli.info", "info"),
+            ):
                 import spacy
         except ImportError as error:
             raise PlatformError(f"nlp needs spacy: {_INSTALL}") from error
