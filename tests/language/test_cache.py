@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ravestate.language import cache
-from ravestate.language.cache import cached
+from ravestate.language.cache import cached, mapped
 
 
 @pytest.fixture(autouse=True)
@@ -43,3 +43,31 @@ def test_many_small_files_push_out_no_large_one() -> None:
         assert computed(number)
     assert not computed("large")
     assert not computed(0)
+
+
+def test_a_map_reads_the_file_of_the_first_call() -> None:
+    calls: list[int] = []
+
+    def compute() -> np.ndarray:
+        calls.append(1)
+        return np.arange(6).reshape(2, 3)
+
+    first, again = mapped("map", compute), mapped("map", compute)
+    assert len(calls) == 1
+    assert isinstance(again, np.memmap)
+    assert (first == again).all()
+
+
+def test_a_broken_map_is_made_anew(folder: Path) -> None:
+    mapped("map", lambda: np.arange(6))
+    [file] = folder.iterdir()
+    file.write_bytes(file.read_bytes()[:-8])
+    assert mapped("map", lambda: np.arange(6)).tolist() == list(range(6))
+
+
+def test_a_map_that_cannot_be_written_is_made_once(folder: Path) -> None:
+    folder.write_text("a file in the place of the folder")
+    calls: list[int] = []
+    for _ in range(2):
+        assert mapped("map", lambda: calls.append(1) or np.arange(6)).tolist() == list(range(6))
+    assert len(calls) == 1

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quality.measure import labelled
+from ravestate.language import normal
 from ravestate.language.contractions import WRITTEN
 from ravestate.language.lexicon import load_lexicon
 from ravestate.language.normal import Normal, normalise, plain
@@ -129,12 +130,12 @@ def test_a_normal_form_is_its_own_normal_form(text: str) -> None:
 
 
 def test_a_word_knows_its_place_in_the_original() -> None:
-    normal = normalise("u dont like my brohter")
+    mended = normalise("u dont like my brohter")
     for word, typed in (("You", "u"), ("don't", "dont"), ("like", "like"), ("brother", "brohter")):
-        start = normal.text.index(word)
-        first, last = normal.span(start, start + len(word))
-        assert normal.original[first:last] == typed
-    assert normal.adds(len(normal.text) - 1, len(normal.text))
+        start = mended.text.index(word)
+        first, last = mended.span(start, start + len(word))
+        assert mended.original[first:last] == typed
+    assert mended.adds(len(mended.text) - 1, len(mended.text))
 
 
 def test_the_typed_capitals_stay_where_a_word_differs_in_nothing_else() -> None:
@@ -144,3 +145,9 @@ def test_the_typed_capitals_stay_where_a_word_differs_in_nothing_else() -> None:
 def test_the_plain_form_writes_out_short_forms() -> None:
     assert plain("What's up, u CAN'T?") == "what is up you can not"
     assert plain("Im here") == plain("I am here.")
+
+
+def test_rules_that_read_an_utterance_share_its_normal_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = normalise("hullo rosie its me", ["Rosie"])
+    monkeypatch.setattr(normal, "_once", None)  # nothing is computed again
+    assert normalise("hullo rosie its me", ("Rosie",)) is first

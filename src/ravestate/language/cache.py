@@ -8,7 +8,7 @@ import os
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
 from ravestate.folders import user_folder
@@ -16,7 +16,7 @@ from ravestate.folders import user_folder
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-BYTES = 50_000_000
+BYTES = 80_000_000
 """The maximum size of the cache. Beyond it, the oldest files are removed. Many small files push out no large one."""
 
 
@@ -31,8 +31,7 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
     """
     import numpy as np
 
-    digest = hashlib.sha256(json.dumps(key).encode("utf-8", "replace")).hexdigest()[:32]
-    file = user_folder("cache") / "vectors" / f"{digest}.npz"
+    file = _file_of(key, ".npz")
     try:
         with np.load(file, allow_pickle=False) as found:
             arrays = {name: found[name] for name in found.files}
@@ -40,16 +39,52 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
         return arrays
     except (OSError, ValueError, EOFError, KeyError, BadZipFile):
         arrays = dict(compute())
+    _write(file, lambda out: np.savez(out, allow_pickle=False, **arrays))
+    return arrays
+
+
+_unwritten: dict[Path, NDArray[Any]] = {}
+"""The arrays of `mapped` that could not be written."""
+
+
+def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
+    """Return the array of `compute` as a read-only map of a file, so that it needs no memory. See `cached`.
+
+    If the file cannot be written, the array stays in memory.
+    """
+    import numpy as np
+
+    file = _file_of(key, ".npy")
+    if file in _unwritten:
+        return _unwritten[file]
+    try:
+        array = np.load(file, mmap_mode="r", allow_pickle=False)
+        os.utime(file)
+        return array
+    except (OSError, ValueError, EOFError):
+        array = compute()
+    if not _write(file, lambda out: np.save(out, array, allow_pickle=False)):
+        _unwritten[file] = array
+    return array
+
+
+def _file_of(key: object, ending: str) -> Path:
+    digest = hashlib.sha256(json.dumps(key).encode("utf-8", "replace")).hexdigest()[:32]
+    return user_folder("cache") / "vectors" / f"{digest}{ending}"
+
+
+def _write(file: Path, write: Callable[[IO[bytes]], None]) -> bool:
+    """Write a file of the cache as a whole, or not at all; return whether that was possible."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=file.parent)
         with os.fdopen(handle, "wb") as out:
-            np.savez(out, allow_pickle=False, **arrays)
+            write(out)
         os.replace(name, file)
         _limit(file.parent)
     except OSError:
-        pass  # without a file, the next start computes the arrays again
-    return arrays
+        return False  # without a file, the next start computes the arrays again
+    return True
 
 
 def _limit(folder: Path) -> None:

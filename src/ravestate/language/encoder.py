@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .cache import cached
 from .model import SentenceModel, model_in
 from .recent import keep_latest
+from .rows import Rows
 from .vectors import built_in
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class Encoder:
         known.update(zip(lost, self._encode(lost), strict=True) if lost else ())
         return np.stack([known[text] for text in texts]) if texts else np.zeros((0, model.width), dtype=np.float32)
 
-    def encode_lasting(self, texts: Sequence[str]) -> NDArray[np.float32]:
+    def encode_lasting(self, texts: Sequence[str]) -> Rows:
         """Return the vectors of texts that stay the same each time the program starts, such as examples.
 
         The vectors of the built-in examples come with the package. The first call encodes all other texts, and writes
@@ -95,14 +96,19 @@ class Encoder:
         model = self._loaded()
         import numpy as np
 
-        known = built_in(texts, self.size) if self._folder is None else {}
-        new = [text for text in dict.fromkeys(texts) if text not in known]
+        known, packed = built_in(texts, self.size) if self._folder is None else (np.zeros(len(texts), np.bool_), None)
+        if packed is not None and known.all():
+            return Rows(packed)
+        rows = np.zeros((len(texts), model.width), dtype=np.float32)
+        if packed is not None:
+            rows[known] = Rows(packed).unpacked()
+        new = list(dict.fromkeys(text for text, is_known in zip(texts, known.tolist(), strict=True) if not is_known))
         if new:
-            rows = cached(["vectors", self.identity, new], lambda: {"rows": self._encode(new).astype(np.float16)})[
-                "rows"
-            ]
-            known.update(zip(new, rows.astype(np.float32), strict=True))
-        return np.array([known[text] for text in texts], dtype=np.float32).reshape(len(texts), model.width)
+            key = ["vectors", self.identity, new]
+            found = cached(key, lambda: {"rows": self._encode(new).astype(np.float16)})["rows"]
+            place = {text: number for number, text in enumerate(new)}
+            rows[~known] = found[[place[text] for text in texts if text in place]]
+        return Rows(rows)
 
     @property
     def size(self) -> int:

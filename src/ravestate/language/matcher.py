@@ -23,6 +23,7 @@ from .heap import note_load
 from .loading import LOADING
 from .normal import plain
 from .recent import keep_latest
+from .rows import products
 from .shape import likeness, shape
 from .spelling import BUCKETS, Spelling
 
@@ -218,7 +219,8 @@ class _Learnt:
         self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
         key = ["matcher", encoder.identity, pairs, shapes, SHARPNESS, SPELLING, SHAPE, COMMON, RIDGE, BUCKETS, SAMPLED]
         learnt = cached(key, self._learn)
-        self._weights, confused = learnt["weights"], learnt["confused"].tolist()
+        self._weights = np.ascontiguousarray(learnt["weights"].T)  # of shape (classes, examples)
+        confused = learnt["confused"].tolist()
         self._slope, self._centre = learnt["curve"].tolist()
         if centre is not None:
             self._centre = centre
@@ -231,7 +233,8 @@ class _Learnt:
         """Return the weights, the curve from margin to confidence, and the confusions."""
         import numpy as np
 
-        kernel = self._kernel(self._meanings, self._spelling.among(), self._shapes)
+        vectors = self._meanings.unpacked()
+        kernel = self._kernel(vectors @ vectors.T, self._spelling.among(), self._shapes)
         kernel[np.diag_indices_from(kernel)] += np.float32(RIDGE)
         size, classes = len(self._of), len(self._classes)
         targets = np.eye(classes, dtype=np.float32)[self._of]
@@ -259,9 +262,10 @@ class _Learnt:
             return []
         texts = [plain(sentence) for sentence in sentences]
         shapes = np.array([shape(text) for text in texts], dtype=np.int8)
-        kernels = self._kernel(self._encoder.encode(texts), self._spelling.likeness(texts), shapes)
+        meanings = self._meanings.products(self._encoder.encode(texts))
+        kernels = self._kernel(meanings, self._spelling.likeness(texts), shapes)
         found: list[list[Match]] = []
-        for sentence, kernel, scores in zip(sentences, kernels, kernels @ self._weights, strict=True):
+        for sentence, kernel, scores in zip(sentences, kernels, products(kernels, self._weights), strict=True):
             order = [int(number) for number in np.argsort(-scores, kind="stable")[:most]]
             found.append([self._match(number, sentence, kernel, scores) for number in order])
         return found
@@ -277,11 +281,11 @@ class _Learnt:
     def _kernel(
         self, meanings: NDArray[np.float32], spelling: NDArray[np.float32], shapes: NDArray[np.int8]
     ) -> NDArray[np.float32]:
-        """Return the similarity of sentences (rows) and examples (columns)."""
+        """Return the similarity of sentences (rows) and examples (columns), from their cosines, spelling and shapes."""
         import numpy as np
 
         # In place: for thousands of examples, each copy takes tens of megabytes.
-        kernel = (meanings @ self._meanings.T - 1) * SHARPNESS
+        kernel = (meanings - 1) * SHARPNESS
         np.exp(kernel, out=kernel)
         kernel += SPELLING * spelling
         kernel *= 1 + self._weight * (likeness(shapes, self._shapes) - 1)

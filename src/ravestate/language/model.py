@@ -99,6 +99,8 @@ class SentenceModel:
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
         # Without this, products of whole numbers overflow on processors without VNNI, and scores differ by machine.
         options.add_session_config_entry("session.x64quantprecision", "1")
+        # Without this, onnxruntime keeps the memory of the longest text that it has read.
+        options.enable_cpu_mem_arena = options.enable_mem_pattern = False
         options.log_severity_level = 4  # log no errors, because they are raised as exceptions
         try:
             self._session: Any = runtime.InferenceSession(str(files[0]), options, providers=["CPUExecutionProvider"])

@@ -21,6 +21,7 @@ from .heap import note_load
 from .loading import LOADING
 from .matcher import SHARPNESS, calibrated, margins_of, shared_encoder
 from .normal import plain
+from .rows import products
 from .sentences import sentences as sentences_of
 from .shape import shape
 
@@ -151,12 +152,14 @@ class _Learnt:
         self._forms = np.array([form(part) for part in parts], dtype=np.float32)
         key = ["moves", encoder.identity, list(examples), SHARPNESS, SPREAD, FORM, COMMON]
         learnt = cached(key, self._learn)
-        self._weights, (self._slope, self._centre) = learnt["weights"], learnt["curve"].tolist()
+        self._weights = np.ascontiguousarray(learnt["weights"].T)  # of shape (classes, examples)
+        self._slope, self._centre = learnt["curve"].tolist()
 
     def _learn(self) -> dict[str, NDArray[Any]]:
         import numpy as np
 
-        kernel = self._kernel(self._whole, self._last, self._forms)
+        whole, last = self._whole.unpacked(), self._last.unpacked()
+        kernel = self._kernel(whole @ whole.T, last @ last.T, self._forms)
         kernel[np.diag_indices_from(kernel)] += self._ridge
         inverse = np.linalg.inv(kernel)
         targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
@@ -168,9 +171,10 @@ class _Learnt:
     def move(self, sentences: Sequence[str], unlikely: Sequence[str]) -> Move:
         import numpy as np
 
-        whole, last = self._encoder.encode([plain(text) for text in compared(sentences)])
+        vectors = self._encoder.encode([plain(text) for text in compared(sentences)])
         forms = np.array([form(sentences)], dtype=np.float32)
-        scores = (self._kernel(whole[None], last[None], forms) @ self._weights)[0]
+        kernel = self._kernel(self._whole.products(vectors[:1]), self._last.products(vectors[1:]), forms)
+        scores = products(kernel, self._weights)[0]
         scores[[self._classes.index(name) for name in unlikely if name in self._classes]] -= UNLIKELY
         best, second = (int(number) for number in np.argsort(-scores, kind="stable")[:2])
         margin = float(scores[best] - scores[second])
@@ -180,12 +184,12 @@ class _Learnt:
     def _kernel(
         self, whole: NDArray[np.float32], last: NDArray[np.float32], forms: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """Return the similarity of utterances (rows) and examples (columns)."""
+        """Return the similarity of utterances (rows) and examples (columns), from two arrays of cosines and the forms."""
         import numpy as np
 
-        squares = (forms**2).sum(axis=1)[:, None] + (self._forms**2).sum(axis=1) - 2 * forms @ self._forms.T
-        kernel = np.exp((whole @ self._whole.T - 1) * SHARPNESS)
-        kernel += np.exp((last @ self._last.T - 1) * SHARPNESS)
+        squares = (forms**2).sum(axis=1)[:, None] + (self._forms**2).sum(axis=1) - 2 * products(forms, self._forms)
+        kernel = np.exp((whole - 1) * SHARPNESS)
+        kernel += np.exp((last - 1) * SHARPNESS)
         kernel += FORM * np.exp(-SPREAD * squares) + COMMON
         return kernel
 

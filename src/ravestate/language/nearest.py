@@ -102,7 +102,7 @@ class _Learnt:
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
         """Return the cosine similarities of a plain text to searched examples."""
-        return [float(one) for one in self._known.meanings[list(places)] @ self._encoder.encode([text])[0]]
+        return self._known.meanings.some(places).products(self._encoder.encode([text]))[0].tolist()
 
     def compared(self, texts: dict[str, str], places: Sequence[int]) -> list[float]:
         """Return the greatest score of each of some examples."""
@@ -139,7 +139,7 @@ class _Group:
 
         plains = list(texts)
         shapes = np.array([shape(text) for text in plains], dtype=np.int8)
-        scores: NDArray[Any] = self._encoder.encode(plains) @ self.meanings.T
+        scores: NDArray[Any] = self.meanings.products(self._encoder.encode(plains))
         scores *= 1 + SHAPE * (likeness(shapes, self._shapes) - 1)
         asks = np.array([texts[text].rstrip().endswith("?") or opens_question(text) for text in plains])
         scores *= 1 - ASKING * (asks[:, None] != self._asks[None, :])

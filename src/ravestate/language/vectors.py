@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from functools import cache
-from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .cache import mapped
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,8 +22,8 @@ def key_of(text: str) -> int:
     return int.from_bytes(hashlib.blake2b(text.encode("utf-8", "replace"), digest_size=8).digest(), "big")
 
 
-def built_in(texts: Sequence[str], size: int) -> dict[str, NDArray[np.float32]]:
-    """Return the known vectors of texts, each of length 1.
+def built_in(texts: Sequence[str], size: int) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
+    """Return which of the texts have a ready-made vector (n of them), and these vectors: shape (n, d), of any length.
 
     Args:
         texts: Sentences in plain form.
@@ -29,28 +31,44 @@ def built_in(texts: Sequence[str], size: int) -> dict[str, NDArray[np.float32]]:
     """
     import numpy as np
 
-    table = _table()
-    if not texts or int(table["size"]) != size:
-        return {}
-    keys = np.array([key_of(text) for text in texts], dtype=np.uint64)
-    places = np.minimum(np.searchsorted(table["keys"], keys), len(table["keys"]) - 1)
-    known = np.flatnonzero(table["keys"][places] == keys)
-    rows = table["rows"][places[known]].astype(np.float32)
-    rows /= np.linalg.norm(rows, axis=1, keepdims=True)
-    return {texts[int(number)]: row for number, row in zip(known, rows, strict=True)}
+    keys, made_for = _keys()
+    if not texts or made_for != size:
+        return np.zeros(len(texts), dtype=np.bool_), np.zeros((0, 1), dtype=np.int8)
+    wanted = np.array([key_of(text) for text in texts], dtype=np.uint64)
+    places = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    known: NDArray[np.bool_] = keys[places] == wanted
+    return known, _rows()[places[known]]
 
 
 @cache
-def _table() -> dict[str, NDArray[Any]]:
-    """Return ``keys`` of shape (n,) in ascending order, ``rows`` of shape (n, d) as small integers, and ``size``.
-
-    The file has ``columns`` of shape (d, n) instead of ``rows``: that is easier to compress.
-    """
+def _keys() -> tuple[NDArray[np.uint64], int]:
+    """Return the keys in ascending order, and the size of the model's file."""
     import numpy as np
 
     try:
-        with (files("ravestate.language") / FILE).open("rb") as file, np.load(file, allow_pickle=False) as found:
-            rows = np.ascontiguousarray(found["columns"].T)
-            return {"keys": found["keys"], "rows": rows, "size": found["size"]}
+        with _file().open("rb") as file, np.load(file, allow_pickle=False) as found:
+            return found["keys"], int(found["size"])
     except FileNotFoundError:  # ``tools/vectors.py`` has not made the file yet
-        return {"keys": np.zeros(0, np.uint64), "rows": np.zeros((0, 1), np.int8), "size": np.array(0)}
+        return np.zeros(0, np.uint64), 0
+
+
+def _rows() -> NDArray[np.int8]:
+    """Return the vectors in the order of the keys: shape (n, d).
+
+    The package has them compressed, as columns. The first call unpacks them into the user's cache. They do not stay in
+    memory: the array is a map of that file.
+    """
+    file = _file()
+    about = file.stat()
+    return mapped(["built-in vectors", about.st_size, about.st_mtime_ns], _unpacked)
+
+
+def _unpacked() -> NDArray[np.int8]:
+    import numpy as np
+
+    with _file().open("rb") as file, np.load(file, allow_pickle=False) as found:
+        return np.ascontiguousarray(found["columns"].T)
+
+
+def _file() -> Path:
+    return Path(__file__).with_name(FILE)

@@ -3,10 +3,11 @@
 import importlib
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 
-from ravestate.modules.meta.nlp.blocking import blocked
+from ravestate.modules.meta.nlp.blocking import blocked, postponed
 
 
 @pytest.fixture(autouse=True)
@@ -35,3 +36,35 @@ def test_an_imported_package_stays_available() -> None:
     imported = importlib.import_module("colorsys")
     with blocked("colorsys"):
         assert importlib.import_module("colorsys") is imported
+
+
+@pytest.fixture
+def shop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that imports a function from a part of itself."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "shop" / "office").mkdir(parents=True)
+    (tmp_path / "shop" / "__init__.py").write_text("from .office.desk import write")
+    (tmp_path / "shop" / "office" / "__init__.py").write_text("")
+    (tmp_path / "shop" / "office" / "desk.py").write_text(
+        "def write(text, *, loud): return text.upper() if loud else text"
+    )
+    for name in ("shop", "shop.office", "shop.office.desk"):
+        monkeypatch.setitem(sys.modules, name, None)  # so that the test leaves nothing behind
+        del sys.modules[name]
+
+
+@pytest.mark.usefixtures("shop")
+def test_a_postponed_function_imports_its_module_when_it_is_called() -> None:
+    with postponed("shop.office.desk", "write"):
+        shop = importlib.import_module("shop")
+    assert "shop.office" not in sys.modules
+    assert shop.write("tea", loud=True) == "TEA"
+    assert "shop.office.desk" in sys.modules
+
+
+@pytest.mark.usefixtures("shop")
+def test_an_imported_module_is_not_postponed() -> None:
+    desk = importlib.import_module("shop.office.desk")
+    with postponed("shop.office.desk", "write"):
+        assert sys.modules["shop.office.desk"] is desk
+    assert sys.modules["shop.office.desk"] is desk

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from contextvars import Context
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +95,20 @@ def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
     for thread in threads:
         thread.join()
     assert found == [["Where", "do", "you", "live", "?"]] * 20
+
+
+def test_readers_in_new_contexts_do_not_look_for_a_backend_again(
+    reader: Pipeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each rule runs in a context of its own, and in each context spaCy would look for its way to compute."""
+    reader.read("The kettle is on.")
+    looked: list[str] = []
+    import thinc.backends
+
+    monkeypatch.setattr(thinc.backends, "get_ops", lambda name: looked.append(name))
+    tree, _ = Context().run(reader.read, "The kettle is off.")
+    assert len(tree.words) == 5
+    assert not looked
 
 
 def test_load_does_not_wait_for_readers_of_a_loaded_pipeline(reader: Pipeline) -> None:
@@ -205,7 +220,8 @@ def test_without_spacy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> No
 def test_optional_libraries_are_not_imported() -> None:
     code = (
         "import sys; from ravestate.modules.meta.nlp.pipeline import pipeline; pipeline('').read('hello'); "
-        "print({'torch', 'tensorflow', 'mxnet', 'cupy'} & set(sys.modules))"
+        "print({'torch', 'tensorflow', 'mxnet', 'cupy', 'spacy.cli'} & set(sys.modules)); "
+        "import spacy.cli; spacy.cli.validate"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"

@@ -3,6 +3,7 @@
 import asyncio
 import threading
 from collections import deque
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.errors import PlatformError
+from ravestate.language.loading import LOADING
 from ravestate.modules import conio, idle, interloc, rawio
 from ravestate.modules.platform.conio.console import Console
 from ravestate.modules.platform.conio.pipes import Pipes
@@ -99,6 +101,36 @@ def test_the_terminal_library_loads_off_the_loop(keys: Keys, monkeypatch: pytest
     with simulate(parrot, conio):
         pass
     assert len(threads) == 2 and threading.current_thread() not in threads
+
+
+def test_models_load_after_the_prompt_appears(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+    free: list[bool] = []
+
+    def make(**_: Any) -> Console:  # in a thread, as the models load
+        free.append(can_load())
+        return Console(keys)
+
+    monkeypatch.setattr(conio.rules, "Console", make)
+    with simulate(parrot, conio), ThreadPoolExecutor() as pool:
+        assert free == [False]
+        assert pool.submit(can_load).result(timeout=10)
+
+
+def test_models_load_without_a_console(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(**_: Any) -> Console:
+        raise PlatformError("there is no terminal")
+
+    monkeypatch.setattr(conio.rules, "Console", fail)
+    with simulate(parrot, conio), ThreadPoolExecutor() as pool:
+        assert pool.submit(can_load).result(timeout=10)
+
+
+def can_load() -> bool:
+    """Return whether this thread could load a model now."""
+    took = LOADING.acquire(blocking=False)
+    if took:
+        LOADING.release()
+    return took
 
 
 def test_typing_counts_as_activity(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from ravestate.modules.skill.genqa import Answerer, Settings, Turn
+from ravestate.modules.skill.genqa import Answerer, Settings, Turn, following
 from ravestate.modules.skill.genqa.document import Document
 from ravestate.modules.skill.genqa.following import answer_in, other_wording
 from ravestate.modules.skill.genqa.index import Index, IndexedFile
@@ -114,3 +114,29 @@ def test_another_question_decides_one_of_yes_or_no() -> None:
     assert other_wording("is Peru in Africa") == "where is Peru?"
     assert other_wording("Is Paris the capital of Germany?") == "what is the capital of Germany?"
     assert other_wording("who is in Africa") == ""
+
+
+def test_a_follow_up_with_words_that_no_document_has_is_not_completed(
+    answerer: Answerer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard, thread = parse("and of the zorblax?"), [thread_of(answerer, "Who is the captain of the Halcyon?")]
+    completed: list[str] = []
+    monkeypatch.setattr(following, "parse", completed.append)
+    answer, turn = answer_in(answerer, heard, thread, Settings(), 5.0)
+    assert (answer.text, turn, completed) == ("", None, [])
+    assert answer.reason
+
+
+def test_the_age_of_the_agent_is_not_searched(answerer: Answerer, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(following, "begun", lambda name, _: asked.append(name))
+    answer, _ = answer_in(answerer, parse("how old are you?"), [], Settings(), 0.0)
+    assert not answer.text
+    assert not asked
+
+
+def thread_of(answerer: Answerer, question: str) -> Turn:
+    """Return the turn of a question with its answer."""
+    _, turn = answer_in(answerer, parse(question), [], Settings(), 0.0)
+    assert turn is not None
+    return turn

@@ -1,4 +1,4 @@
-"""Import a package without the optional packages that it would import."""
+"""Import a package without the parts and the optional packages that it would import."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import sys
 import threading
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
+from typing import Any
 
 
 class _BlockingFinder(MetaPathFinder):
@@ -40,3 +42,33 @@ def blocked(*names: str) -> Generator[None]:
         yield
     finally:
         sys.meta_path.remove(finder)
+
+
+@contextmanager
+def postponed(module: str, function: str) -> Generator[None]:
+    """During an import, let `function` of `module` stand for itself. Its first call imports the module.
+
+    The package that has `module` is postponed as well, and everything that it imports. If the module is imported already,
+    do nothing.
+
+    Args:
+        module: The module's full name. Its package is imported by nothing else.
+        function: The name of the only thing that is imported from it.
+    """
+    package = module.rpartition(".")[0]
+    if package in sys.modules:
+        yield
+        return
+
+    def call(*args: Any, **options: Any) -> Any:
+        return getattr(import_module(module), function)(*args, **options)
+
+    for name in (package, module):
+        sys.modules[name] = ModuleType(name)
+    sys.modules[package].__path__ = []
+    setattr(sys.modules[module], function, call)
+    try:
+        yield
+    finally:
+        for name in (package, module):
+            sys.modules.pop(name, None)

@@ -6,6 +6,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Collection
+from contextvars import Context
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -17,7 +18,7 @@ from ravestate.language.lexicon import load_lexicon
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
 
-from .blocking import blocked
+from .blocking import blocked, postponed
 from .preprocessing import READ_AS, preprocess
 from .tree import Tree, Word
 
@@ -54,6 +55,8 @@ class Pipeline:
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
+        # spaCy keeps its way to compute in a context variable. In a new context it would look for one, for milliseconds.
+        self._context = Context()
         self._nlp: Any = None  # spacy.Language: spaCy is not imported before it is needed
 
     @property
@@ -101,7 +104,7 @@ class Pipeline:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
                 # If the queue is empty, an earlier thread took this text but was interrupted before it read the text.
-                self._read(waiting or [order])
+                self._context.run(self._read, waiting or [order])
         if order.error is not None:
             raise order.error
         assert order.found is not None
@@ -137,8 +140,11 @@ class Pipeline:
     def _load(self) -> Any:
         try:
             # The small pipelines need none of these packages, which would cost a second and 190 MB. A pipeline that
-            # the user names may need them.
-            with blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))):
+            # the user names may need them. The commands of spaCy (`spacy.cli`) import 360 modules more.
+            with (
+                blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))),
+                postponed("spacy.cli.info", "info"),
+            ):
                 import spacy
         except ImportError as error:
             raise PlatformError(f"nlp needs spacy: {_INSTALL}") from error

@@ -9,6 +9,7 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
+from ravestate.language.loading import wait_for_prompt
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.moves import bundled_moves
 from ravestate.modules import interloc, rawio
@@ -26,6 +27,7 @@ SIGNALS = {"intent_play": names.intent_play, "intent_hi": names.intent_hi, "inte
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
     """Load the pipeline in the background, before the first words."""
+    wait_for_prompt()
     settings: Settings = ctx.settings
     with contextlib.suppress(PlatformError):  # `understand` reports the error
         pipeline(settings.pipeline).load()
@@ -35,6 +37,7 @@ def load(ctx: rs.RuleContext) -> None:
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
     """Load the matchers in the background. Until then, only sentences that equal an example are recognised."""
+    wait_for_prompt()
     try:
         for name in (*MATCHERS, "answers"):
             bundled_matcher(name).load()

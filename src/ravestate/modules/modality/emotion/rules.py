@@ -10,6 +10,7 @@ from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.feelings import SORROW_LASTS
 from ravestate.language.heap import give_back
+from ravestate.language.loading import wait_for_prompt
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
 
@@ -29,6 +30,7 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
     """Load the matchers in the background, before the first words."""
+    wait_for_prompt()
     try:
         for name in ("acts", "feelings"):
             bundled_matcher(name).load()

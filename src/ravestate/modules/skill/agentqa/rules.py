@@ -12,6 +12,7 @@ from ravestate.errors import PlatformError, RavestateError, RuleError
 from ravestate.language.acts import acts
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
+from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.verbaliser.intents import Intent
@@ -45,6 +46,7 @@ async def be_born(ctx: rs.RuleContext) -> None:
 @module.rule(when=life.changed.detached(), background=True)
 def load(ctx: rs.RuleContext) -> None:
     """Learn the topics in the background, so that the first question does not have to wait."""
+    wait_for_prompt()
     told = ctx.payload(life.changed)
     if told is not None:
         with contextlib.suppress(PlatformError):  # the first question raises the error again

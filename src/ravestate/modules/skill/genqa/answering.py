@@ -42,6 +42,8 @@ NAMES, KINDS = 0.4, 0.7
 `NAMES` for other passages."""
 WORDS = 24
 """The maximum number of words to search for."""
+NOT_STATED = "no document states all of it"
+"""The reason for no answer if no passage meets the qualifiers of a question."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,12 +141,16 @@ class Answerer:
             return Answer(question.text, reason="there are no documents")
         retrieved = self._retrieve(index, question, titles)
         if not retrieved:
-            return Answer(question.text, reason="no document states all of it")
+            return Answer(question.text, reason=NOT_STATED)
         read = self._read(question, retrieved)
         best = read[0]
         return Answer(
             question.text, best.text, index.source(best.row), best.title, _chance(question, best), tuple(read)
         )
+
+    def states(self, needs: Sequence[Sequence[str]]) -> bool:
+        """Return whether a passage has a word of each of the `needs`. Takes less than a millisecond."""
+        return not needs or bool(self._opened().search_all(needs, 1))
 
     def titled(self, name: str) -> str:
         """Return the title of a document about `name`, or "". Ignore case, and a *the* in front."""

@@ -13,7 +13,7 @@ from functools import cache
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
 
-from .answering import Answer, Answerer
+from .answering import NOT_STATED, Answer, Answerer
 from .comparing import aged, begun, compared
 from .lexicon import variants_of
 from .names import Settings
@@ -33,7 +33,7 @@ MOST = 8
 def answer_in(
     answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float
 ) -> tuple[Answer, Turn | None]:
-    """Return the best supported answer to an utterance, and the turn to add to the thread, if any.
+    """Return the best supported answer to an utterance, and the turn to add to the thread if the agent may say the answer.
 
     Args:
         answerer: The documents.
@@ -56,13 +56,16 @@ def answer_in(
     best: tuple[Answer, Parse] | None = None
     reason = ""
     for reading in tried[:MOST]:
+        new = tuple(map(variants_of, as_question(reading.new).words)) if reading.new else ()
+        if not answerer.states(new):  # the search in full would end with the same result, after some parsing
+            reason = reason or NOT_STATED
+            continue
         seen = heard if reading.text == heard.text else replace(parse(reading.text), kind=heard.kind)
         question = as_question(seen)
         follows = seen is not heard or bool(reading.about)
         question = replace(question, doubtful=question.doubtful or heard.kind is None, follows=follows)
+        question = replace(question, needs=question.needs + new)
         titles: tuple[str, ...] = ()
-        if reading.new:
-            question = replace(question, needs=question.needs + tuple(map(variants_of, as_question(reading.new).words)))
         if reading.about:
             question, titles = _about(answerer, question, reading, thread[-1].title)
         answer = _decided(answerer, question, settings, titles)
@@ -78,7 +81,7 @@ def answer_in(
     if best is None:
         return Answer(heard.text, reason=reason), None
     answer, seen = best
-    return answer, turn_of(seen, answer, now)
+    return answer, turn_of(seen, answer, now) if answer.confidence >= settings.unsure else None
 
 
 def _about(answerer: Answerer, question: Question, reading: Reading, latest: str) -> tuple[Question, tuple[str, ...]]:
@@ -135,9 +138,8 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
         if decided.confidence >= settings.sure:
             return decided
     answer = answerer.answer(question, titles)
-    if answer.confidence < settings.unsure and (
-        thing := re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)
-    ):
+    thing = re.match(r"how old (?:is|are|was) (.+)\?", question.text, re.IGNORECASE)
+    if thing and answer.confidence < settings.unsure and not question.declined:
         answer = begun(thing[1], lambda text: answerer.answer(text, titles)) or answer
     if question.doubtful and answer.confidence < settings.sure:
         return replace(answer, confidence=0.0)

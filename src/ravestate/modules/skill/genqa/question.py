@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from ravestate.language.entity import Entity
 from ravestate.language.moves import LISTENING
@@ -20,6 +21,8 @@ from .reckoning import scaled
 
 LONGEST = 600
 """The maximum length of an utterance in characters; a longer utterance does not count as a question."""
+REMEMBERED = 64
+"""The number of parses that are kept."""
 THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
 _OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])
@@ -79,8 +82,9 @@ class Parse:
         return any(word.tag in FINITE for word in self.asked)
 
 
+@lru_cache(maxsize=REMEMBERED)
 def parse(text: str) -> Parse:
-    """Parse a text with the pipeline of nlp."""
+    """Parse a text with the pipeline of nlp. A recent text takes no time, because readings share their parts."""
     tree, entities = pipeline("").read(printable(text))
     return parsed(tree, entities, question_of(tree))
 

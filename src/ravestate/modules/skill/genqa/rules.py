@@ -8,6 +8,7 @@ import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
+from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import nlp, rawio, verbaliser
 
 from .following import answer_in
@@ -21,6 +22,7 @@ from .wording import intent_of, wording_rule
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
     """Open the index and load the reader in the background, so that the first question does not have to wait."""
+    wait_for_prompt()
     with contextlib.suppress(PlatformError):  # the first question raises the error again
         try:
             answerer_of(ctx.settings).load()
@@ -64,9 +66,9 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
     except ModelMissing as error:
         warn_once(ctx.log, error)
         return rs.Resign(str(error))
-    if turn is None:
+    if not answer.text:
         return rs.Resign(answer.reason)
-    if answer.confidence < settings.unsure:
+    if turn is None:
         return rs.Resign(f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}")
     ctx[thread] = (*turns, turn)[-KEPT:]
     ctx.emit(found, answer)

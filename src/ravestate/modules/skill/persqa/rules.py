@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import ravestate as rs
 from ravestate.errors import RavestateError
 from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
 from .acquaintance import Acquaintance, Noted
@@ -73,6 +74,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
     """Learn the examples. Until that is done, only input that matches an example word for word is recognised."""
+    wait_for_prompt()
     try:
         load_examples()
     except ModelMissing as error:

@@ -10,6 +10,7 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.heap import give_back
+from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import interloc, nlp, rawio
 
 from .backend import Backend, Message, PendingBackend, Role
@@ -79,6 +80,7 @@ async def use(ctx: rs.RuleContext) -> rs.Resign | None:
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
     """Learn the examples of small talk in the background. Until that is done, only exact examples are recognised."""
+    wait_for_prompt()
     try:
         learn_all()
         give_back()

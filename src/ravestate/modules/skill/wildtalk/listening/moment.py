@@ -58,5 +58,9 @@ class Moment:
 
 
 def roles_in(text: str) -> frozenset[str]:
-    """Return the roles of a phrase."""
-    return frozenset(role.lower() for role in ROLE.findall(text))
+    """Return the roles of a phrase. Equal sets are one object, because there are tens of thousands of phrases."""
+    found = frozenset(role.lower() for role in ROLE.findall(text))
+    return _shared.setdefault(found, found)
+
+
+_shared: dict[frozenset[str], frozenset[str]] = {}
