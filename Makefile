@@ -11,6 +11,9 @@ SHELL       := bash
 MAKEFLAGS   += --no-print-directory
 .NOTPARALLEL:
 
+# Keep compiled sources, even where the machine's environment says not to: the tests start hundreds of processes.
+export PYTHONDONTWRITEBYTECODE :=
+
 ARGS ?=
 BIN  := .venv/bin
 DONE := .venv/.done
