@@ -78,7 +78,7 @@ def persqa_facts(sentence: str) -> str:
 
 @cache
 def _load() -> None:
-    for name in MATCHERS:
+    for name in (*MATCHERS, "answers"):
         bundled_matcher(name).load()
     kinds.load()
 

@@ -1,0 +1,96 @@
+"""The pursuits of users: hobbies, trades, and changes of these."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from ravestate.modules import nlp
+from ravestate.modules.meta.nlp.phrase import Phrase, gerund_phrase
+
+from .kinds import FITTING, likeness
+from .links import NOW, Link
+from .topics import TOPICS, WORDS
+from .values import agent_noun, gerund
+
+if TYPE_CHECKING:
+    from .reading import Reader
+
+_LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
+
+
+def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
+    """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*, *I paint in my free time*."""
+    if said.verb == "spend" and said.object.head in WORDS["leisure"] and (verb := reader.verb(said)):
+        gerunds = [word for word in reader.tree.children(verb, "xcomp", "advcl", "ccomp") if word.tag == "VBG"]
+        written = [reader.tree.phrase(gerund_phrase(reader.tree, word)) for word in gerunds]
+        return Link("hobby", said.object, value=written[0]) if written else None
+    verbs, object = said.triple.predicate.removeprefix("not ").split(), said.object
+    verb = reader.verb(said)
+    if verb is None or said.subject.text.lower() != "i" or not isinstance(said.triple.object, str):
+        return None
+    chained, direct = len(verbs) > 1, object.text and not object.preposition
+    free = object.head in ("time", "weekend", "fun")
+    written = reader.span_of(verb.low, Phrase("") if free else object)
+    if verb.tag in ("VBN", "VBZ"):
+        written = re.sub(r"^\w+", verb.lemma, written)
+    if verbs[0] in WORDS["likes"]:
+        wanted = chained
+    elif verbs[0] in ("start", "begin", "take") and (
+        written := gerund(
+            said.triple.predicate.split()[-1] if chained and verbs[0] != "take" else object.text, reader.seen
+        )
+    ):
+        wanted = likeness(written, "activity") > 0.3 - 0.3 * written.endswith("ing") and (
+            verbs[0] != "take" or verbs == ["take", "up"]
+        )
+    elif verbs == ["do"] and direct and said.holds and likeness(object.text, "activity") > 0.2:
+        wanted, written = True, object.text  # "I do judo"
+    elif verbs[0] in WORDS["pastimes"]:
+        wanted = verb.tag != "VBD" and (chained or object.text.endswith("ing") if verbs[0] == "go" else direct)
+    elif verb.tag == "VBG" and verb.dep == "conj":  # "I love climbing and baking bread"
+        wanted = any(other.verb in WORDS["likes"] and other.holds for other in reader.seen.statements)
+    elif verbs[0] != "be" and _LEISURE.search(reader.tree.text):
+        wanted = direct or free
+    else:
+        habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained
+        habit = (
+            habit and not free and not NOW & set(said.when.split()) and (direct or not (object.text or said.phrases))
+        )
+        asked = (
+            reader.asked == "hobby"
+            and "i" in reader.words
+            and said.holds
+            and direct
+            and said.verb not in WORDS["states"] | WORDS["passing"]
+        )
+        wanted = asked or (habit and likeness(gerund(written, reader.seen), "activity") > (0.2 if direct else 0.4))
+    return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
+
+
+def trade_in(reader: Reader, said: nlp.Statement) -> Link | None:
+    """Return the occupation in *I drive trams for a living*, or *I drive trams*, if the agent asked for it."""
+    asked = reader.asked == "occupation" and said.verb not in WORDS["states"] | WORDS["passing"] | WORDS["pastimes"]
+    living = any(phrase.preposition == "for" and phrase.head == "living" for phrase in said.phrases)
+    direct = bool(said.object.text) and not said.object.preposition
+    if not said.holds or not direct or said.object.owner or not (asked or living) or " " in said.triple.predicate:
+        return None
+    return Link("occupation", said.object, value=agent_noun(said.verb, said.object.text, said.object.head))
+
+
+def changed_in(reader: Reader, said: nlp.Statement) -> Link | None:
+    """Return the new value of a known topic in *I switched to physics*."""
+    if said.verb not in WORDS["changing"] or said.object.preposition not in ("to", "into") or said.negated:
+        return None
+    topics = [topic for topic in reader.known if topic in WORDS["changeable"]] or [
+        "subject",
+        "employer",
+        "university",
+    ]
+    likely = {
+        topic: likeness(reader.written(said.object), topic if topic in FITTING else TOPICS[topic].kind)
+        for topic in topics
+    }
+    best = max(likely, key=likely.__getitem__)
+    sure = len(reader.known) == 1 and likely[best] > -0.6
+    return Link(best, said.object) if sure or likely[best] > 0.2 else None
