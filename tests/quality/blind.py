@@ -119,7 +119,7 @@ def _replaced(fact: str, told: set[str]) -> bool:
     return fact.startswith("not ") and topic in told and (topic in SINGLE or topic.startswith("favourite "))
 
 
-def _same(label: str, seen: frozenset[str]) -> bool:
+def fits(label: str, seen: frozenset[str]) -> bool:
     """Return whether the facts are all that must be stored, and none that may not."""
     must, _ = _wanted(label)
     return _harmless(label, seen) and all(any(_fits(one, other) for other in seen) for one in must)
@@ -175,7 +175,7 @@ def measured_facts(name: str = "facts", *, show: bool = False) -> list[Result]:
     skills.prepare(text for text, _ in cases)
     seen = {text: stored(text) for text, _ in cases}
     told = [case for case in cases if case not in tricky]
-    wrong = [case for case in cases if not _same(case[1], seen[case[0]])]
+    wrong = [case for case in cases if not fits(case[1], seen[case[0]])]
     harmed = [case for case in tricky if not _harmless(case[1], seen[case[0]])]
 
     def result(of: str, what: str, among: list[tuple[str, str]], misses: list[tuple[str, str]]) -> Result:

@@ -29,6 +29,9 @@ def predicate_of(said: nlp.Statement) -> str:
     """Return the predicate without *not*, and without verbs that only begin or continue it: *work for* of *start to work for*."""
     words = said.triple.predicate.removeprefix("not ").split()
     while len(words) > 1 and (words[0] in WORDS["beginning"] or words[:2] == ["end", "up"]):
-        del words[: 2 if words[0] == "end" or words[1] == "to" else 1]
+        first = 2 if words[0] == "end" or words[1] == "to" else 1
+        if len(words) == first:
+            break  # "where did I end up"
+        del words[:first]
         words[0] = said.verb if len(words) == 1 or words[0].endswith("ing") else words[0]
     return " ".join(words)

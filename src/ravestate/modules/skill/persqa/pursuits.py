@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase, gerund_phrase
 
-from .kinds import FITTING, likeness
+from .kinds import likeness
 from .links import NOW, Link
-from .topics import TOPICS, WORDS
+from .topics import WORDS
 from .values import agent_noun, gerund
 
 if TYPE_CHECKING:
@@ -76,21 +76,3 @@ def trade_in(reader: Reader, said: nlp.Statement) -> Link | None:
     if not said.holds or not direct or said.object.owner or not (asked or living) or " " in said.triple.predicate:
         return None
     return Link("occupation", said.object, value=agent_noun(said.verb, said.object.text, said.object.head))
-
-
-def changed_in(reader: Reader, said: nlp.Statement) -> Link | None:
-    """Return the new value of a known topic in *I switched to physics*."""
-    if said.verb not in WORDS["changing"] or said.object.preposition not in ("to", "into") or said.negated:
-        return None
-    topics = [topic for topic in reader.known if topic in WORDS["changeable"]] or [
-        "subject",
-        "employer",
-        "university",
-    ]
-    likely = {
-        topic: likeness(reader.written(said.object), topic if topic in FITTING else TOPICS[topic].kind)
-        for topic in topics
-    }
-    best = max(likely, key=likely.__getitem__)
-    sure = len(reader.known) == 1 and likely[best] > -0.6
-    return Link(best, said.object) if sure or likely[best] > 0.2 else None

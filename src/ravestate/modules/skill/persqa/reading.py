@@ -12,10 +12,10 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answers import answer
-from .changes import ended_by, renamed_in
+from .changes import denied_beside, ended_by, renamed_in, switched_in
 from .kinds import likeness
 from .links import Link, predicate_of
-from .pursuits import changed_in, pursuit_in, trade_in
+from .pursuits import pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
 from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import is_gerund, number_in, value_of
@@ -45,11 +45,13 @@ class Reader:
         asked: The topic of the agent's open question, or an empty string.
         person: The topic of the relative whom *he* or *his* means, or an empty string.
         known: The earlier facts.
+        recent: The topic that the user or the agent mentioned in the last utterances, or an empty string.
     """
 
-    def __init__(self, seen: nlp.Analysis, asked: str = "", person: str = "", known: Facts | None = None) -> None:
-        self.seen = seen
-        self.known = known or {}
+    def __init__(
+        self, seen: nlp.Analysis, asked: str = "", person: str = "", known: Facts | None = None, recent: str = ""
+    ) -> None:
+        self.seen, self.known, self.recent = seen, known or {}, recent
         self.tree = seen.tree
         self.words = {word.low for word in seen.tree.words}
         self.denies_all = bool(self.words & _NONE)
@@ -62,11 +64,11 @@ class Reader:
         owned = (self.relative(object.head) for object in mine)
         self.person = person or next(filter(None, owned), "")
 
-    def facts(self, known: Facts | None = None) -> list[Fact]:
-        """Return the facts that the user states, one for each topic; `known` are the earlier facts."""
+    def facts(self) -> list[Fact]:
+        """Return the facts that the user states, one for each topic."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
-        known = known or {}
+        known = self.known
         denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
         for said in self.seen.statements:
             if not self._asserted(said):
@@ -75,11 +77,14 @@ class Reader:
                     denied = link.topic
                     gone.setdefault(denied, self.values(link))
                 continue
-            if ended := ended_by(self, said, known):
+            if ended := ended_by(self, said):
                 gone |= {topic: gone.get(topic, ()) + values for topic, values in ended.items()}
                 continue
+            for old, new, name in renamed_in(self, said):
+                gone[old] = (name,)
+                _add(told, new, [name] if new else ())
             instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
-            for link in [Link(denied, said.object)] if instead else [*self.links(said), *renamed_in(said, known)]:
+            for link in [Link(denied, said.object)] if instead else self.links(said):
                 denied = link.topic if said.negated else ""
                 values = self.values(link, denied=said.negated and link.topic == NAME)
                 called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # "his name was Joost"
@@ -110,6 +115,8 @@ class Reader:
             told["home"] = told.pop("origin")
         for topic in told:  # "I live in Paris. I don't live in Paris."
             told[topic] = without(told[topic], gone.get(topic, ()))
+            if denied_now := denied_beside(self, topic, told[topic]):
+                gone[topic] = (*gone.get(topic, ()), *denied_now)
         struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
@@ -274,8 +281,8 @@ class Reader:
         if trade := trade_in(self, said):
             yield trade
             return
-        if found := changed_in(self, said):
-            yield found
+        if switched := switched_in(self, said):
+            yield switched
             return
         has = self.has(said)
         if has and (topic := NOUNS.get(object.head, "")) and (said.negated or said.question):

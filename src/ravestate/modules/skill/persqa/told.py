@@ -191,9 +191,8 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     if _DEICTIC.match(said.object.text) or is_former(said.subject.text) or (said.verb == "be" and not said.object.text):
         return False
     if (
-        ended_by(reader, said, reader.known)
-        or said.verb in WORDS["parting"]
-        or any(renamed_in(said, reader.known))
+        ended_by(reader, said)
+        or any(renamed_in(reader, said))
         or _is_momentary(reader, said)
     ):
         return False

@@ -14,7 +14,7 @@ from ravestate.modules import nlp
 
 from . import kinds
 from .answers import answer, correction, may_stand_alone, opening, self_asked, spelled_out
-from .changes import amended
+from .changes import misheard
 from .kinds import likeness
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
@@ -99,7 +99,7 @@ class _Hearing:
         self.topic = self.pending.topic if self.pending else ""
         self.waits = is_topic(self.topic)
         asked = talk.doubt if self.topic == CONFIRM else self.topic if self.waits else ""
-        self.reader = Reader(seen, asked, talk.person, known)
+        self.reader = Reader(seen, asked, talk.person, known, talk.correctable or asked)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
@@ -140,17 +140,12 @@ class _Hearing:
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
             if inquiry:
                 return inquiry
-        facts = self.reader.facts(self.known)
+        facts = self.reader.facts()
         told = {fact.topic for fact in facts if not fact.gone}
         facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
         if self.waits and topic not in told and "nothing" not in self.acts and not self.reader.denies_all:
             facts = [*opening(self.text, topic, seen), *facts]
         facts = facts or self_asked(seen.text, seen)
-        told = {fact.topic for fact in facts if not fact.gone}
-        if fixed := [
-            fact for fact in amended(self.text, self.doubtful(facts), seen) if fact.gone or fact.topic not in told
-        ]:
-            facts = [*facts, *(fact for fact in fixed if fact not in facts)]
         other = any(fact.topic == NAME and not self.is_name(fact.values) for fact in facts if not fact.gone)
         denied = (
             any(fact.topic == NAME and fact.gone and self.is_name(fact.values) for fact in facts) or self.denies_name()
@@ -192,10 +187,6 @@ class _Hearing:
             return Meaning("mentioned", topic=relative)
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
 
-    def doubtful(self, facts: Iterable[Fact]) -> Facts:
-        """Return the values that the utterance may correct: the known values, and those that it denies."""
-        return {**self.known, **{fact.topic: fact.values for fact in facts if fact.gone and fact.values}}
-
     def is_known(self, topic: str) -> bool:
         """Return whether a question about a topic can be answered from the facts, or at least from the nearest fact."""
         if topic in ("", EVERYTHING, *self.known):
@@ -220,7 +211,9 @@ class _Hearing:
     def corrected(self) -> Meaning | None:
         """Return the correction of the fact that the user told last."""
         topic, explicit = self.talk.correctable, self.pending is not None
-        facts = correction(self.text, topic, self.talk.latest, self.seen, explicit=explicit) if topic else ()
+        latest = self.talk.latest
+        facts = topic and correction(self.text, topic, latest, self.seen, explicit=explicit)
+        facts = facts or (topic and misheard(self.text, topic, latest, self.seen))
         return Meaning("corrected", tuple(facts), topic) if facts else None
 
     def answered(self) -> Meaning | None:
