@@ -21,11 +21,13 @@ def changes(sentence: str) -> frozenset[str]:
     if meaning.kind not in ("told", "corrected"):
         return frozenset()
     facts = dict(learn(known, meaning.facts, talk.latest if meaning.kind == "corrected" else ()).facts)
-    names = [fact for fact in meaning.facts if fact.topic == NAME]
-    facts |= {NAME: () if fact.gone else fact.values for fact in names}
+    for name in (fact for fact in meaning.facts if fact.topic == NAME):
+        facts[NAME] = () if name.gone else name.values
     new = {f"{topic}={value}" for topic in facts for value in facts[topic] if value not in known.get(topic, ())}
     kept = {topic for topic in known if facts.get(topic) and topic in blind.SINGLE}  # a new value replaces the old one
-    gone = {f"not {topic}={old}" for topic in known.keys() - kept for old in known[topic] if old not in facts.get(topic, ())}
+    gone = {
+        f"not {topic}={old}" for topic in known.keys() - kept for old in known[topic] if old not in facts.get(topic, ())
+    }
     return frozenset(one.lower() for one in new | gone)
 
 

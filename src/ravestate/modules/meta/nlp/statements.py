@@ -130,7 +130,7 @@ class _Assertion:
             before = self._tree.before(self._tree.subtree(self._clause.verb)[0])
             apart = before is not None and before.low == "," and said.lemma not in _REPORTING
             if any(person_of(word) != "I" for word in speakers):
-                return said.lemma != "be" and not apart
+                return said.lemma not in ("be", "call", "name") and not apart
             if said.lemma in ("hear", "read") or (said.lemma in ("say", "tell") and (said.negated or said.passive)):
                 return True
         return self._sharing is not None and self._sharing._hearsay

@@ -36,7 +36,7 @@ _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
 _PIECE = re.compile(
-    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
+    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|yours?)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
     re.IGNORECASE,
 )
 """The end of an answer before a clause."""
@@ -102,13 +102,9 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
 
 def self_asked(text: str, seen: nlp.Analysis) -> list[Fact]:
     """Return the fact that users ask themselves for, and answer: *my hobby? Chess.*."""
-    asked, _, rest = text.partition("? ")
-    if any(word.tag in ("VBD", "VBZ", "VBP", "MD") for word in seen.tree.words if word.end <= len(asked)):
-        return []
-    last = asked.lower().split()[-1:]
-    named = re.search(r"\bfavou?rite \w+$", asked, re.IGNORECASE)
-    topic = favourite(named[0]) if named else NOUNS.get(last[0], "") if last else ""
-    return answer(rest, topic, seen) if topic and rest else []
+    found = re.match(r"my (?:\w+ )??((?:favou?rite )?(\w+))\? +(?=\S)", text, re.IGNORECASE)
+    topic = found and (favourite(found[1]) if " " in found[1] else NOUNS.get(found[2].lower(), ""))
+    return answer(text[found.end() :], topic, seen) if found and topic else []
 
 
 def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:

@@ -11,15 +11,13 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
-from .answers import answer
-from .changes import denied_beside, ended_by, renamed_in, switched_in
+from .changes import denied_beside, denied_by, ended_by, renamed_in, switched_in
 from .kinds import likeness
-from .links import Link, predicate_of
-from .pursuits import pursuit_in, trade_in
+from .links import Link, predicate_of, pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
-from .topics import ASKS, ENDS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
+from .topics import ASKS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import is_gerund, number_in, value_of
-from .wording import Facts, alike, without
+from .wording import Facts, among, without
 
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics whose facts may be in the past tense: *I studied law*."""
@@ -68,15 +66,8 @@ class Reader:
         """Return the facts that the user states, one for each topic."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
-        known = self.known
         denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
-        for said in self.seen.statements:
-            if not self._asserted(said):
-                refuted = said.hearsay and self._is_refuted(said)  # "they think I'm from Rome, but I'm not"
-                for link in self.links(said) if refuted else ():
-                    denied = link.topic
-                    gone.setdefault(denied, self.values(link))
-                continue
+        for said in filter(self._asserted, self.seen.statements):
             if ended := ended_by(self, said):
                 gone |= {topic: gone.get(topic, ()) + values for topic, values in ended.items()}
                 continue
@@ -91,22 +82,25 @@ class Reader:
                 over = (said.past and link.topic not in LASTING and not called) or (
                     link.topic == NAME and not self.words.isdisjoint({"was", "were"})
                 )
-                if self._denies(said, link.phrase) or (over and values and alike(values[0], known.get(link.topic, ()))):
+                known = self.known.get(link.topic, ())
+                if self._denies(said, link.phrase) or (over and values and among(values[0], known)):
                     if values or link.phrase is None or _ANY.match(link.phrase.text):
-                        meant = tuple(one for one in known.get(link.topic, ()) if alike(one, values))
-                        gone.setdefault(link.topic, meant or values)
+                        said_so = (*values, link.phrase.text if link.phrase else "")
+                        meant = tuple(one for one in known if among(one, said_so))
+                        if not meant or denied_by(self, said, link.phrase) or TOPICS[link.topic].kind == "name":
+                            gone.setdefault(link.topic, meant or values)
                 elif not over:
                     if values and _INSTEAD.search(self.tree.text):
                         told.pop(link.topic, None)
                     _add(told, link.topic, values)
-        for topic, values in itertools.chain(named_in(self), self._in_fragments()):
+        for topic, values in named_in(self):
             if topic not in gone and (topic != NAME or topic not in told):
                 _add(told, topic, values)
         if told and (found := _INSTEAD.search(self.tree.text)):  # "Ada here, no wait, it's Ida"
-            topic = [*told][-1]
-            if not re.match(r"\W*(?:i|it|my|we)\b", self.tree.text[found.end() :], re.IGNORECASE):
-                fixed = answer(self.tree.text[found.end() :], topic, self.seen)
-                told[topic] = fixed[0].values if fixed else told[topic]
+            topic, rest = [*told][-1], [word for word in self.tree.words if word.start >= found.end()]
+            if rest and not any(word.pos in ("VERB", "AUX") for word in rest):  # "I live in Bern. I mean Bonn."
+                fixed = self.fitting(topic, [next((word.text for word in rest if word.pos == "PROPN"), "")])
+                told[topic] = fixed or told[topic]
             for said in self.seen.statements:
                 later = said.verb == "be" and said.subject.text.lower() == "it"
                 if later and self.tree.text.find(said.object.text) > found.end():
@@ -119,28 +113,6 @@ class Reader:
                 gone[topic] = (*gone.get(topic, ()), *denied_now)
         struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
-
-    def _in_fragments(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the age and the origin that users tell without a verb: *23 years old and from Rome*, *Ada here, 23, from Rome*."""
-        if found := re.match(r"\W*(\d{1,3}) (?:years?|yrs) old\b", self.tree.text):
-            yield "age", self.fitting("age", [found[1]])
-        if self.seen.statements or not re.search(r"\bhere\b", self.tree.text):
-            return
-        yield (
-            "age",
-            self.fitting("age", [word.text for word in self.tree.words if word.tag == "CD" and word.text.isdecimal()]),
-        )
-        places = (word for word in self.tree.words if word.dep == "pobj" and self.tree.head(word).low == "from")
-        yield "origin", self.fitting("origin", [word.text for word in places])
-
-    def _is_refuted(self, said: nlp.Statement) -> bool:
-        """Return whether the user contradicts the words of others: *they think I'm from Rome, but I'm not*, *but it's Bari*."""
-        later = self.seen.statements[self.seen.statements.index(said) + 1 :]
-        short = any(
-            one.subject.person == "I" and one.negated and one.verb in ("do", "be", "have") and not one.object.text
-            for one in later
-        )
-        return short or any(one.subject.text.lower() == "it" and one.verb == "be" and one.object.text for one in later)
 
     def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
         """Return whether a negation covers a phrase.
@@ -388,12 +360,6 @@ class Reader:
         found = re.search(rf"(\w+) {re.escape(phrase.text)}(?!\w)", self.seen.text)
         labels = {entity.label for entity in self.seen.entities if phrase.text in entity.text} - {"PERSON", "ORG"}
         return bool(found and phrase.text.istitle() and not labels and found[1].lower() not in WORDS["determiners"])
-
-    def ended(self, said: nlp.Statement) -> str:
-        """Return the topic whose value a statement ends, such as *I quit my job*; empty if there is none."""
-        predicate = ("not " if said.negated else "") + predicate_of(said)
-        ended = ENDS.get(f"{predicate} {said.object.head or said.object.text.lower()}".strip(), "")
-        return ended if said.subject.person == "I" and not said.past else ""
 
     def relative(self, noun: str) -> str:
         """Return the topic of a relative, a friend or a pet; empty for other nouns."""

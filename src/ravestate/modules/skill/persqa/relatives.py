@@ -15,28 +15,6 @@ from .values import value_of
 if TYPE_CHECKING:
     from .reading import Reader
 
-_NAMING = frozenset(
-    [
-        "'s",
-        "'",
-        "s",
-        "name",
-        "names",
-        "is",
-        "are",
-        "called",
-        "named",
-        "by",
-        "goes",
-        "of",
-        "the",
-        ",",
-        "who",
-        "that",
-        ":",
-    ]
-)
-"""Words between a relative and their name: *my mother's name is Anna*."""
 _HERE = re.compile(
     r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
     re.IGNORECASE,
@@ -75,7 +53,9 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
         topic = NAME if own or me else reader.relative(word.lemma)
         if not topic or (topic != NAME and _is_anothers(reader, before, word)):
             continue
-        passed = [one.low for one in itertools.takewhile(lambda one: one.low in _NAMING, words[word.index + 1 :])]
+        passed = [
+            one.low for one in itertools.takewhile(lambda one: one.low in WORDS["naming"], words[word.index + 1 :])
+        ]
         first = words[word.index + 1 + len(passed) :][:1]
         if me and reader.words & {"mistake", "mistakenly", "wrongly"}:
             continue

@@ -80,10 +80,7 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all its statements.
-
-    In them, *he* means the person named last, and *my sister* the known sister, if there is only one.
-    """
+    """Return the free statements of an utterance, and all; *he* is the person named last, *my sister* the known one."""
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
@@ -115,10 +112,10 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         relatives = reader.known.get(reader.noun(said.subject), ()) if subject else ()
         if len(relatives) == 1 and not said.subject.names:
             subject = last = relatives[0]
-        with_user = any(
-            one.subject.person == "I" and one.triple[1:] == said.triple[1:] for one in reader.seen.statements
+        same = (
+            one for one in reader.seen.statements if one.subject.person == "I" and one.triple[1:] == said.triple[1:]
         )
-        subject = "" if with_user and said.subject.person != "I" else subject  # "my wife and I live in Rome"
+        subject = "" if said.subject.person != "I" and any(same) else subject  # "my wife and I live in Rome"
         one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
         heard.append(one)
         if subject and (not he or last in [one.who for one in heard[:-1]]) and _is_worth_keeping(reader, said):
@@ -190,20 +187,13 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
     if _DEICTIC.match(said.object.text) or is_former(said.subject.text) or (said.verb == "be" and not said.object.text):
         return False
-    if (
-        ended_by(reader, said)
-        or any(renamed_in(reader, said))
-        or _is_momentary(reader, said)
-    ):
+    if ended_by(reader, said) or any(renamed_in(reader, said)) or _is_momentary(reader, said):
         return False
-    if (
-        (
-            said.verb in WORDS["passing"]
-            and not (called or _gained(reader, said) or _noted(reader, said) or _is_there(said))
-        )
-        or " to " in said.triple.predicate
-        or said.object.person != "other"
-    ):
+    there = (
+        said.subject.person == "other" and said.verb in ("come", "go") and said.object.names
+    )  # "Inga comes from Peru"
+    kept = called or there or _gained(reader, said) or _noted(reader, said)
+    if (said.verb in WORDS["passing"] and not kept) or " to " in said.triple.predicate or said.object.person != "other":
         return False
     return isinstance(said.triple.object, str) and (said.holds or _happened(reader, said))
 
@@ -218,11 +208,6 @@ def _is_momentary(reader: Reader, said: nlp.Statement) -> bool:
         return True
     now = NOW & set(said.when.lower().split()) and verb.tag != "VBD"
     return bool(now or (verb.tag == "VBG" and aux and likeness(reader.span(said), "activity") < 0.1))
-
-
-def _is_there(said: nlp.Statement) -> bool:
-    """Return whether a statement says where somebody comes from or goes: *Inga comes from Iceland*."""
-    return said.subject.person == "other" and said.verb in ("come", "go") and bool(said.object.names)
 
 
 def _gained(reader: Reader, said: nlp.Statement) -> bool:
@@ -244,14 +229,10 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
     """Return whether a statement reports a past event: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
-    return (
-        not flags
-        and verb is not None
-        and said.verb not in WORDS["states"] | WORDS["pastimes"]
-        and (
-            verb.tag == "VBD"
-            or (verb.tag == "VBN" and any(aux.lemma == "have" for aux in reader.tree.children(verb, "aux")))
-        )
+    if flags or verb is None or said.verb in WORDS["states"] | WORDS["pastimes"]:
+        return False
+    return verb.tag == "VBD" or (
+        verb.tag == "VBN" and any(aux.lemma == "have" for aux in reader.tree.children(verb, "aux"))
     )
 
 

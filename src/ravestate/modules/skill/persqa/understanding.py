@@ -14,7 +14,7 @@ from ravestate.modules import nlp
 
 from . import kinds
 from .answers import answer, correction, may_stand_alone, opening, self_asked, spelled_out
-from .changes import misheard
+from .changes import may_correct, misheard
 from .kinds import likeness
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
@@ -147,9 +147,8 @@ class _Hearing:
             facts = [*opening(self.text, topic, seen), *facts]
         facts = facts or self_asked(seen.text, seen)
         other = any(fact.topic == NAME and not self.is_name(fact.values) for fact in facts if not fact.gone)
-        denied = (
-            any(fact.topic == NAME and fact.gone and self.is_name(fact.values) for fact in facts) or self.denies_name()
-        )
+        gone = any(fact.topic == NAME and fact.gone and self.is_name(fact.values) for fact in facts)
+        denied = gone or self.denies_name()
         if denied and not other:  # "I'm not Ada, I'm Ida" tells another name
             return Meaning("mistaken")
         names = {value for fact in facts for value in fact.values if fact.topic == NAME}
@@ -177,8 +176,7 @@ class _Hearing:
             name = value_of(named[1], TOPICS[NAME], seen, sure=False) if named and not self.known.get(NAME) else None
             if name:
                 return Meaning("told", (Fact(NAME, (name,)),), topic, self.leave, aloud=False)
-            before = _before_question(self.text) if asks and self.waits else ""
-            side = answer(before, topic, seen) if before else []
+            side = opening(self.text, topic, seen) if asks and self.waits else []
             mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
             if asks and not side and not seen.advised and "ask_own" in self.acts and any(mine):
                 return Meaning("asked", (Fact(""),))
@@ -211,9 +209,8 @@ class _Hearing:
     def corrected(self) -> Meaning | None:
         """Return the correction of the fact that the user told last."""
         topic, explicit = self.talk.correctable, self.pending is not None
-        latest = self.talk.latest
-        facts = topic and correction(self.text, topic, latest, self.seen, explicit=explicit)
-        facts = facts or (topic and misheard(self.text, topic, latest, self.seen))
+        said = (self.text, topic, self.talk.latest, self.seen)
+        facts = topic and may_correct(self.seen, topic) and (correction(*said, explicit=explicit) or misheard(*said))
         return Meaning("corrected", tuple(facts), topic) if facts else None
 
     def answered(self) -> Meaning | None:
@@ -347,15 +344,3 @@ _DENIED = (
 )
 """A pattern of words that deny the name ``{0}``: *I am not Ada*, *Ada is not my name*."""
 _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
-
-
-def _before_question(text: str) -> str:
-    """Return the words of an utterance before its question: *hannover* in *hannover, and you?*."""
-    before, turned, _ = _TURNED.sub("\0", text.rstrip(" ?"), count=1).partition("\0")
-    return before.strip() if turned else ""
-
-
-_TURNED = re.compile(
-    r"[.;!…\n]+|,?\s(?=(?:and|what about|how about) (?:you|yours)\b|(?:what's|what is|where|who|what) (?:yours|about you|are you)\b)",
-    re.IGNORECASE,
-)

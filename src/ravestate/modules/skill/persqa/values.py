@@ -152,14 +152,6 @@ def is_gerund(text: str) -> bool:
     return bool(re.match(r"(?:\w+ )?\w{3,}ing\b", text)) and likeness(text, "activity") > -0.2
 
 
-def agent_noun(verb: str, thing: str, noun: str) -> str:
-    """Return the occupation of somebody by what they do: *tram driver* for *drive*, *trams*, *tram*."""
-    *before, last = thing.split()
-    one = noun if noun and last.lower().startswith(noun[:-1]) else last
-    ending = "r" if verb.endswith("e") else f"{verb[-1]}er" if re.search(r"^[^aeiou]*[aeiou][bdgmnpt]$", verb) else "er"
-    return " ".join([*before, one, f"{verb}{ending}"])
-
-
 def gerund(text: str, seen: nlp.Analysis) -> str:
     """Return a verb phrase in the form of a hobby: *reading books* for *read books*."""
     verbs = {word.low for word in seen.tree.words if word.pos in ("VERB", "AUX")}
