@@ -36,7 +36,7 @@ _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
 _PIECE = re.compile(
-    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|yours?)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
+    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you|yours)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
     re.IGNORECASE,
 )
 """The end of an answer before a clause."""
