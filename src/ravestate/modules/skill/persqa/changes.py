@@ -44,7 +44,7 @@ def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
         place = next((phrase for phrase in said.phrases if phrase.preposition in ("at", "with", "for")), None)
         employer = value_of(reader.written(place), TOPICS["employer"], reader.seen) if place else None
         return {"employer": (employer,)} if topic == "occupation" and employer else {topic: ()}
-    if _is_embedded(reader, said) or is_limited(reader, said):
+    if said.negated or _is_embedded(reader, said) or is_limited(reader, said):
         return {}
     predicate = predicate.removeprefix("have to ")
     first, _, second = predicate.partition(" ")
@@ -52,13 +52,10 @@ def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
         first if second.endswith("ing") else predicate,
         f"{predicate} {said.object.preposition or said.object.text}",
     }
-    over = (
-        said.negated and reader.words & {"more", "anymore", "longer"} and not said.object.text
-    )  # "I don't run any more"
     ended = {
         topic: tuple(value for value in values if _is_object(reader, said, topic, value))
         for topic, values in reader.known.items()
-        if (over if said.negated else verbs & WORDS.get(_ending(topic), frozenset()))
+        if verbs & WORDS.get(_ending(topic), frozenset())
     }
     return {topic: values for topic, values in ended.items() if values}
 
@@ -108,11 +105,11 @@ def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
     if said.verb not in WORDS["changing"] or new is None or said.negated or others:
         return None
     old = next((phrase.text for phrase in said.phrases if phrase.preposition == "from"), "-")
-    topics = [topic for topic in WORDS["changeable"] if any(same(old, value) for value in reader.known.get(topic, ()))]
+    topics = [topic for topic, values in reader.known.items() if any(same(old, value) for value in values)]
     noun = NOUNS.get(said.object.head, "") if said.object.of("I") else ""
     recent = reader.recent if reader.recent in WORDS["changeable"] and said.object == new else ""
     topic = next(iter(topics), noun or recent)
-    return Link(topic, new) if topic else None
+    return Link(topic, new) if topic in WORDS["changeable"] else None
 
 
 def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
