@@ -79,7 +79,7 @@ bench: setup ## measure speed against the peers and the floor
 
 .PHONY: quality
 quality: setup ## measure how well text is understood
-	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.blind quality.modules quality.language quality.skills quality.followups $(ARGS)
+	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.blind quality.modules quality.language quality.skills quality.told quality.followups $(ARGS)
 
 # ------------------------------------------------------------------------------------------- to work on it
 

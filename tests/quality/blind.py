@@ -119,7 +119,7 @@ def _replaced(fact: str, told: set[str]) -> bool:
     return fact.startswith("not ") and topic in told and (topic in SINGLE or topic.startswith("favourite "))
 
 
-def _same(label: str, seen: frozenset[str]) -> bool:
+def fits(label: str, seen: frozenset[str]) -> bool:
     """Return whether the facts are all that must be stored, and none that may not."""
     must, _ = _wanted(label)
     return _harmless(label, seen) and all(any(_fits(one, other) for other in seen) for one in must)
@@ -164,19 +164,28 @@ def _plain(words: str) -> str:
     return re.sub(r"^(?:an?|the|my|our|this) (?=\S)", "", words.strip())
 
 
-def measured_facts(name: str = "facts") -> list[Result]:
-    """Measure what is stored: all right, and nothing wrong in tricky sentences. `name` may be a development set."""
+def measured_facts(name: str = "facts", *, show: bool = False) -> list[Result]:
+    """Measure what is stored: all right, and nothing wrong in tricky sentences.
+
+    Args:
+        name: The set, which may be a development set.
+        show: Whether the results list the misses. The sentences of a blind set stay hidden.
+    """
     cases, tricky = facts((), name), facts(TRICKY, name)
     skills.prepare(text for text, _ in cases)
     seen = {text: stored(text) for text, _ in cases}
-    right = [text for text, label in cases if _same(label, seen[text])]
-    clean = [text for text, label in tricky if _harmless(label, seen[text])]
     told = [case for case in cases if case not in tricky]
-    kept = [text for text, label in told if _same(label, seen[text])]
+    wrong = [case for case in cases if not fits(case[1], seen[case[0]])]
+    harmed = [case for case in tricky if not _harmless(case[1], seen[case[0]])]
+
+    def result(of: str, what: str, among: list[tuple[str, str]], misses: list[tuple[str, str]]) -> Result:
+        lines = [f"{text!r}: {'; '.join(sorted(seen[text])) or NONE} instead of {label}" for text, label in misses]
+        return Result(of, len(among), {what: 1 - len(misses) / len(among)}, lines if show else [])
+
     return [
-        Result("facts", len(seen), {"right": len(right) / len(seen)}),
-        Result("facts, told", len(told), {"right": len(kept) / len(told)}),
-        Result("facts, tricky", len(tricky), {"nothing wrong": len(clean) / len(tricky)}),
+        result("facts", "right", cases, wrong),
+        result("facts, told", "right", told, [case for case in told if case in wrong]),
+        result("facts, tricky", "nothing wrong", tricky, harmed),
     ]
 
 

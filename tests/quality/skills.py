@@ -52,16 +52,19 @@ def situation_in(sentence: str) -> tuple[tuple[Any, Any, Any], str]:
     return (what, topic, value), text
 
 
+def talk_before(sentence: str) -> tuple[str, Talk, dict[str, tuple[str, ...]]]:
+    """Return a sentence without its situation, the talk before it, and the known facts: ``[knows home=Ulm; age=36] ...``."""
+    (what, topic, value), text = situation_in(sentence)
+    if not what or what == "asked":
+        return text, Talk().asking(topic, 0.0).speaking() if what else Talk(), {}
+    pairs = (one.strip().split("=") for one in f"{topic}={value}".split(";"))
+    known = {one: (had,) for one, had in pairs}
+    return text, Talk().learning([topic], topic, known[topic]) if what == "told" else Talk(), known
+
+
 def meaning_of(sentence: str) -> Meaning:
     """Return what the user tells or asks about themselves, in the situation in brackets."""
-    (what, topic, value), text = situation_in(sentence)
-    talk, known = Talk(), dict[str, tuple[str, ...]]()
-    if what == "asked":
-        talk = talk.asking(topic, 0.0).speaking()
-    elif what:
-        known = {topic: (value,)}
-    if what == "told":
-        talk = talk.learning([topic], topic, (value,))
+    text, talk, known = talk_before(sentence)
     _load()
     return understand(_seen(text), talk, known, now=1.0, within=90.0)
 
@@ -79,7 +82,7 @@ def persqa_facts(sentence: str) -> str:
 
 @cache
 def _load() -> None:
-    for name in MATCHERS:
+    for name in (*MATCHERS, "answers"):
         bundled_matcher(name).load()
     kinds.load()
 

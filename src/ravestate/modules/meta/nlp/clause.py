@@ -152,7 +152,7 @@ class Clause:
             return None
         if head is not None and self.verb.dep == "conj" and first.low.endswith(("ed", "en")):  # as in "born and raised"
             return head.passive
-        return _BE if first.low in ("born", "raised") and head is None else None  # as in "born in Rome"
+        return _BE if first.low in ("born", "raised") and (head is None or self.verb.dep == "advcl") else None
 
     @property
     def requests(self) -> bool:
@@ -458,10 +458,10 @@ class Clause:
         return adjective and not beside and (lemma_of(verb) == "be" or word.dep != "dobj")
 
     def _denies_conjunct(self, negation: Word) -> bool:
-        """Return whether a *not* denies one conjunct alone, and not the verb: *tea, but not coffee*."""
+        """Return whether a *not* denies one conjunct alone, and not the verb: *tea, but not coffee*; *a dog, not a cat*."""
         after = self.tree.after(negation)
         for word in () if after is None else (after, *self.tree.ancestors(after)):
-            if word.dep == "conj" and word.index not in self._clauses:
+            if word.dep in ("conj", "appos") and word.index not in self._clauses:
                 return self.tree.subtree(word)[0] in (after, negation)
         return False
 

@@ -136,7 +136,7 @@ def _belongs(tree: Tree, child: Word, head: Word) -> bool:
     if child.low in DETERMINERS and child.dep not in ("pobj", "pcomp"):
         return (child.low, head.low) in _PRONOUNS
     after = child.dep == "amod" and child.index > head.index  # as in "are cats nice"
-    return child.dep in _KEPT and child.pos != "ADV" and not after
+    return child.dep in _KEPT and (child.pos != "ADV" or child.dep == "pobj") and not after
 
 
 def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:

@@ -14,7 +14,7 @@ from typing import Any
 from ravestate.errors import PlatformError
 from ravestate.language.entity import Entity
 from ravestate.language.heap import keep_few_heaps, note_load
-from ravestate.language.lexicon import load_lexicon
+from ravestate.language.lexicon import load_lexicon, loaded_lexicon
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
 
@@ -187,15 +187,24 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
 
 
 def _with_names(words: list[Word]) -> list[Word]:
-    """Tag nouns with a capital inside a sentence as names, unless most words have a capital."""
+    """Tag nouns as names: with a capital inside a sentence, unless most words have one; at its start, if no word is so written."""
     capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
-    if 2 * sum(capital) > len(words):
-        return words
+    inside = 2 * sum(capital) <= len(words)
     starts = {0, *(word.index + 1 for word in words if word.pos == "PUNCT")}
     return [
-        replace(word, pos="PROPN", tag="NNP") if up and word.tag == "NN" and word.index not in starts else word
+        replace(word, pos="PROPN", tag="NNP")
+        if word.tag == "NN" and ((up and inside) if word.index not in starts else _is_name(word))
+        else word
         for word, up in zip(words, capital, strict=True)
     ]
+
+
+def _is_name(word: Word) -> bool:
+    """Return whether a subject at the start of a sentence can only be a name: *Greta plays the harp*."""
+    lexicon = loaded_lexicon()
+    if lexicon is None or word.dep not in ("nsubj", "nsubjpass") or not word.text.isalpha():
+        return False
+    return lexicon.name(word.low) != word.low or (word.text[0].isupper() and lexicon.rare(word.low))
 
 
 def _without_stop(text: str) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-READ_AS = {"have": "like", "stay": "live", "stays": "live"}
-"""Replaced lemmas. In short sentences, the small pipelines often mistake *like* for a preposition, and *lives* for a noun;
-they handle *have* and *stays* correctly."""
+READ_AS = {"have": "like", "stay": "live", "stays": "live", "teaches": "study"}
+"""Replaced lemmas. In short sentences, the small pipelines often mistake *like* for a preposition, and *lives* and *studies*
+for nouns; they handle *have*, *stays* and *teaches* correctly."""
 
 # Control characters, and surrogates, which cannot be encoded.
 _UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")
@@ -26,6 +26,10 @@ _LIVES = re.compile(
     r"here|there|alone|on|abroad|together|next)\b)",
     re.IGNORECASE,
 )
+_STUDIES = re.compile(
+    r"(?<!\bmy )(?<!\bour )(?<!\bhis )(?<!\bher )(?<!\btheir )(?<!\byour )(?<!\bthe )(?<!\bof )(?<!\bfor )(?<!\bcase )"
+    r"(?<=[a-z] )studies(?= (?!(?:are|were|have|show|suggest|say|find|and|on|of|is|was)\b)\w)"
+)
 
 
 def preprocess(text: str) -> str:
@@ -39,4 +43,5 @@ def preprocess(text: str) -> str:
     for found in _LIKES.finditer(copy):
         start, end = found.span(found.lastgroup or 0)
         copy = copy[:start] + "have" + copy[end:]
+    copy = _STUDIES.sub("teaches", copy)
     return _LIVES.sub(lambda found: "stays" if found[0].lower() == "lives" else "stay", copy)

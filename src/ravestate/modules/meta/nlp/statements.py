@@ -34,7 +34,12 @@ _WANTED = word_set("want wan hope plan intend wish dream decide aim like love ne
 _IMMINENT = word_set("move leave retire")
 _PONDERED = word_set("think consider dream talk plan")
 _DOUBTS = word_set("maybe perhaps possibly probably")
+_MISSED = word_set("almost nearly")
+"""Adverbs of an event that did not happen: *I almost moved to Rome*, but not *I am almost ready*."""
 _REPORTS = word_set("apparently supposedly allegedly reportedly according")
+_REPORTING = word_set(
+    "say tell think claim believe write insist reckon report swear announce suspect guess assume mention"
+)
 _UNREAL = word_set("would 'd could might may should")
 _CONDITIONS = word_set("if unless whether")
 _SOON = word_set("tomorrow next soon tonight later")
@@ -122,8 +127,10 @@ class _Assertion:
         said = self._above._clause
         if self._clause.verb.dep in ("ccomp", "parataxis") and not self._given:
             speakers = [word for word in said.own_subjects if word.low not in ("it", "that", "this", "what")]
+            before = self._tree.before(self._tree.subtree(self._clause.verb)[0])
+            apart = before is not None and before.low == "," and said.lemma not in _REPORTING
             if any(person_of(word) != "I" for word in speakers):
-                return said.lemma != "be"
+                return said.lemma not in ("be", "call", "name") and not apart
             if said.lemma in ("hear", "read") or (said.lemma in ("say", "tell") and (said.negated or said.passive)):
                 return True
         return self._sharing is not None and self._sharing._hearsay
@@ -135,6 +142,9 @@ class _Assertion:
         if self._low & _DOUBTS or any(word.low in _CONDITIONS and word.dep in ("mark", "advmod") for word in own):
             return True
         if any(word.low in _UNREAL and word.dep == "aux" for word in own) and not self._wished:
+            return True
+        events = [verb for verb in self._clause.verbs if verb.tag in ("VBD", "VBN") and lemma_of(verb) != "be"]
+        if any(word.low in _MISSED for word in self._tree.children_of(events, "advmod")):
             return True
         conditions = self._tree.children(self._clause.verb, "advcl")
         if any(word.low in ("if", "unless") for word in self._tree.children_of(conditions, "mark")):
@@ -173,7 +183,8 @@ class _Assertion:
         lemma, first = lemma_of(self._clause.chain[-1]), self._clause.chain[0]
         if first.low == "used" and len(self._clause.chain) > 1:
             return True
-        if self._clause.passive is not None or lemma not in _LASTING:
+        begins = len(self._clause.chain) > 1 and lemma_of(first) in ("start", "begin")
+        if self._clause.passive is not None or lemma not in _LASTING or begins:
             return False
         if self._tense == "past":
             return not (lemma in _HABITS and self._when)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection
 
+from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from .kinds import is_remark, likeness
-from .topics import TOPICS, WORDS, Fact, Topic
+from .topics import NOUNS, TOPICS, WORDS, Fact, Topic, favourite
 from .values import value_of
 
 
@@ -23,7 +24,9 @@ def _before(name: str) -> re.Pattern[str]:
 
 _OPENERS, _CORRECTIONS = _before("openers"), _before("corrections")
 _PREPOSITIONS = re.compile(
-    r"^(?:(?:in|from|near|at|out of|for|with|as|of|to|(?:the )?(?:city|town|village) of)\s+)+", re.IGNORECASE
+    r"^(?:(?:in|on|from|near|at|out of|for|with|as|of|to|outside|around|"
+    r"(?:the )?(?:city|town|village|outskirts|suburbs?|edge|centre|center|north|south|east|west) of)\s+)+",
+    re.IGNORECASE,
 )
 _LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 _END = re.compile(rf"[.;:!?…\n()\"]|\s(?:{_any('closers')}|(?:and )?(?:what about|how about|and) you)\b", re.IGNORECASE)
@@ -32,6 +35,13 @@ _ONE = (re.compile(","), re.compile(r",| and\b"))
 _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
 )
+_PIECE = re.compile(
+    r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you|yours)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
+    re.IGNORECASE,
+)
+"""The end of an answer before a clause."""
+_CALL = re.compile(_PIECE.pattern.replace("|why|what|how|where|who", ""), re.IGNORECASE)
+"""As before, but for a name, which may also call the agent: *Tom, where are you?*."""
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
 """Kinds of values that leave out a place after them: in *teacher at a school*, the value is *teacher*."""
@@ -62,6 +72,8 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     if where and about.kind in ("name", "people") and any(one.label in ("DATE", "TIME") for one in seen.entities):
         return []  # "exam on Monday"
     found = tuple(_values(rest[: where.start()] if where else rest, about, seen))
+    if where and about.kind == "work" and rest[: where.start()].endswith("ing"):
+        return []  # "looking for work"
     facts = [Fact(topic, found)] if found else []
     beside = next((one for one in TOPICS.values() if one.only_with == topic), None)
     if facts and where and beside and (place := value_of(where[1], beside, seen)):
@@ -86,6 +98,37 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
             break  # nothing after such a piece is a value
         found.append(value)
     return found
+
+
+def self_asked(text: str, seen: nlp.Analysis) -> list[Fact]:
+    """Return the fact that users ask themselves for, and answer: *my hobby? Chess.*."""
+    found = re.match(r"my (?:\w+ )??((?:favou?rite )?(\w+))\? +(?=\S)", text, re.IGNORECASE)
+    topic = found and (favourite(found[1]) if " " in found[1] else NOUNS.get(found[2].lower(), ""))
+    return answer(text[found.end() :], topic, seen) if found and topic else []
+
+
+def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
+    """Return the answer in the words before the first clause: *hiking! And I'm in a club*; empty if there is none.
+
+    If a clause follows that only points (*at the moment that is Porto*), its object is the answer.
+    """
+    ends = _CALL if topic == "name" else _PIECE
+    pieces = [piece for piece in ends.split(text) if piece.strip(" ,.")]
+    finite = {word.low for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD")}
+    for piece in pieces[:2] if len(pieces) > 1 else ():
+        if finite & set(re.findall(r"[\w']+", spelled_out(piece.lower()))):
+            break
+        if any(plain(piece) == plain(act.text) for act in seen.acts.values()):
+            continue  # "Good evening. I'm Ada."
+        if facts := answer(piece, topic, seen):
+            return facts
+    for said in seen.statements:
+        if TOPICS[topic].kind == "name" and said.holds and said.subject.names and said.verb in ("be", "do"):
+            return answer(said.subject.text, topic, seen)  # "just Fenna is fine"
+        if said.holds and said.verb == "be" and said.subject.text.lower() in ("it", "that") and said.object.text:
+            owned = said.object.owner is not None or said.object.preposition or topic == "age"
+            return [] if owned else answer(said.object.text, topic, seen)
+    return []
 
 
 def correction(
@@ -129,5 +172,7 @@ def _may_answer(said: nlp.Statement) -> bool:
     if said.subject.person == "I":
         thinks = f"I {said.verb}" in WORDS["openers"]
         return thinks or (not said.plan and said.verb in ("be", *WORDS["likes"], *WORDS["pastimes"]))
-    pronouns = ("", "it", "that", "this", "they", "these", "those", "he", "she")
+    pronouns = ("", "they", "these", "those", "he", "she")
+    if said.subject.text.lower() in ("it", "that", "this"):
+        return said.verb in ("be", "call", "name")  # not "it is raining"
     return said.subject.text.lower() in pronouns or said.subject.owner is not None

@@ -16,7 +16,7 @@ from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
 from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .topics import NAME, TOPICS, Fact, in_order
-from .understanding import EVERYTHING, Meaning
+from .understanding import EVERYTHING, Meaning, is_idle
 from .wording import among, clauses, joined, learned, memorable, same, say, stating, without
 
 T = TypeVar("T")
@@ -152,6 +152,9 @@ async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: flo
 
 
 def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random, *, confirm: bool) -> Response:
+    meaning = _without_idle(meaning, user)
+    if not meaning.facts and not meaning.free:
+        return Response(None, user)
     name = next((fact.values[0] for fact in meaning.facts if fact.topic == NAME and not fact.gone), None)
     before = user
     news = learn(user.facts, meaning.facts, user.talk.latest if meaning.kind == "corrected" else ())
@@ -178,6 +181,17 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
         return Response(_of_facts(meaning, news, before, after), after)
 
     return Response(None, user, write)
+
+
+def _without_idle(meaning: Meaning, user: Acquaintance) -> Meaning:
+    """Keep denials that change no fact as free statements: *you are not from Spain*."""
+    idle = [fact for fact in meaning.facts if is_idle(fact, user.known)]
+    values = [value.lower() for fact in idle for value in fact.values]
+    denials = [
+        one for one in meaning.said if one.verb.startswith("not ") and any(v in one.text.lower() for v in values)
+    ]
+    facts = tuple(fact for fact in meaning.facts if fact not in idle)
+    return replace(meaning, facts=facts, free=(*meaning.free, *denials)) if idle else meaning
 
 
 async def _written(

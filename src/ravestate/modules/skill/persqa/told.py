@@ -14,8 +14,11 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.tree import SUBJECTS
 
 from .answers import spelled_out
+from .changes import ended_by, renamed_in
 from .kinds import likeness
-from .reading import Reader, is_former
+from .links import NOW
+from .reading import Reader
+from .relatives import is_former, named_in
 from .topics import NAME, NOUNS, TOPICS, WORDS
 from .values import value_of
 from .wording import Facts
@@ -48,7 +51,7 @@ _ADVICE = re.compile(
 )
 """Questions for advice or an opinion, not for memories."""
 _LABEL = re.compile(r"^be (?:called|named)$")
-_DEICTIC = re.compile(r"(?:this|that|these|those|it|here|there)\b", re.IGNORECASE)
+_DEICTIC = re.compile(r"(?:(?:this|that|these|those|it|here|there)\b|(?:him|her|them)$)", re.IGNORECASE)
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
 
 
@@ -77,11 +80,11 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all its statements. In them, *he* means the person named last."""
+    """Return the free statements of an utterance, and all; *he* is the person named last, *my sister* the known one."""
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
-    named = {topic: values[0] for topic, values in reader.named() if values}
+    named = {topic: values[0] for topic, values in named_in(reader) if values}
     for said in reader.seen.statements:
         he = said.subject.text.lower() in ("he", "she", "they") and not _LABEL.search(said.triple.predicate)
         subject = last if he else _about(reader, said)
@@ -106,6 +109,13 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         thing = said.object.text  # "a parrot called Coco"
         if said.object.head and said.object.names and not reader.noun(said.object):
             thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)
+        relatives = reader.known.get(reader.noun(said.subject), ()) if subject else ()
+        if len(relatives) == 1 and not said.subject.names:
+            subject = last = relatives[0]
+        same = (
+            one for one in reader.seen.statements if one.subject.person == "I" and one.triple[1:] == said.triple[1:]
+        )
+        subject = "" if said.subject.person != "I" and any(same) else subject  # "my wife and I live in Rome"
         one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
         heard.append(one)
         if subject and (not he or last in [one.who for one in heard[:-1]]) and _is_worth_keeping(reader, said):
@@ -175,15 +185,29 @@ def _stems(text: str) -> set[str]:
 
 def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
-    if _DEICTIC.match(said.object.text) or is_former(said.subject.text):
+    if _DEICTIC.match(said.object.text) or is_former(said.subject.text) or (said.verb == "be" and not said.object.text):
         return False
-    if (
-        (said.verb in WORDS["passing"] and not (called or _gained(reader, said) or _noted(reader, said)))
-        or " to " in said.triple.predicate
-        or said.object.person != "other"
-    ):
+    if ended_by(reader, said) or any(renamed_in(reader, said)) or _is_momentary(reader, said):
         return False
-    return isinstance(said.triple.object, str) and not reader.ended(said) and (said.holds or _happened(reader, said))
+    there = (
+        said.subject.person == "other" and said.verb in ("come", "go") and said.object.names
+    )  # "Inga comes from Peru"
+    kept = called or there or _gained(reader, said) or _noted(reader, said)
+    if (said.verb in WORDS["passing"] and not kept) or " to " in said.triple.predicate or said.object.person != "other":
+        return False
+    return isinstance(said.triple.object, str) and (said.holds or _happened(reader, said))
+
+
+def _is_momentary(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether the user is doing something at the moment: *I'm visiting my aunt*, but not *I'm learning Greek*."""
+    verb = reader.verb(said)
+    if said.subject.person != "I" or verb is None or said.verb == "be":
+        return False
+    aux = any(word.lemma == "be" or word.low == "'m" for word in reader.tree.children(verb, "aux"))
+    if verb.dep == "advcl" and said.verb not in WORDS["states"] and {"since", "when", "until", "while"} & reader.words:
+        return True
+    now = NOW & set(said.when.lower().split()) and verb.tag != "VBD"
+    return bool(now or (verb.tag == "VBG" and aux and likeness(reader.span(said), "activity") < 0.1))
 
 
 def _gained(reader: Reader, said: nlp.Statement) -> bool:
@@ -205,7 +229,11 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
     """Return whether a statement reports a past event: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
-    return not flags and verb is not None and verb.tag == "VBD" and said.verb not in WORDS["states"] | WORDS["pastimes"]
+    if flags or verb is None or said.verb in WORDS["states"] | WORDS["pastimes"]:
+        return False
+    return verb.tag == "VBD" or (
+        verb.tag == "VBN" and any(aux.lemma == "have" for aux in reader.tree.children(verb, "aux"))
+    )
 
 
 def _about(reader: Reader, said: nlp.Statement) -> str:
@@ -224,6 +252,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
             fits = fits and likeness(object.text, "trait") > 0.1
         elif said.verb in ("have", "get", "own"):
             fits = fits and _gained(reader, said)
+        fits = fits and not (object.names and reader.relative(object.head))  # "a cat called Luna"
         return "I" if spoken and fits and not any(map(reader.values, reader.links(said))) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
@@ -234,6 +263,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     number = {"CARDINAL", "QUANTITY"} & {entity.label for entity in reader.seen.entities if object.text in entity.text}
     dated = said.verb == "be" and (said.when or (object.text and number))  # "my birthday is in May"
     thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # "my car is new"
+    if words and any(map(reader.values, reader.links(said))):
+        return ""
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)

@@ -13,9 +13,12 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from . import kinds
-from .answers import answer, correction, may_stand_alone, spelled_out
+from .answers import answer, correction, may_stand_alone, opening, self_asked, spelled_out
+from .changes import may_correct, misheard
+from .kinds import likeness
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
+from .relatives import remaining_name
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
 from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
@@ -96,7 +99,7 @@ class _Hearing:
         self.topic = self.pending.topic if self.pending else ""
         self.waits = is_topic(self.topic)
         asked = talk.doubt if self.topic == CONFIRM else self.topic if self.waits else ""
-        self.reader = Reader(seen, asked, talk.person)
+        self.reader = Reader(seen, asked, talk.person, known, talk.correctable or asked)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
@@ -137,20 +140,33 @@ class _Hearing:
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
             if inquiry:
                 return inquiry
-        facts = self.reader.facts(self.known)
+        facts = self.reader.facts()
         told = {fact.topic for fact in facts if not fact.gone}
         facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
+        if self.waits and topic not in told and "nothing" not in self.acts and not self.reader.denies_all:
+            facts = [*opening(self.text, topic, seen), *facts]
+        facts = facts or self_asked(seen.text, seen)
         other = any(fact.topic == NAME and not self.is_name(fact.values) for fact in facts if not fact.gone)
-        denied = any(fact.topic == NAME and fact.gone for fact in facts) or self.denies_name()
+        gone = any(fact.topic == NAME and fact.gone and self.is_name(fact.values) for fact in facts)
+        denied = gone or self.denies_name()
         if denied and not other:  # "I'm not Ada, I'm Ida" tells another name
             return Meaning("mistaken")
-        free = tuple(told_in(self.reader, self.talk.said)[0])
+        names = {value for fact in facts for value in fact.values if fact.topic == NAME}
+        free = tuple(one for one in told_in(self.reader, self.talk.said)[0] if one.subject not in names)
         aside = self.leave or asks
+        if not free and facts and all(is_idle(fact, self.known) for fact in facts):
+            other = self.otherwise(aside)
+            return other if other.kind != "nothing" else Meaning("told", tuple(facts), topic, self.leave, aloud=False)
         if facts or free:
             aloud = any(
                 fact.gone or fact.topic == NAME or not self.sorry for fact in facts
             )  # another module comforts a sad user
             return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
+        return self.otherwise(aside)
+
+    def otherwise(self, aside: bool) -> Meaning:
+        """Return the meaning of an utterance that tells nothing in a sentence; `aside` if it asks, or says goodbye."""
+        seen, topic, asks = self.seen, self.topic, self.seen.question is not None
         if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
             return corrected
         if identity := self.identity():
@@ -160,8 +176,7 @@ class _Hearing:
             name = value_of(named[1], TOPICS[NAME], seen, sure=False) if named and not self.known.get(NAME) else None
             if name:
                 return Meaning("told", (Fact(NAME, (name,)),), topic, self.leave, aloud=False)
-            before = _before_question(self.text) if asks and self.waits else ""
-            side = answer(before, topic, seen) if before else []
+            side = opening(self.text, topic, seen) if asks and self.waits else []
             mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
             if asks and not side and not seen.advised and "ask_own" in self.acts and any(mine):
                 return Meaning("asked", (Fact(""),))
@@ -194,7 +209,8 @@ class _Hearing:
     def corrected(self) -> Meaning | None:
         """Return the correction of the fact that the user told last."""
         topic, explicit = self.talk.correctable, self.pending is not None
-        facts = correction(self.text, topic, self.talk.latest, self.seen, explicit=explicit) if topic else ()
+        said = (self.text, topic, self.talk.latest, self.seen)
+        facts = topic and may_correct(self.seen, topic) and (correction(*said, explicit=explicit) or misheard(*said))
         return Meaning("corrected", tuple(facts), topic) if facts else None
 
     def answered(self) -> Meaning | None:
@@ -210,7 +226,8 @@ class _Hearing:
         )  # "no, from Bremen"
         loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
         values = [value for fact in facts or () for value in fact.values]
-        clear = not loose and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
+        activity = TOPICS[topic].kind == "activity" and all(likeness(value, "activity") > 0.2 for value in values)
+        clear = (not loose or activity) and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
         if (
             facts
             and may_stand_alone(seen, clear=clear)
@@ -252,7 +269,7 @@ class _Hearing:
         match = self.seen.act("identify")
         if other or match is None or match.text.endswith("?"):  # "me?"
             return None
-        name = Reader(self.seen).remaining_name()
+        name = remaining_name(self.reader)
         known = not name or among(name, self.known.get(NAME, ()))
         return Meaning("identified" if known else "told", (Fact(NAME, (name,)),) if name else ())
 
@@ -308,10 +325,15 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether to note a denial: it must deny a known fact, or all values of a topic (*I have no hobby*)."""
+        """Return whether to note a denial: it denies some values, or all values of a topic (*I have no hobby*)."""
         if fact.values or fact.topic == NAME:
-            return any(among(value, self.known.get(fact.topic, ())) for value in fact.values)
+            return bool(fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
+
+
+def is_idle(fact: Fact, known: Facts) -> bool:
+    """Return whether a denial changes no known fact: *I'm not from Spain*, if the agent thought so of no country."""
+    return fact.gone and bool(fact.values) and not any(among(one, known.get(fact.topic, ())) for one in fact.values)
 
 
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
@@ -322,15 +344,3 @@ _DENIED = (
 )
 """A pattern of words that deny the name ``{0}``: *I am not Ada*, *Ada is not my name*."""
 _INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)
-
-
-def _before_question(text: str) -> str:
-    """Return the words of an utterance before its question: *hannover* in *hannover, and you?*."""
-    before, turned, _ = _TURNED.sub("\0", text.rstrip(" ?"), count=1).partition("\0")
-    return before.strip() if turned else ""
-
-
-_TURNED = re.compile(
-    r"[.;!…\n]+|,?\s(?=(?:and|what about|how about) (?:you|yours)\b|(?:what's|what is|where|who|what) (?:yours|about you|are you)\b)",
-    re.IGNORECASE,
-)

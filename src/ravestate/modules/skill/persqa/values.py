@@ -120,6 +120,10 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
             return False  # "at work at six"
         case "organisation" if "ORG" in labels:
             return True
+        case "organisation" if sure and any(
+            entity.label in _PLACES and entity.text.lower() in text.lower() for entity in seen.entities
+        ):  # "study at Uppsala", "the city of Utrecht"
+            return True
         case "organisation" if _is_proper(text, seen) and "PERSON" not in labels:
             least = -0.6
         case "work" | "subject" if determined:
@@ -132,7 +136,9 @@ def _fits(text: str, determined: bool, topic: Topic, seen: nlp.Analysis, sure: b
 def _is_proper(text: str, seen: nlp.Analysis) -> bool:
     """Return whether the parser takes words for a name."""
     found = {word.text: word.pos for word in seen.tree.words}
-    return text[:1].isupper() and all(found.get(word, "PROPN") == "PROPN" for word in text.split())
+    return (text[:1].isupper() or text.capitalize() in seen.normal.text) and all(
+        found.get(word, "PROPN") == "PROPN" for word in text.split()
+    )
 
 
 def _trimmed(text: str) -> str:

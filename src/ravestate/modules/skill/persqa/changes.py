@@ -1,0 +1,187 @@
+"""Changes of known facts: the only place where an utterance ends a fact, or replaces its value by another.
+
+A change needs an owner and a role. The owner: the user is the subject, and nobody reports the statement. The role: the verb
+ends facts of this topic, and the value itself is its object. Without a role (*no, Bremen*, *Lora with an L*), the agent or
+the user must have mentioned the fact in the last utterances. Everything else leaves the facts alone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from difflib import SequenceMatcher
+from typing import TYPE_CHECKING
+
+from ravestate.modules import nlp
+from ravestate.modules.meta.nlp.phrase import Phrase
+
+from .links import NOW, Link, predicate_of
+from .topics import ENDS, NOUNS, TOPICS, WORDS, Fact
+from .values import gerund, number_in, value_of
+from .wording import same
+
+if TYPE_CHECKING:
+    from .reading import Reader
+
+_FIXED = re.compile(
+    r"\b(?:with (?:an? )?\w+$|actually|said|meant|mean|sp(?:elled|elt)|misspel\w+|wrong)\b", re.IGNORECASE
+)
+"""Words with which a user corrects the spelling or the sound of a value."""
+ALIKE = 0.6
+"""The least share of common letters of a value and the value for which it was mistaken: *Lora*, *Nora*."""
+
+
+def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
+    """Return the values by topic that a statement ends: *I gave up chess*, *I left the choir*, *Sven and I broke up*.
+
+    A topic without values ends as a whole: *I quit my job*.
+    """
+    if said.subject.person != "I":
+        return {}
+    predicate = predicate_of(said)
+    whole = f"{'not ' * said.negated}{predicate} {said.object.head or said.object.text.lower()}".strip()
+    if (topic := ENDS.get(whole)) and not said.past and not is_limited(reader, said):
+        place = next((phrase for phrase in said.phrases if phrase.preposition in ("at", "with", "for")), None)
+        employer = value_of(reader.written(place), TOPICS["employer"], reader.seen) if place else None
+        return {"employer": (employer,)} if topic == "occupation" and employer else {topic: ()}
+    if said.negated or _is_embedded(reader, said) or is_limited(reader, said):
+        return {}
+    predicate = predicate.removeprefix("have to ")
+    first, _, second = predicate.partition(" ")
+    verbs = {
+        first if second.endswith("ing") else predicate,
+        f"{predicate} {said.object.preposition or said.object.text}",
+    }
+    ended = {
+        topic: tuple(value for value in values if _is_object(reader, said, topic, value))
+        for topic, values in reader.known.items()
+        if verbs & WORDS.get(_ending(topic), frozenset())
+    }
+    return {topic: values for topic, values in ended.items() if values}
+
+
+def _ending(topic: str) -> str:
+    """Return the list of verbs that end facts of a topic."""
+    about = TOPICS[topic]
+    if about.relation == "partner_of" or about.type == "Animal":
+        return "ending_partner" if about.type == "Person" else "ending_pet"
+    return "ending_activity" if about.kind in ("activity", "thing", "subject") else f"ending_{about.kind}"
+
+
+def _is_embedded(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether a clause depends on another: *it's not like I left Bosch*."""
+    verb = reader.verb(said)
+    while verb is not None and verb.dep in ("xcomp", "conj"):
+        verb = reader.tree.head(verb)
+    return verb is None or verb.pos not in ("VERB", "AUX") or verb.dep in ("ccomp", "advcl", "relcl", "acl")
+
+
+def _is_object(reader: Reader, said: nlp.Statement, topic: str, value: str) -> bool:
+    """Return whether a value is all that a statement is about, apart from a time."""
+    others = [
+        phrase for phrase in (said.object, *said.phrases) if phrase.text and phrase.text not in f"divorced {said.when}"
+    ]
+    if TOPICS[topic].relation == "partner_of":
+        both = re.search(
+            rf"\b{re.escape(value)} and (?:i|me)\b|\b(?:i|me|we) and {re.escape(value)}\b",
+            reader.tree.text,
+            re.IGNORECASE,
+        )
+        return all(same(phrase.text, value) for phrase in others) and bool(both or others)
+    brief = any(entity.label == "TIME" for entity in reader.seen.entities)
+    if any(phrase.text != said.object.text for phrase in others) or (brief and said.verb == "leave"):
+        return False
+    things = (said.object.text, gerund(reader.span(said), reader.seen), gerund(said.verb, reader.seen))
+    last = value.split()[-len(said.object.text.split()) :]  # "the choir", if the value is "local choir"
+    return any(same(value, one) for one in things if one) or (last != [] and same(" ".join(last), said.object.text))
+
+
+def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
+    """Return the new value in *I switched from law to physics*, *I changed my major to physics*."""
+    new = next((phrase for phrase in said.phrases if phrase.preposition == "to"), None)
+    others = [
+        phrase for phrase in said.phrases if phrase.preposition not in ("from", "to") and phrase.text not in said.when
+    ]
+    if said.verb not in WORDS["changing"] or new is None or said.negated or others:
+        return None
+    old = next((phrase.text for phrase in said.phrases if phrase.preposition == "from"), "-")
+    topics = [topic for topic, values in reader.known.items() if any(same(old, value) for value in values)]
+    noun = NOUNS.get(said.object.head, "") if said.object.of("I") else ""
+    recent = reader.recent if reader.recent in WORDS["changeable"] and said.object == new else ""
+    topic = next(iter(topics), noun or recent)
+    return Link(topic, new) if topic in WORDS["changeable"] else None
+
+
+def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
+    """Yield the old topic, the new topic and the name of somebody known: *Felix is a dog*, if he was taken for a cat.
+
+    The new topic is empty if the user only denies the old topic: *Tom is my cousin, not a friend*."""
+    name, object = said.subject.text, said.object
+    new = reader.relative(object.head) if object.owner is None or object.of("I") else ""
+    for topic, values in reader.known.items() if said.verb == "be" and not said.negated else ():
+        if TOPICS[topic].kind != "people" or topic == new or not any(same(name, value) for value in values):
+            continue
+        nouns = "|".join(map(re.escape, TOPICS[topic].nouns))
+        denied = re.search(rf"\bnot (?:an?|my) (?:{nouns})\b(?! of)", reader.tree.text, re.IGNORECASE)
+        plain = object.text == object.head and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
+        if denied or plain:
+            yield topic, new, name
+
+
+def denied_by(reader: Reader, said: nlp.Statement, phrase: Phrase | None) -> bool:
+    """Return whether a denial holds for good: *I don't play chess any more*, but not *I don't play chess today*."""
+    others = [one.text for one in said.phrases if phrase and one != phrase and one.text not in said.when]
+    return not (others or is_limited(reader, said) or {"did", "didn't"} & reader.words)
+
+
+def is_limited(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether an adverb or a time limits a statement: *I don't live alone*, *I left early*, *not today*."""
+    verb = reader.verb(said)
+    kinds = ("advmod", "prt") if said.verb == "be" else ("advmod", "prt", "acomp")
+    adverbs = {word.low for word in reader.tree.children(verb, *kinds)} if verb else set[str]()
+    particles = {
+        *predicate_of(said).split(),
+        *WORDS["lasting"],
+        *(one.lower() for had in reader.known.values() for one in had),
+    }
+    return bool(adverbs - particles or (NOW - {"now"}) & set(said.when.lower().split()))
+
+
+def denied_beside(reader: Reader, topic: str, told: Collection[str]) -> tuple[str, ...]:
+    """Return the known values that a statement with another value of the topic denies: *Pia, not Mia, is my sister*."""
+    pattern = r"\bnot (?:(?:an?|the|in|from|at|for|my) )?{}\b"
+    return tuple(
+        value
+        for value in reader.known.get(topic, ())
+        if value not in told and re.search(pattern.format(re.escape(value)), reader.tree.text, re.IGNORECASE)
+    )
+
+
+def may_correct(seen: nlp.Analysis, topic: str) -> bool:
+    """Return whether an utterance is about a fact just mentioned: it only names, says or means something."""
+    finite = {word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD")}
+    pronouns = ("", "i", "it", "that", "this", "he", "she", "they")
+    for said in seen.statements if finite else ():
+        named = said.subject.text.lower() in pronouns or said.subject.head in (*TOPICS[topic].nouns, "name")
+        more = {one.preposition for one in said.phrases} - {"", "with", "in", "from", "at", "for", "as"}
+        if finite - WORDS["speaking"] or not named or more or said.question:
+            return False
+    return seen.question is None
+
+
+def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis) -> list[Fact]:
+    """Return the value that the user repeats more clearly, just after the agent understood `latest`: *Lora with an L*."""
+    if not _FIXED.search(text.rstrip(".!? ")):
+        return []
+    objects = [said.object.text for said in seen.statements if said.object.text]
+    for word in seen.tree.words:
+        near = any(0 < _distance(word.low, value.lower()) <= 1 - ALIKE for value in latest)
+        number = TOPICS[topic].kind == "number" and word.pos == "NUM" and number_in(word.low)
+        fits = (number or (near and word.pos in ("PROPN", "NOUN", "X"))) and objects in ([], [word.text])
+        if fits and (new := value_of(word.text, TOPICS[topic], seen)):
+            return [Fact(topic, (new,))]
+    return []
+
+
+def _distance(one: str, other: str) -> float:
+    return 1 - SequenceMatcher(None, one, other).ratio()

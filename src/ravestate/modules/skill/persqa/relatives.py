@@ -1,0 +1,123 @@
+"""The names that an utterance gives: of relatives, friends and pets, and of the user."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ravestate.modules.meta.nlp.tree import Tree, Word
+
+from .topics import NAME, TOPICS, WORDS
+from .values import value_of
+
+if TYPE_CHECKING:
+    from .reading import Reader
+
+_HERE = re.compile(
+    r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
+    re.IGNORECASE,
+)
+_NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
+_OWN = frozenset(["my", "our"])
+
+
+def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the relatives that the user names, with their names: *my sister Rosa*, *my mother's name is Anna*,
+    *a son named Ben*, *call me Tom*.
+
+    The parser often misses the second of two relatives, so this function reads the words one by one."""
+    unsaid: set[str] = set()
+    whole: list[tuple[str, tuple[str, ...]]] = []
+    for said in reader.seen.statements:
+        phrases = (said.subject, said.object, *said.phrases)
+        everyone = said.subject.text.lower() in ("everyone", "everybody", "people", "they", "friends")
+        allowed = said.verb == "call" and (said.subject.person == "you" or everyone)  # "you may call me Fitz"
+        open = (said.question or said.conditional or said.hearsay or said.plan) and not allowed
+        open = open or (said.past and not said.subject.names)
+        if open or (said.negated and said.verb == "call"):
+            unsaid |= {said.verb, *said.object.text.split(), *(phrase.head for phrase in phrases)}
+        for phrase in phrases if not open else ():
+            mine = (phrase.owner and phrase.owner.person == "I") or (reader.has(said) and not said.negated)
+            if phrase.names and mine and not is_former(phrase.text) and (topic := reader.relative(phrase.head)):
+                whole.append((topic, reader.fitting(topic, phrase.names)))
+    words = reader.tree.words
+    if here := _HERE.search(reader.tree.text):
+        sure = any(word.text == here[1] and word.pos == "PROPN" for word in words)
+        yield NAME, reader.fitting(NAME, [here[1]], sure=sure)
+    beside: dict[str, str] = {}
+    for before, word in itertools.pairwise(words):
+        own = (before.low, word.low) == ("my", "name")  # "my name's Tom"
+        me = before.lemma == "call" and before.tag != "VBD" and word.low == "me"
+        topic = NAME if own or me else reader.relative(word.lemma)
+        if not topic or (topic != NAME and _is_anothers(reader, before, word)):
+            continue
+        passed = [
+            one.low for one in itertools.takewhile(lambda one: one.low in WORDS["naming"], words[word.index + 1 :])
+        ]
+        first = words[word.index + 1 + len(passed) :][:1]
+        if me and reader.words & {"mistake", "mistakenly", "wrongly"}:
+            continue
+        if not first or unsaid & {word.lemma, before.lemma} or reader.denies_all:
+            continue
+        named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
+        if {one.pos for one in first} == {"PROPN"}:  # "my sister Rosa; a dog, Rex, and a cat, Misty"
+            named = named or (not passed and before.low in _OWN)
+            named = named or (passed == [","] and (word.tag == "NNS" or before.low in ("a", "an", *_OWN)))
+        if named and not is_former(f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"):
+            runs = (_run(reader, one) for one in (*first, *_joined(reader.tree, first[0])))
+            values = reader.fitting(topic, runs)
+            beside |= dict.fromkeys(values, topic)
+            yield topic, values
+    for topic, values in whole:
+        yield topic, tuple(value for value in values if beside.get(value, topic) == topic)
+
+
+def remaining_name(reader: Reader) -> str:
+    """Return the name in an utterance that only says who speaks: *it's me, Marlene*; empty if there is none."""
+    runs = (value_of(_run(reader, word), TOPICS[NAME], reader.seen, sure=False) for word in reader.tree.words)
+    return next(filter(None, runs), "")
+
+
+def is_former(words: str) -> bool:
+    """Return whether words are about somebody or something that is not the user's now: *my ex wife*."""
+    return bool(WORDS["former"] & set(re.split(r"\W", words.lower())))
+
+
+def owner_before(word: Word, tree: Tree) -> Word | None:
+    """Return the person before a noun, to whom it belongs: *friend*, in *my friend's cat*, *my friends cat*."""
+    for owner in tree.children(word, "poss", "compound"):
+        if owner.pos in ("NOUN", "PROPN") and (owner.dep == "poss" or owner.tag == "NNS"):
+            return owner
+    return None
+
+
+def _is_anothers(reader: Reader, before: Word, word: Word) -> bool:
+    """Return whether a relative is somebody else's: *he's got a new girlfriend called Tamara*, *my brother's wife*."""
+    if owner_before(word, reader.tree) or before.low in ("'s", "'", "his", "her", "their", "your"):
+        return True
+    if any(child.low in _OWN for child in reader.tree.children(word, "poss")):
+        return False
+    having = [said for said in reader.seen.statements if said.object.head == word.lemma]
+    return any(said.subject.person == "other" and said.subject.text.lower() != "it" for said in having)
+
+
+def _joined(tree: Tree, word: Word) -> Iterator[Word]:
+    """Yield the names that *and* joins to a name."""
+    for other in tree.children(word, "conj"):
+        if other.pos in _NOMINAL and not tree.children(other, "det", "poss", "nsubj"):
+            yield other
+            yield from _joined(tree, other)
+
+
+def _run(reader: Reader, word: Word) -> str:
+    """Return the name of one or more words that begins with `word`; empty if no name begins there."""
+    if word.pos not in (*_NOMINAL, "VERB"):
+        return ""
+    first = (child for child in reader.tree.children(word, "compound") if child.index < word.index)
+    run = [*(child for child in first if not reader.relative(child.lemma)), word]
+    while (after := reader.tree.after(word)) and after.pos == "PROPN" and after.start == word.end + 1:
+        run.append(after)
+        word = after
+    return " ".join(one.text for one in run)

@@ -1,0 +1,51 @@
+"""The development sets of facts that users tell, with the scores of the blind set, and the set of changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from quality import blind, skills
+from quality.measure import Result
+from ravestate.modules.skill.persqa.profile import learn
+from ravestate.modules.skill.persqa.topics import NAME
+
+SETS = ("told_rows", "told_blind_rows", "told_fresh_rows", "told_later_rows")
+
+
+def changes(sentence: str) -> frozenset[str]:
+    """Return what an utterance changes in the known facts: the values that are gone, and the new ones."""
+    _, talk, known = skills.talk_before(sentence)
+    meaning = skills.meaning_of(sentence)
+    if meaning.kind in ("strike", "forget", "mistaken"):
+        return frozenset([meaning.kind])
+    if meaning.kind not in ("told", "corrected"):
+        return frozenset()
+    facts = dict(learn(known, meaning.facts, talk.latest if meaning.kind == "corrected" else ()).facts)
+    for name in (fact for fact in meaning.facts if fact.topic == NAME):
+        facts[NAME] = () if name.gone else name.values
+    new = {f"{topic}={value}" for topic in facts for value in facts[topic] if value not in known.get(topic, ())}
+    kept = {topic for topic in known if facts.get(topic) and topic in blind.SINGLE}  # a new value replaces the old one
+    gone = {
+        f"not {topic}={old}" for topic in known.keys() - kept for old in known[topic] if old not in facts.get(topic, ())
+    }
+    return frozenset(one.lower() for one in new | gone)
+
+
+def measured_changes() -> list[Result]:
+    """Measure the utterances that leave all known facts alone, and the changes that are made rightly."""
+    cases = {kind: blind.facts((kind,), "../changes_rows") for kind in ("left", "changed")}
+    skills.prepare(text for rows in cases.values() for text, _ in rows)
+    found: list[Result] = []
+    for kind, rows in cases.items():
+        seen = {text: changes(text) for text, _ in rows}
+        wrong = [(text, label) for text, label in rows if not blind.fits(label, seen[text])]
+        misses = [f"{text!r}: {'; '.join(sorted(seen[text])) or '-'} instead of {label}" for text, label in wrong]
+        found.append(Result(f"changes, {kind}", len(rows), {"right": 1 - len(wrong) / len(rows)}, misses))
+    return found
+
+
+def results() -> Iterable[Result]:
+    """Measure the sets, and list their misses."""
+    yield from measured_changes()
+    for name in SETS:
+        yield from blind.measured_facts(f"../{name}", show=True)
