@@ -70,7 +70,7 @@ def test_a_journal_fed_to_a_fresh_engine_gives_the_same_effects(world: World) ->
 
 @given(worlds(), st.integers(0, 3))
 def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> None:
-    """The rule is added to a live engine. Utilities count rules (L9), so the test keeps the earlier ones."""
+    """The rule is added to a live engine. One more rule changes all utilities (L9), so the test restores them."""
     plain = Play(world)
     changed = Play(world)
     for _ in range(steps):
