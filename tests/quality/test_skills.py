@@ -19,7 +19,7 @@ def test_the_share_right_stays_above_the_floor(name: str) -> None:
     assert result.shares["right"] >= skills.FLOORS[name], misses
 
 
-def test_what_people_tell_is_stored_and_nothing_wrong() -> None:
+def test_told_facts_are_stored_and_nothing_wrong() -> None:
     _, told, tricky = blind.measured_facts("../told_rows")
     assert told.shares["right"] >= 0.86
     assert tricky.shares["nothing wrong"] >= 0.95
