@@ -22,7 +22,7 @@ class Entries:
         self.state = state
 
     def enter(self, spike: Spike, half: Half, before: int) -> None:
-        """Let a half hold a spike; `before` is the number just before those of the spike's activations."""
+        """Let a half hold a spike. The spike's activations get the numbers from `before` + 1 on."""
         state = self.state
         held = state.halves.get(half)
         if held is None:
