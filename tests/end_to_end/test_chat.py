@@ -392,7 +392,7 @@ async def test_on_a_phone_the_agents_name_is_not_cut(stage: Stage) -> None:
     async with Server(agent, inside="board/") as served, stage.open(served.address, **PHONE) as page:
         await expect(page.get_by_role("link", name="Look inside")).to_be_in_viewport(ratio=1)
         await expect(page.get_by_role("button", name="Leave")).to_be_in_viewport(ratio=1)
-        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # for those who hear the page
+        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # for screen readers
         name = page.get_by_role("heading", name="Ravestate")
         assert await name.evaluate("(name) => name.scrollWidth <= name.clientWidth")
 

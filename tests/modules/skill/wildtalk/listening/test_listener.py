@@ -240,7 +240,7 @@ def test_it_seldom_asks_three_times_in_a_row(begin: Callable[[int], Any]) -> Non
         talk = begin(seed)
         said = [talk.say(text).endswith("?") for text in PLAIN * 2]
         rows += sum(all(said[place : place + 3]) for place in range(len(said) - 2))
-    assert rows <= 9  # of 36 places; a question of the bank that suits comes before a general remark
+    assert rows <= 9  # of 36; the bank's questions come before general remarks
 
 
 def test_its_opinions_stay(begin: Callable[[int], Any]) -> None:
