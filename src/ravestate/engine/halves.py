@@ -116,9 +116,9 @@ class Halves:
     def share(self, policy: Policy) -> None:
         """Create the activations that `_pair` left out, for clauses whose signals are kin only under a new policy.
 
-        So far, an activation that lost a spike took the oldest live one, and so came to hold each pair in turn. From now
-        on, it may only take a spike of the same causal group (L12). An activation that was left out holds its first spike
-        and the next counterpart after it.
+        So far, an activation that lost a spike took the oldest live one, so the other activations could form the missing
+        pairs. From now on, it may only take a spike of the same causal group (L12). So each spike gets an activation of
+        its own, with the first counterpart that came later.
         """
         for activations in list(self.state.active.values()):
             clause = next(iter(activations)).clause
@@ -251,7 +251,7 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If the stand-by of a clause was under pressure, create the clause's activation, and put it under the same."""
+        """If the stand-by of a clause was under pressure, create the clause's activation, and put it under pressure, too."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)
