@@ -1,4 +1,4 @@
-"""Compile the modules on the path of an event with mypyc: ``python tools/native.py`` (``--help`` for more).
+"""Compile the modules that every event passes through, with mypyc: ``python tools/native.py`` (``--help`` for more).
 
 The types are those of the annotations, so the source stays plain Python. `ravestate.compiled` says how the compiled
 modules are found. The same code is a build hook of hatchling, for wheels with compiled modules.
@@ -140,7 +140,7 @@ def try_to_compile() -> None:
 def main() -> int:
     """Compile the modules in place; exit code 1 if that fails."""
     parser = argparse.ArgumentParser(
-        description="Compile the modules on the path of an event, unless they are compiled."
+        description="Compile the modules that every event passes through, unless they are compiled."
     )
     parser.add_argument("--check", action="store_true", help="only say, by exit code 0 or 1, whether they are compiled")
     parser.add_argument("--try", action="store_true", dest="soft", help="if it is impossible, say so, with exit code 0")

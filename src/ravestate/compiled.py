@@ -1,4 +1,4 @@
-"""The compiled build. ``tools/native.py`` compiles the modules on the path of an event from the sources that are here.
+"""The compiled build. ``tools/native.py`` compiles the modules that every event passes through.
 
 The compiled modules are in ``native``, in one folder for each interpreter and platform. `prefer` puts that folder before
 the sources of a package. A stamp in the folder has a checksum of the sources. If the sources have changed since they were

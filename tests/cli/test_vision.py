@@ -28,7 +28,7 @@ def rows(text: str) -> list[tuple[str, str, str]]:
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 
 
-def test_who_learn_and_forget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_commands_who_learn_and_forget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))
     code, out, errors = call(capsys, "vision", "who", *memory, str(photo("obama")))
     assert code == 0 and rows(out) == [("unknown", "-", "obama")] and "there is no memory in" in errors
@@ -79,7 +79,7 @@ def test_check_names_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str
     assert code == 0 and "finds and recognises faces" in out and "/dev/video9" in out
 
 
-def test_what_is_missing_is_told_with_the_mend(
+def test_a_missing_part_is_named_with_the_mend(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(places.sys, "prefix", str(tmp_path / "env"))

@@ -2,7 +2,7 @@
 
     python drawn_figure.py FILE.mjpeg
 
-The environment of the eyes has OpenCV.
+Run it in the environment that `make eyes` sets up, which has OpenCV.
 """
 
 import sys

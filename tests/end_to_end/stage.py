@@ -24,7 +24,7 @@ from ravestate.runtime.agent import Agent
 __all__ = ["PHONE", "Host", "Stage", "hide", "on_stage"]
 
 LIMIT = 180
-"""Seconds after which a test fails that waits in vain."""
+"""Seconds after which a test that waits in vain fails."""
 
 expect.set_options(timeout=30_000)  # milliseconds; long, because a slow machine must not fail
 
@@ -41,7 +41,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-"""So that Chromium asks for nothing from elsewhere."""
+"""Most of these flags keep Chromium from contacting other servers."""
 
 
 async def hide(page: Page) -> None:

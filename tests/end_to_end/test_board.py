@@ -137,7 +137,7 @@ async def painted(page: Page, rule: str) -> set[str]:
 
 
 async def passing(page: Page, seconds: float) -> None:
-    """Wait until the agent's clock, as the page shows it, has moved so far."""
+    """Wait until the agent's clock, as the page shows it, has moved on by so many seconds."""
     await page.evaluate(
         """seconds => new Promise(resolve => {
             const until = window.raveboard.now() + seconds;

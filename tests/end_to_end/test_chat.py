@@ -392,7 +392,7 @@ async def test_on_a_phone_the_agents_name_is_not_cut(stage: Stage) -> None:
     async with Server(agent, inside="board/") as served, stage.open(served.address, **PHONE) as page:
         await expect(page.get_by_role("link", name="Look inside")).to_be_in_viewport(ratio=1)
         await expect(page.get_by_role("button", name="Leave")).to_be_in_viewport(ratio=1)
-        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # for those who hear the page
+        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # for screen readers
         name = page.get_by_role("heading", name="Ravestate")
         assert await name.evaluate("(name) => name.scrollWidth <= name.clientWidth")
 
@@ -408,7 +408,7 @@ async def test_on_a_phone_what_is_being_written_fits_too(stage: Stage) -> None:
 
 
 @on_stage
-async def test_what_is_too_long_is_not_cut(stage: Stage) -> None:
+async def test_a_text_that_is_too_long_is_not_cut(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         field, text = page.get_by_label("What you say to Elske"), "word " * 2_000 + "end"
@@ -422,7 +422,7 @@ async def test_what_is_too_long_is_not_cut(stage: Stage) -> None:
 
 
 @on_stage
-async def test_what_is_not_taken_is_not_said_for_ever(stage: Stage) -> None:
+async def test_a_text_that_is_not_taken_is_not_sent_for_ever(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as served,
         stage.open(served.address, complaints=True) as page,
@@ -493,7 +493,7 @@ async def test_with_the_keyboard_alone(stage: Stage) -> None:
 
 
 @on_stage
-async def test_who_reads_further_up_is_not_torn_away(stage: Stage) -> None:
+async def test_the_page_does_not_scroll_while_the_visitor_reads_further_up(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         await said(page, "Good evening.")
         for number in range(12):

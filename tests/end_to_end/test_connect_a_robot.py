@@ -92,7 +92,7 @@ class Reader:
 @pytest.fixture
 def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
     network = Ros1()
-    end(network.master)  # only `ros check` may find one
+    end(network.master)  # no master runs before `ros check`
     variables = {
         **network.environment, "PYTHONPATH": str(ROOT / "src"), "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100),
         "RAVESTATE_ROBOYIO_BUS": "127.0.0.1:0",

@@ -51,7 +51,7 @@ def test_example_3_a_greeting_the_agent_and_its_feelings(tmp_path: Path, backend
         assert spoken_by(talk.say("How old are you?"))[:1] == ["agentqa"]
 
 
-def test_whatever_is_said_somebody_answers_and_only_one(tmp_path: Path) -> None:
+def test_every_utterance_gets_exactly_one_answer(tmp_path: Path) -> None:
     said = (
         "hi",
         "i like tea",

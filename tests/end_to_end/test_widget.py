@@ -54,7 +54,7 @@ async def test_it_opens_the_chat_on_another_site_and_closes_it(stage: Stage) -> 
         async with stage.open(museum.origin) as page:
             button = page.get_by_role("button", name="Ask us")
             await expect(button).to_have_attribute("aria-expanded", "false")
-            assert served.sessions == []  # nobody is there who did not ask
+            assert served.sessions == []  # no conversation begins before the click
             await button.click()
             await expect(button).to_have_attribute("aria-expanded", "true")
             chat = page.frame_locator("iframe[title='Ask us']")

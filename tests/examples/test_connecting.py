@@ -77,4 +77,4 @@ def test_a_program_speaks_and_is_silent_when_cancelled(tmp_path: Path) -> None:
         await saying
 
     with pytest.raises(asyncio.CancelledError):
-        asyncio.run(interrupt())  # and not never
+        asyncio.run(interrupt())  # would hang if the program went on

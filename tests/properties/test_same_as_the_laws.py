@@ -64,7 +64,7 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
     assert not observation(world)
 
 
-def test_what_waits_for_a_run_is_no_part_of_a_stalemate_any_more() -> None:
+def test_an_activation_that_waits_for_a_run_leaves_its_stalemate() -> None:
     """Once `r1` runs for the first s0, its activation for the second waits for that run, and `r3` and `r0` for it."""
     both = (Want("s0"), Want("s2"))
     rules = (
@@ -77,7 +77,7 @@ def test_what_waits_for_a_run_is_no_part_of_a_stalemate_any_more() -> None:
     check(World((SignalOf(),) * 3, (SlotOf(),) * 2, rules, inputs), 0)
 
 
-def test_whoever_waited_is_reconsidered_as_soon_as_a_rival_gives_up() -> None:
+def test_a_waiting_activation_is_reconsidered_as_soon_as_a_rival_gives_up() -> None:
     """At 0.5 s `r0` lets the patience of `r3` run out, so `r2` may run, although it asked earlier in that instant (L16)."""
     half = Act(seconds=0.5)
     rules = (

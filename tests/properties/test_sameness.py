@@ -56,7 +56,7 @@ def test_the_same_inputs_give_the_same_effects_and_records(world: World) -> None
 
 @given(worlds(), st.integers(0, 3))
 def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> None:
-    """The rule is added to a live engine. Utilities count rules (L9), so the test keeps the earlier ones."""
+    """The rule is added to a live engine. One more rule changes all utilities (L9), so the test restores them."""
     plain = Play(world)
     changed = Play(world)
     for _ in range(steps):

@@ -34,7 +34,7 @@ def test_the_share_right_stays_above_the_floor(name: str) -> None:
         ("told_later_rows", 0.52, 0.89),
     ],
 )
-def test_what_people_tell_is_stored_and_nothing_wrong(name: str, right: float, clean: float) -> None:
+def test_told_facts_are_stored_and_nothing_wrong(name: str, right: float, clean: float) -> None:
     _, kept, tricky = blind.measured_facts(f"../{name}")
     assert kept.shares["right"] >= right
     assert tricky.shares["nothing wrong"] >= clean

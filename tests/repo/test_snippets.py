@@ -37,7 +37,7 @@ def test_snippet(block: Block, pages: dict[Path, Page]) -> None:
 
 
 @pytest.mark.parametrize("file", sorted({block.file for block in BLOCKS}), ids=lambda file: file.name)
-def test_what_leaves_something_behind_may_be_run_again(file: Path, pages: dict[Path, Page]) -> None:
+def test_a_page_that_leaves_files_behind_may_be_run_again(file: Path, pages: dict[Path, Page]) -> None:
     page = pages[file]
     page.run(page.blocks[-1])
     if page.leavings():
@@ -153,7 +153,7 @@ def test_a_file_is_apart_from_the_page_and_may_be_continued(tmp_path: Path) -> N
         page.run(page.blocks[3])
 
 
-def test_what_blocks_leave_behind_is_known(tmp_path: Path) -> None:
+def test_files_that_blocks_leave_behind_are_known(tmp_path: Path) -> None:
     page = page_of(
         tmp_path,
         '```yaml title="a/b.yaml"\ny: 6\n```\n```python\nimport pathlib\npathlib.Path("new").touch()\n```\n',

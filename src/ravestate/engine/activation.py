@@ -96,8 +96,8 @@ class Activation:
     """A clause plus the spikes that it has acquired.
 
     Attributes:
-        id: A number that grows with each new activation. Only the trace, snapshots and explanations show it: with a
-            tracer, another activation with the same spikes may run.
+        id: A number that grows with each new activation. Only the trace, snapshots and explanations show it, because
+            it may depend on the tracer: with one, another activation with the same spikes may run.
         number: The number of its run in events and effects; 0 until it runs. Runs are numbered in the order of their
             start, so a tracer cannot change the number (L24, L25).
         state: The `State`, as a whole number.
@@ -141,7 +141,7 @@ class Activation:
         self.number = 0
         self.clause = clause
         self.state: int = GATHERING
-        # Most clauses have one need, and thousands of activations may wait: a sequence in each would cost the collector.
+        # Most clauses have one need, and thousands of activations may wait: a sequence in each would slow the collector.
         self._only: Spike | None = None
         self._several: tuple[Spike | None, ...] = (None,) * len(clause.needs) if len(clause.needs) > 1 else ()
         self.missing = clause.all_bits

@@ -6,8 +6,8 @@
 3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true comes
    earlier, before step 1 (``parts.py``).
 
-When a rule ends, the activations that wait for it ask again in the same instant. They do so after all rules that end in
-this instant. So the caller of `Engine.effects` must first give the engine all events of the instant.
+When a rule ends, the activations that wait for it ask again in the same instant. They ask after all rules that end in
+this instant have ended. So the caller of `Engine.effects` must first give the engine all events of the instant.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Agenda:
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
         self.time = 0.0
-        """The time for which the queue was put in order (seconds)."""
+        """The time (seconds) at which the queue was last put in order."""
         self.breakers: list[tuple[tuple[float, int, int], Activation]] = []
         """The activations that wait for nothing but each other, the best first."""
 

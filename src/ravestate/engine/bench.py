@@ -13,7 +13,7 @@ class Bench:
 
     Attributes:
         half: The half.
-        spikes: The spikes, oldest first. Each comes with the number just before those of its activations.
+        spikes: The spikes, oldest first. Each has a number *n*: its activations get the numbers from *n* + 1 on.
         partner: The counterpart, or None if the spikes lack one.
         late: The spikes that have grown too old for the half while they had a counterpart.
     """

@@ -8,9 +8,9 @@ A clause has benches only if no better clause competes with it (`Half.sole`). It
 group refuses them only while a slot is taken there. If a group refuses the head, the engine makes a head of the next
 spike at once. The new head asks in the same round of consent.
 
-So older spikes ask first. This is the order of consent, because an older spike has an older causal group: no rule raises
-these signals. Before a group merges, its spikes leave their benches. `Consent` treats each spike on a bench with a
-counterpart as a ready activation. Activations with less utility wait for it.
+So older spikes ask first. Consent goes by the age of causal groups, which is the same order: no rule raises these
+signals, so each spike begins a group. Before a group merges, its spikes leave their benches. `Consent` treats each spike
+on a bench with a counterpart as a ready activation. Activations with less utility wait for it.
 """
 
 from __future__ import annotations

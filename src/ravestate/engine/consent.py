@@ -9,7 +9,8 @@ If only an input or a rule of another group can make a rival ready, the rival is
 the activation stops waiting for it. A rival gets its patience once in each group (L16).
 
 A clause without an activation may be a rival, too: its *stand-by*, which holds no spike. A *half* (``halves.py``) holds
-spikes for clauses that have no activation yet. With a tracer there are none, and `_judge_rival` judges all rivals.
+spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and `_judge_rival` judges all
+rivals.
 """
 
 from __future__ import annotations
@@ -306,7 +307,7 @@ class Consent:
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # a refused spike no longer reaches the alternatives of this rule
+                    self.halves.sets.unfold(other)  # later, this rule's alternatives could not take the refused spike
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 

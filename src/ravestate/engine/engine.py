@@ -122,7 +122,7 @@ class Engine:
         return parts
 
     def rest(self) -> None:
-        """Return the parts if nothing is live, and nothing is left to do. Call this after a look at the state."""
+        """Give the parts back if nothing is live, and nothing is left to do. Call this after a look at the state."""
         parts = self._parts
         if parts is not None and parts.state.at_rest:
             self._rest(parts)

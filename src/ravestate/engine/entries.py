@@ -22,7 +22,7 @@ class Entries:
         self.state = state
 
     def enter(self, spike: Spike, half: Half, before: int) -> None:
-        """Let a half hold a spike; `before` is the number just before those of the spike's activations."""
+        """Let a half hold a spike. The spike's activations get the numbers from `before` + 1 on."""
         state = self.state
         held = state.halves.get(half)
         if held is None:
@@ -42,7 +42,7 @@ class Entries:
             self.let_expire(spike, spike.born + half.max_age)
 
     def part(self, spike: Spike, need: Need) -> None:
-        """Note that the need's half holds a spike no longer for the need's clause."""
+        """Note that the need's half no longer holds a spike for the need's clause."""
         half = need.half
         if half is None or self.state.entries(half, spike) is None:
             return

@@ -253,7 +253,7 @@ def why_given_up(lost: GaveUp, behind: str = "") -> str:
 
 
 def without(rule: str, ended: Settled) -> str:
-    """Return a phrase: the run of `rule` that `ended` describes has not raised the signal in question."""
+    """Return a phrase for a run of `rule` that has not raised the signal in question; `ended` is the run's end."""
     return f"{rule} {Outcome.say(ended.outcome)} without raising it, at {seconds(ended.time)}"
 
 

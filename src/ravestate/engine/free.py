@@ -11,7 +11,7 @@ Place = tuple[int, int, int, Activation]
 
 
 class Free(Line):
-    """A queue of ready activations. Most join at its end; after a loss and a new spike, an activation joins anywhere.
+    """A queue of ready activations. Most join at its end; one that lost a spike and took another may join anywhere.
 
     Attributes:
         new: The activations that have become ready since the last call of `pop`.

@@ -1,22 +1,24 @@
 """Halves: first spikes that wait, without an activation, for a second spike.
 
-A clause with two constraints, its *needs*, takes two spikes. A *half* is a record of such needs for one signal (`Half`).
-A thousand rules `input & topic` would need a thousand activations for each input, although only a few of the topics
-occur. So the half holds the first spike as an *entry* in a table (``entries.py``), without activations.
+A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) collects such needs, all for the same
+signal, that the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each
+input, although only a few of the topics occur. So the half holds the first spike as an *entry* in a table
+(``entries.py``), without activations.
 
 The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
 number of activations depends on the rule:
 
 - for a rule that writes no slot: one activation, with the oldest first spike
-- for the best writer of a slot: also one activation, but all first spikes share the counterpart (``benches.py``)
+- for a rule without a better rival (`Half.sole`): also one activation, but all first spikes share the counterpart
+  (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses one of them
-- for a rule that was added while an older spike of its signals was live: also one activation with each first spike,
-  because an activation that loses a spike may take the older spike
+- for a rule that was added while a spike of its signals was live: again one activation with each first spike. Each of
+  them may lose a spike and then take that older spike
 
 To *unfold* an entry is to make its activations. All entries unfold for a tracer, and when a rule retires or is added.
 The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge each of its clauses by itself.
-The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no rival
-depends on the activations (`find_halves`). An explanation unfolds nothing.
+The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no signal that
+their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
 """
 
 from __future__ import annotations
@@ -112,11 +114,11 @@ class Halves:
                     self._make(need, spike)
 
     def share(self, policy: Policy) -> None:
-        """Create the pairs that `_pair` spared, for clauses whose signals are kin only under a new policy.
+        """Create the activations that `_pair` left out, for clauses whose signals are kin only under a new policy.
 
-        Until now, an activation that loses a spike has taken the oldest one, so the spared pairs followed from the others.
-        From now on it takes one of the same causal group only (L12). In the spared pairs, each spike holds the first
-        later counterpart.
+        So far, an activation that lost a spike took the oldest live one, so the other activations could form the missing
+        pairs. From now on, it may only take a spike of the same causal group (L12). So each spike gets an activation of
+        its own, with the first counterpart that came later.
         """
         for activations in list(self.state.active.values()):
             clause = next(iter(activations)).clause
@@ -125,7 +127,7 @@ class Halves:
                 self._share(clause, [one for one in activations if one.state < RUNNING])
 
     def _share(self, clause: Clause, activations: list[Activation]) -> None:
-        """Create the spared pairs of a clause; `activations` are all its activations that do not run yet."""
+        """Create the left-out activations of a clause; `activations` are all those that do not run yet."""
         state, holdings = self.state, self.holdings
         own: dict[Spike, Activation] = {}  # spike → the activation that began with it
         held: set[Spike] = set()
@@ -136,10 +138,10 @@ class Halves:
             if older:
                 own.setdefault(max(older, key=_birth), activation)
         if len(own) == len(held):
-            return  # no pair was spared
+            return  # no activation was left out
         taken = {activation.id for each in state.active.values() for activation in each}
         for spike in sorted(held.difference(own), key=_birth):
-            number = spike.before + 1  # `offer` left out the number of this activation, so one is free
+            number = spike.before + 1  # `offer` reserved a number for this activation
             while number in taken:
                 number += 1
             taken.add(number)
@@ -249,7 +251,7 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If the stand-by of a clause was under pressure, create the clause's activation, and put it under the same."""
+        """If the stand-by of a clause was under pressure, create the clause's activation, and put it under pressure, too."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)
@@ -262,5 +264,5 @@ def _birth(spike: Spike) -> int:
 
 
 def _need(clause: Clause, spike: Spike) -> Need:
-    """Return the need of a pair that a spike meets."""
+    """Return the one of a clause's two needs that a spike meets."""
     return clause.needs[0] if clause.needs[0].signal is spike.signal else clause.needs[1]

@@ -224,7 +224,7 @@ class Holdings:
         """Make an activation give up the spikes of `needs`, and end it if nothing keeps it alive.
 
         A non-detached spike keeps it alive. In a clause with detached needs only, any spike does. `by` is the run
-        because of which it gives the spikes up, or None.
+        that is the cause, or None.
         """
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
@@ -314,7 +314,7 @@ class Holdings:
             state.busy -= 1
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
-        """Take the spike of a need from an activation; `by` is the run because of which it does so, or None.
+        """Take the spike of a need from an activation; `by` is the run that is the cause, or None.
 
         The spike's causal group becomes *dirty*: the activations that wait in it ask again (`Waits.wake`).
         """

@@ -63,11 +63,11 @@ class Horizon:
         stuck: More activations that count as doing nothing.
 
     Attributes:
-        roots: The live activations on which the latest firm derivation rests.
+        roots: The live activations on which the latest derivation with the result `SURE` rests.
         visited: The groups on whose state the results depend.
         hopes: A kind (``refusal.py``) and the number of a rule or signal → a count. If this rule or signal changes, the
-            results may change. For `OUTSIDE`, a change of an activation matters only if its rule has at most this count of
-            other activations.
+            results may change. For `OUTSIDE`, the count is a limit: the change of an activation matters only if its rule has
+            at most that many other activations.
         recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
     """
 
@@ -94,7 +94,7 @@ class Horizon:
         self.inert = inert
         self.stuck = stuck
         self._inert: dict[int, int] | None = None  # rule → how many of its activations are in `inert`
-        # For each place: its strength, its roots if it is firm, and the depth of the oldest open derivation it rests on.
+        # For each place: its strength, its roots if that is SURE, and the depth of the oldest open derivation it rests on.
         self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
         self._depth = 0  # how many derivations are in progress
         self._since = FINAL  # the depth of the oldest derivation whose bound the present derivation has read
@@ -115,7 +115,7 @@ class Horizon:
         return any([activation in stuck for stuck in self.stuck])
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
-        """Return the strength with which a clause may become ready in a group, and the `roots` of a firm result.
+        """Return the strength with which a clause may become ready in a group, and the `roots` of the result `SURE`.
 
         `activation` is None for the clause's stand-by. An activation without a spike of the group is a rival there only
         if it lacks a signal of the group's horizon.
@@ -300,7 +300,7 @@ class Horizon:
         del self._open[first:]
 
     def _caused(self, signal: int, group: Group, slots: SlotNumbers) -> Step:
-        """Return the strength of the firmest way in which a rule may raise a signal in a group."""
+        """Return the strength of the surest way in which a rule may raise a signal in a group."""
         mark = len(self.roots)
         by_rule, retired = self._by_rule[group], self.state.retired
         best = NO

@@ -1,4 +1,4 @@
-"""Leaders: the refusal of one activation saves the questions of the activations behind it.
+"""Leaders: once one activation is refused, the activations behind it need not ask in full.
 
 An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are ready
 to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one is a
@@ -9,8 +9,8 @@ An activation cannot follow if a rival stands between the leader and the activat
 at this rival. But the activation would put the rival under pressure, or expect help from it (L16). So the activation
 asks in full, and becomes the leader of the activations behind it.
 
-A question in full also counts on the effects of the leader. So an activation can lead only if its effects help no rule
-that writes a slot.
+An activation that asks in full may also expect help from the effects of the leader; a follower does not. So an activation
+can lead only if its effects help no rule that writes a slot.
 """
 
 from __future__ import annotations

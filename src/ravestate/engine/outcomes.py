@@ -1,4 +1,4 @@
-"""The table of outcomes: the end of a run's function, and a cancellation by the engine, decide (L18, L20, L21).
+"""The table of outcomes, by the end of a run's function and by the engine's cancellation, if any (L18, L20, L21).
 
 The key of a row is the engine's reason to cancel the run (empty without a cancellation), and the end of the function. A
 row has two outcomes: one for a run that wrote no slot, and one for a run that wrote a slot. A run that *fired* consumes

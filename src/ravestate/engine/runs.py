@@ -101,7 +101,7 @@ class Runs:
                 if run.state == RUNNING and state.accepts(need, spike.payload):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < state.now:
-                        watch.spikes[need.index] = spike  # else the older spike ripens first
+                        watch.spikes[need.index] = spike  # else keep the older spike, which ripens first
                         if state.watched_by is NOTHING:
                             state.watched_by = {}
                         state.watched_by.setdefault(spike, {})[watch] = None

@@ -15,7 +15,7 @@ SAME = 1e-9
 """Worths whose relative difference is at most this count as equal, because the times of crossings are rounded."""
 
 DIGITS = 9
-"""Digits of a second to which the time of a crossing is rounded, so that it meets other events of the same moment."""
+"""Digits of a second to which the time of a crossing is rounded, so that events of the same moment coincide."""
 
 INSTANT = 0.5e-9
 """Seconds within which moments are the same: half of the last of these digits."""

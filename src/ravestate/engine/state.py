@@ -341,7 +341,7 @@ class State(Memory):
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:
-        """Return whether all predicates of a need accept a payload. The first that does not spares the others."""
+        """Return whether all predicates of a need accept a payload. After the first that does not, the rest are not called."""
         for predicate in need.predicates:
             if not self.test(predicate, payload, need.clause):
                 return False

@@ -52,13 +52,13 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Trace the names for which followers wait, where those of their leaders have changed."""
+        """Trace the rules for which followers wait, if the rules for which their leaders wait have changed."""
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)
 
     def _tell(self, activation: Activation, refusal: Refusal) -> bool:
-        """Trace the names of a refusal, unless the trace has told the same names; return whether they are new."""
+        """Trace the names of a refusal, unless the trace has the same names already; return whether they are new."""
         state = self.state
         names = tuple(refusal.all_names)
         if names == refusal.told or state.tracer is None:

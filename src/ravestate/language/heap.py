@@ -1,4 +1,4 @@
-"""Keep the memory small that models need, beside their weights."""
+"""Limit the memory that models need in addition to their weights."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def keep_few_heaps() -> None:
     """Let the threads of the process share two heaps; if the C library is not glibc, do nothing.
 
     By default glibc makes up to eight heaps per core. Each keeps tens of megabytes that a model has used in its thread.
-    The environment variable ``MALLOC_ARENA_MAX`` comes first.
+    The environment variable ``MALLOC_ARENA_MAX`` takes precedence.
     """
     if "MALLOC_ARENA_MAX" not in os.environ:
         with contextlib.suppress(AttributeError, OSError, TypeError):

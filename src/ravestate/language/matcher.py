@@ -99,7 +99,7 @@ class Matcher:
             least: The confidence below which a sentence belongs to no class.
             shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
             centre: The margin that has the confidence 0.5. By default, the matcher learns it by matching each example
-                against the others. Pass 0 for classes of about three examples: two examples do not represent the class.
+                against the others. Pass 0 for classes of about three examples: the others would be too few.
             encoder: The encoder; by default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]

@@ -78,7 +78,7 @@ class Nearest:
         return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
 
     def compared(self, sentences: Sequence[str], places: Sequence[int]) -> list[float]:
-        """Return for the examples at some places the similarity to the most similar of some sentences, as `Near.score`."""
+        """Return the scores (`Near.score`) of the examples at some places, each for the sentence most similar to it."""
         texts = {plain(sentence): sentence for sentence in sentences}
         if self._learnt is None:
             return [float(self._examples[place] in texts) for place in places]
@@ -105,12 +105,12 @@ class _Learnt:
         return self._known.meanings.some(places).products(self._encoder.encode([text]))[0].tolist()
 
     def compared(self, texts: dict[str, str], places: Sequence[int]) -> list[float]:
-        """Return the greatest score of each of some examples."""
+        """Return the scores of some examples, each for the text most similar to it."""
         group = _Group([self._examples[place] for place in places], self._encoder)
         return group.scores(texts).max(axis=0).tolist()
 
     def nearest(self, texts: dict[str, str], most: int) -> list[Near]:
-        """Return the nearest examples of plain texts, each with its sentence as it was written."""
+        """Return the examples nearest to the texts, each with the written sentence that it resembles."""
         import numpy as np
 
         found: list[Near] = []
@@ -134,7 +134,7 @@ class _Group:
         self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
 
     def scores(self, texts: dict[str, str]) -> NDArray[Any]:
-        """Return the scores of plain texts (rows), given with the sentences as written, and the examples (columns)."""
+        """Return the scores of texts (rows) and the examples (columns). `texts` maps plain texts to the written sentences."""
         import numpy as np
 
         plains = list(texts)

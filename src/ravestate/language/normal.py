@@ -102,7 +102,7 @@ _GOVERNING = _AUX | word_set(
 )
 """Words before a clause that belongs to the same sentence: *know* in *I know who you are*."""
 _SUPPOSING = word_set("think hope guess bet believe glad")
-"""Words after which *ur* with a last word says something of the agent: *I think ur funny*."""
+"""Words after which *ur* means *you are* if one more word ends the sentence: *I think ur funny*."""
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
 _INTRODUCING = ("name is", "name's", "this is")
@@ -342,7 +342,7 @@ def _end(sentence: Sequence[_Piece], following: _Piece, mark: str = "") -> None:
 def _asks_anew(sentence: Sequence[_Piece], following: str) -> bool:
     """Return whether a question begins after a statement, with no mark between them."""
     asks = _ASKS_ANEW.match(following)
-    if not asks and not _ASKS_YOU.match(following):  # as nearly always: the rest would take long in a long text
+    if not asks and not _ASKS_YOU.match(following):  # the usual case: the checks below would take long in a long text
         return False
     before = [piece.low for piece in sentence]
     if len(before) < 2 or before[-1] in _GOVERNING or before[0] in _AUX - _BE or not _WH.isdisjoint(before):

@@ -40,7 +40,7 @@ class _Speech(tts.ChunkedStream):
 
 
 class Loudspeaker(io.AudioOutput):
-    """Plays at once, but stops after `most` characters of an utterance, as if the rest took its time."""
+    """Plays up to `most` characters of an utterance at once, and then stands still until it is interrupted."""
 
     def __init__(self) -> None:
         super().__init__(label="loudspeaker", capabilities=io.AudioOutputCapabilities(pause=False), sample_rate=RATE)

@@ -20,7 +20,7 @@ async def went(ctx: rs.RuleContext) -> None:
     ctx[seen] = (*ctx[seen], ("went", key, name))
 
 
-def test_who_comes_and_goes_is_signalled() -> None:
+def test_users_who_come_and_go_are_signalled() -> None:
     with simulate(host) as sim:
         sim.put(interloc.users, {"a": "Ada"})
         sim.put(interloc.users, {"b": None})

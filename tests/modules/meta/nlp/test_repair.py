@@ -77,5 +77,5 @@ def test_a_noun_with_a_capital_inside_a_sentence_is_a_name(reader: Pipeline) -> 
 
 
 @pytest.mark.parametrize("text", ["I'm thinking of moving to Bern", "we are moving to Bern"])
-def test_what_somebody_thinks_of_doing_is_a_plan(text: str, reader: Pipeline) -> None:
+def test_an_action_that_somebody_thinks_of_is_a_plan(text: str, reader: Pipeline) -> None:
     assert all(statement.plan for statement in statements_of(reader.read(text)[0]))

@@ -69,7 +69,7 @@ def test_tempo_does_not_matter(recogniser: Recogniser, tempo: float) -> None:
 
 
 @pytest.mark.parametrize("spoil", ["nothing", "one", "black", "nan", "no shoulders", "no body"])
-def test_what_shows_no_body_is_no_activity(recogniser: Recogniser, spoil: str) -> None:
+def test_pictures_without_a_body_show_no_activity(recogniser: Recogniser, spoil: str) -> None:
     poses = performance("waving", 6)
     points = np.stack([pose.points for pose in poses])
     if spoil == "nan":

@@ -80,7 +80,7 @@ def test_a_lesson_about_a_time_without_poses_teaches_nothing(tmp_path: Path) -> 
         assert list(tmp_path.iterdir()) == []
 
 
-def test_who_is_not_seen_any_more_is_not_in_view(tmp_path: Path) -> None:
+def test_a_person_who_has_gone_is_not_in_view(tmp_path: Path) -> None:
     with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
         assert not sim.read(activity.in_view)
         show(sim, performance("waving", 1)[:10])

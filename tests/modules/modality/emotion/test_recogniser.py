@@ -64,7 +64,7 @@ def test_any_text_is_taken(text: str) -> None:
         ("🎉🎉", "happy"),
     ],
 )
-def test_what_the_readme_promises(text: str, feeling: str | None) -> None:
+def test_the_examples_of_the_readme_hold(text: str, feeling: str | None) -> None:
     assert recognise(text) == feeling
 
 

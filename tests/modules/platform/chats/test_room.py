@@ -71,7 +71,7 @@ async def test_many_new_chats_at_once_soon_are_no_more_than_the_limit(tmp_path: 
 
 
 @in_virtual_time
-async def test_what_came_twice_is_heard_once(tmp_path: Path) -> None:
+async def test_a_message_that_came_twice_is_heard_once(tmp_path: Path) -> None:
     post = Post()
     message = letter("one")
     async with room(tmp_path, post, rs.Module("quiet", requires=(rawio,)), parrot) as opened:

@@ -39,7 +39,7 @@ def test_a_message_is_pending_until_it_is_done_and_its_key_is_known_afterwards(t
     assert not again.knows("b", message.person)
 
 
-def test_what_a_killed_process_has_kept_is_there_and_what_it_had_not_finished_is_not(tmp_path: Path) -> None:
+def test_a_killed_process_leaves_what_it_kept_and_nothing_unfinished(tmp_path: Path) -> None:
     code = f"""
 import os, signal, sys
 sys.path.insert(0, {str(Path(__file__).parents[3])!r})

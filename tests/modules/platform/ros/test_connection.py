@@ -157,7 +157,7 @@ def test_while_a_subscriber_does_not_read_the_newest_messages_wait() -> None:
     send(main)
 
 
-def test_what_a_subscriber_sends_is_dropped_until_it_ends() -> None:
+def test_bytes_from_a_subscriber_are_dropped_until_it_ends() -> None:
     async def main(connection: ToSubscriber, theirs: socket.socket, lost: list[bool]) -> None:
         await asyncio.get_running_loop().sock_sendall(theirs, struct.pack("<I", 0xFFFFFFF0) + bytes(1 << 20))
         connection.send(b"one")

@@ -168,7 +168,7 @@ def test_a_long_interruption_stops_the_agent_before_its_end(tmp_path: Path, monk
     assert len(stopped) == 1 and 6.0 < stopped[0] < 6.5
 
 
-def test_what_was_heard_comes_after_each_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_heard_words_come_after_each_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Tell me a story.", "Stop.")
     heard: list[str] = []
     module = rs.Module("listener", requires=[rawio])

@@ -120,7 +120,7 @@ async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
 
 
 @on_loop
-async def test_who_never_sends_a_request_is_not_waited_for() -> None:
+async def test_the_server_does_not_wait_for_a_client_without_a_request() -> None:
     with Served(patience=0.5) as served:
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
         writer.write(b"GET / HTTP/1.1\r\nhost: 127.0.0.1\r\n")  # and no end
@@ -130,7 +130,7 @@ async def test_who_never_sends_a_request_is_not_waited_for() -> None:
 
 
 @on_loop
-async def test_who_never_sends_the_whole_of_a_second_request_is_not_waited_for_either() -> None:
+async def test_the_server_does_not_wait_for_the_rest_of_a_second_request() -> None:
     with Served(patience=0.5) as served:
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
         writer.write(b"GET /nothing HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\nGET / HTTP/1.1\r\n")
@@ -200,7 +200,7 @@ def masked(text: str) -> bytes:
 
 
 @on_loop
-async def test_who_is_closed_and_does_not_go_is_hung_up_on() -> None:
+async def test_the_server_hangs_up_on_a_closed_client_that_does_not_go() -> None:
     with Served(patience=0.5) as served:
         open_before = served.files()
         with upgraded(served) as stubborn:

@@ -77,7 +77,7 @@ def test_the_page_itself_looks_inside(host: str, origin: str | None) -> None:
 
 
 @pytest.mark.parametrize("origin", ["https://museum.example", "http://127.0.0.1:9999", "null"])
-def test_who_may_embed_the_page_does_not_look_inside(origin: str) -> None:
+def test_the_right_to_embed_the_page_is_no_right_to_inspect_the_agent(origin: str) -> None:
     access = Access(Settings(origins=("https://museum.example",)))
     refusal = access.refusal_of_board({"host": "127.0.0.1:8420", "origin": origin})
     assert refusal is not None
@@ -103,7 +103,7 @@ def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
         {},
     ],
 )
-def test_who_may_or_does_not_tell_is_no_stranger(headers: dict[str, str]) -> None:
+def test_an_allowed_or_unnamed_site_is_no_foreign_embedder(headers: dict[str, str]) -> None:
     assert Access(Settings(origins=("https://museum.example",))).foreign_embedder(headers) is None
 
 
@@ -134,7 +134,7 @@ async def test_guessing_takes_long() -> None:
 
 
 @pytest.mark.parametrize("origin", ["museum.example", "https://museum.example/", "*", "https://a; script-src *"])
-def test_what_is_no_origin_is_no_setting(origin: str) -> None:
+def test_a_text_that_is_no_origin_is_refused_as_a_setting(origin: str) -> None:
     with pytest.raises(ValueError, match=r"write an origin, e\.g\. https://museum\.example"):
         Settings(origins=(origin,))
 

@@ -19,12 +19,12 @@ def test_within_any_stretch_no_more_get_through_than_burst_and_rate_allow(gaps: 
             assert count <= 5 + 2.0 * (end - begin) + 1e-6
 
 
-def test_who_is_within_the_limits_never_waits() -> None:
+def test_a_sender_within_the_limits_never_waits() -> None:
     bucket = Bucket(burst=3, rate=1.0, now=0.0)
     assert [bucket.wait(t) for t in (0.0, 0.0, 0.0, 1.0, 2.0, 3.0)] == [0.0] * 6
 
 
-def test_what_is_left_aside_is_not_owed() -> None:
+def test_refused_tokens_are_not_owed() -> None:
     bucket = Bucket(burst=2, rate=1.0, now=0.0)
     assert [bucket.take(0.0) for _ in range(100)] == [True, True] + 98 * [False]
     assert [bucket.take(t) for t in (0.5, 1.0, 1.5, 2.0)] == [False, True, False, True]

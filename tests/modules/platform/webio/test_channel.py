@@ -31,7 +31,7 @@ def channel_on(socket: Socket) -> Channel:
 
 
 @pytest.mark.parametrize("code", [*CLOSING_CODES, "too-long", "empty", "one that is added some day"])
-def test_whatever_is_wrong_is_told_and_closes_it(code: str) -> None:
+def test_any_protocol_error_is_sent_and_closes_the_socket(code: str) -> None:
     socket = Socket()
 
     async def serve() -> None:

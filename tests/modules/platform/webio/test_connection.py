@@ -24,7 +24,7 @@ async def talk_without_end(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_who_says_nothing_is_told_what_was_expected_and_closed() -> None:
+async def test_a_silent_client_is_told_what_was_expected_and_closed() -> None:
     async with page() as app, Visit(app) as visit:
         error = await visit.next()
         assert error["text"] == 'no hello within 10 s: begin with {"type": "hello", "v": 1}'
@@ -46,7 +46,7 @@ async def test_who_says_nothing_is_told_what_was_expected_and_closed() -> None:
         ('{"type": "say", "id": "a", "text": " "}', "has nothing in it"),
     ],
 )
-def test_who_begins_otherwise_is_told_and_closed(first: str | bytes, said: str) -> None:
+def test_a_client_that_begins_without_hello_is_told_and_closed(first: str | bytes, said: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with page() as app, Visit(app) as visit:
@@ -77,7 +77,7 @@ async def test_a_bad_frame_later_is_told_and_the_conversation_goes_on() -> None:
 
 
 @in_virtual_time
-async def test_what_is_not_taken_is_named_so_that_it_is_not_said_again_and_again() -> None:
+async def test_a_refused_text_is_named_so_that_it_is_not_sent_again_and_again() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -109,7 +109,7 @@ async def test_a_frame_that_is_too_long_ends_it() -> None:
 
 
 @in_virtual_time
-async def test_who_sends_too_much_has_to_wait_and_loses_nothing() -> None:
+async def test_a_client_that_sends_too_much_has_to_wait_and_loses_nothing() -> None:
     async with page() as app, Visit(app) as visit, Visit(app) as other:
         await visit.hello()
         await other.hello()
@@ -121,7 +121,7 @@ async def test_who_sends_too_much_has_to_wait_and_loses_nothing() -> None:
 
 
 @in_virtual_time
-async def test_what_was_written_need_not_wait_because_it_was_long_in_the_writing() -> None:
+async def test_notices_of_writing_do_not_delay_the_texts() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         for number in range(connection.BURST):
@@ -132,7 +132,7 @@ async def test_what_was_written_need_not_wait_because_it_was_long_in_the_writing
 
 
 @in_virtual_time
-async def test_who_tells_all_the_time_of_writing_is_heard_at_once_when_something_is_said() -> None:
+async def test_a_client_that_reports_writing_all_the_time_is_heard_at_once() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -166,7 +166,7 @@ async def test_of_too_many_that_tell_of_writing_the_rest_is_left_aside() -> None
 
 
 @in_virtual_time
-async def test_who_sends_nonsense_all_the_time_has_to_wait_too() -> None:
+async def test_a_client_that_sends_nonsense_all_the_time_has_to_wait_too() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -178,7 +178,7 @@ async def test_who_sends_nonsense_all_the_time_has_to_wait_too() -> None:
 
 
 @in_virtual_time
-async def test_who_asks_and_does_not_read_is_dropped() -> None:
+async def test_a_client_that_asks_and_does_not_read_is_dropped() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         visit.reading.clear()
@@ -189,7 +189,7 @@ async def test_who_asks_and_does_not_read_is_dropped() -> None:
 
 
 @in_virtual_time
-async def test_who_reads_slowly_misses_nothing_that_is_kept_and_is_told_of_what_is_not() -> None:
+async def test_a_slow_reader_gets_all_that_is_kept_and_learns_of_the_rest() -> None:
     async with page(flood) as app, Visit(app) as slow:
         await slow.hello()
         slow.reading.clear()

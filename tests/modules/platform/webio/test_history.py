@@ -33,7 +33,7 @@ def test_it_stays_within_its_bounds_and_has_no_gap(texts: list[str], since: int)
     ]
 
 
-def test_what_is_larger_than_everything_may_be_is_cut() -> None:
+def test_a_message_larger_than_the_whole_history_is_cut() -> None:
     history = History(characters=10)
     history.add("agent", "x" * 11, 0)
     assert [message.text for message in history.since(0)] == ["x" * 10]

@@ -107,7 +107,7 @@ def request(size: int) -> bytes:
 
 
 @in_virtual_time
-async def test_what_comes_all_the_time_is_taken_however_long_it_takes() -> None:
+async def test_a_steady_request_is_taken_however_long_it_takes() -> None:
     size = int(2 * LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
@@ -118,7 +118,7 @@ async def test_what_comes_all_the_time_is_taken_however_long_it_takes() -> None:
 
 
 @in_virtual_time
-async def test_what_hardly_comes_is_not_waited_for() -> None:
+async def test_the_server_does_not_wait_for_a_request_that_hardly_comes() -> None:
     caller = Caller(Reader())
     caller.send(request(10**6))
     await caller.send_slowly(b"x" * 10**6, rate=100)
@@ -126,7 +126,7 @@ async def test_what_hardly_comes_is_not_waited_for() -> None:
 
 
 @in_virtual_time
-async def test_what_comes_in_fits_and_starts_is_taken_if_it_is_enough_all_in_all() -> None:
+async def test_a_request_in_fits_and_starts_is_taken_if_it_is_fast_enough_on_the_whole() -> None:
     size = int(LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
@@ -139,7 +139,7 @@ async def test_what_comes_in_fits_and_starts_is_taken_if_it_is_enough_all_in_all
 
 
 @in_virtual_time
-async def test_what_comes_in_fits_and_starts_is_not_waited_for_if_it_is_too_little() -> None:
+async def test_a_request_in_fits_and_starts_is_cut_off_if_it_is_too_slow() -> None:
     size, each = 10**7, int(LOWEST_RATE * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
@@ -162,14 +162,14 @@ def test_the_less_is_missing_the_later_it_is_noticed(share: float, looks: int) -
 
 
 @in_virtual_time
-async def test_who_hardly_gets_to_the_end_of_the_headers_is_not_waited_for() -> None:
+async def test_the_server_does_not_wait_for_slow_headers() -> None:
     caller = Caller(Reader())
     await caller.send_slowly(b"GET / HTTP/1.1\r\nx: " + b"x" * 1000, rate=1)
     assert caller.hung_up == TIMEOUT
 
 
 @in_virtual_time
-async def test_who_has_to_wait_for_an_answer_is_not_hung_up_on() -> None:
+async def test_the_server_does_not_hang_up_on_a_client_that_waits_for_an_answer() -> None:
     caller = Caller(Reader(after=10 * TIMEOUT))
     caller.send(request(5) + b"hello")
     await past(10 * TIMEOUT + 1)
@@ -177,7 +177,7 @@ async def test_who_has_to_wait_for_an_answer_is_not_hung_up_on() -> None:
 
 
 @in_virtual_time
-async def test_who_has_to_wait_until_its_request_is_read_is_not_hung_up_on() -> None:
+async def test_the_server_does_not_hang_up_on_a_client_whose_request_it_reads_late() -> None:
     size = 10**6
     caller = Caller(Reader(before=10 * TIMEOUT + 3))
     caller.send(request(size))
@@ -187,7 +187,7 @@ async def test_who_has_to_wait_until_its_request_is_read_is_not_hung_up_on() -> 
 
 
 @in_virtual_time
-async def test_who_sends_on_after_the_answer_is_hung_up_on() -> None:
+async def test_the_server_hangs_up_on_a_client_that_sends_on_after_the_answer() -> None:
     caller = Caller(Refuser())
     caller.send(request(10**7))
     await caller.send_slowly(b"x" * 10**7, rate=2 * LOWEST_RATE)
@@ -195,7 +195,7 @@ async def test_who_sends_on_after_the_answer_is_hung_up_on() -> None:
 
 
 @in_virtual_time
-async def test_who_does_not_read_the_answer_is_hung_up_on() -> None:
+async def test_the_server_hangs_up_on_a_client_that_does_not_read_the_answer() -> None:
     caller = Caller(Reader(after=1.0))
     caller.send(request(5) + b"hello")
     caller.limits.pause_writing()  # as the transport does when the client reads nothing

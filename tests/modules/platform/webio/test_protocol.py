@@ -73,12 +73,12 @@ FIELDS = ("v", "session", "last", "token", "name", "id", "text")
 
 
 @given(client_frames)
-def test_what_a_client_writes_is_read(frame: Any) -> None:
+def test_frames_of_a_client_are_read(frame: Any) -> None:
     assert parse(serialise(frame), CLIENT) == frame
 
 
 @given(server_frames)
-def test_what_the_server_writes_is_read(frame: Any) -> None:
+def test_frames_of_the_server_are_read(frame: Any) -> None:
     assert parse(serialise(frame), SERVER) == frame
 
 
@@ -116,7 +116,7 @@ def test_any_fields_make_a_frame_or_are_refused(name: str, fields: dict[str, Any
 @pytest.mark.parametrize(
     "text", ["[" * 60_000, '{"type":' * 20_000, "1" * 60_000, '{"type": "ping", "x": NaN}', "\ud800"]
 )
-def test_what_parsers_stumble_over(text: str) -> None:
+def test_hard_texts_do_not_break_the_parser(text: str) -> None:
     understood(text)
 
 
@@ -142,7 +142,7 @@ def test_what_parsers_stumble_over(text: str) -> None:
         ('{"type": "say", "id": "a", "text": 7}', "say: \"text\": '7' is not a text"),
     ],
 )
-def test_what_is_malformed_is_told_what_was_expected(text: str | bytes, said: str) -> None:
+def test_a_malformed_frame_gets_a_message_about_the_expected_form(text: str | bytes, said: str) -> None:
     with pytest.raises(ProtocolError) as refused:
         parse(text, CLIENT)
     assert refused.value.code == "malformed"
@@ -185,7 +185,7 @@ def test_control_characters_are_taken_out() -> None:
         ("\x00" + "x" * 10_000, "x" * 10_000),
     ],
 )
-def test_what_is_heard_of_a_text(text: str, heard: str) -> None:
+def test_the_agent_hears_the_readable_part_of_a_text(text: str, heard: str) -> None:
     assert heard_text(text) == heard
 
 
@@ -193,7 +193,7 @@ def test_what_is_heard_of_a_text(text: str, heard: str) -> None:
     ("text", "code"),
     [("x" * 10_001, "too-long"), ("", "empty"), (" \n\t", "empty"), ("\x85\x1b[0m", "empty")],
 )
-def test_what_is_not_heard_whoever_says_it(text: str, code: str) -> None:
+def test_long_and_empty_texts_are_refused_from_any_sender(text: str, code: str) -> None:
     with pytest.raises(ProtocolError) as refused:
         heard_text(text)
     assert (refused.value.code, refused.value.id) == (code, None)

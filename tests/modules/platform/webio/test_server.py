@@ -52,7 +52,7 @@ def test_the_page_and_its_files_are_there(served: Served) -> None:
 @pytest.mark.parametrize(
     "path", ["/nothing", "/../pyproject.toml", "/%2e%2e/rules.py", "/assets", "/assets/", "//", "/ws"]
 )
-def test_what_is_not_there_is_not_found(served: Served, path: str) -> None:
+def test_an_unknown_path_is_not_found(served: Served, path: str) -> None:
     assert httpx.get(f"http://{served.host}{path}").status_code == 404
 
 

@@ -63,7 +63,7 @@ async def test_the_agent_notices_that_its_visitor_is_writing_and_no_other() -> N
 
 
 @in_virtual_time
-async def test_who_is_silent_is_talked_to() -> None:
+async def test_the_agent_talks_to_a_silent_visitor() -> None:
     async with page(bored) as app, Visit(app) as visit:
         await visit.hello()
         assert await visit.messages(1) == ["agent: It is quiet here."]
@@ -90,7 +90,7 @@ async def test_while_the_visitor_is_writing_nobody_is_bored() -> None:
 
 
 @in_virtual_time
-async def test_who_never_ends_a_line_is_talked_to_all_the_same() -> None:
+async def test_the_agent_talks_to_a_visitor_who_never_ends_a_line() -> None:
     async with page(bored) as app, Visit(app) as visit:
         await visit.hello()
         await past(1.0)
@@ -100,7 +100,7 @@ async def test_who_never_ends_a_line_is_talked_to_all_the_same() -> None:
 
 
 @in_virtual_time
-async def test_who_writes_after_the_farewell_is_not_heard_any_more() -> None:
+async def test_a_visitor_who_writes_after_the_farewell_is_not_heard() -> None:
     async with page(watcher) as app, Visit(app) as visit:
         await visit.hello()
         visit.tell("bye")
@@ -109,7 +109,7 @@ async def test_who_writes_after_the_farewell_is_not_heard_any_more() -> None:
 
 
 @in_virtual_time
-async def test_who_says_something_after_the_farewell_is_told_that_it_is_not_heard() -> None:
+async def test_a_visitor_who_speaks_after_the_farewell_learns_that_it_is_not_heard() -> None:
     async with page(parrot) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -164,7 +164,7 @@ async def test_a_name_that_is_found_out_later_is_shown_then_as_plain_text() -> N
         ("\U0001f469\u200d\U0001f680 Valentina", "\U0001f469\u200d\U0001f680 Valentina"),
     ],
 )
-def test_whatever_the_agent_calls_itself_is_shown_as_a_name(name: str, shown: str) -> None:
+def test_any_name_of_the_agent_is_shown_as_a_name(name: str, shown: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with page(parrot) as app, Visit(app) as visit:
@@ -193,7 +193,7 @@ async def test_a_title_that_is_set_stands_whatever_the_agent_calls_itself() -> N
 
 
 @in_virtual_time
-async def test_who_left_is_told_to_others_as_to_others() -> None:
+async def test_the_visitor_reads_you_left_and_others_read_the_visitor_left() -> None:
     async with page(parrot) as app, Visit(app) as visit, Visit(app) as window:
         await visit.hello()
         await window.hello(session=visit.session)

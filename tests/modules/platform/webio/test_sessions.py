@@ -84,7 +84,7 @@ async def test_after_a_lost_connection_nothing_is_missing_and_nothing_comes_twic
 
 
 @in_virtual_time
-async def test_what_is_sent_twice_is_heard_once() -> None:
+async def test_a_text_that_is_sent_twice_is_heard_once() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         visit.say("one", id="a")
@@ -98,7 +98,7 @@ async def test_what_is_sent_twice_is_heard_once() -> None:
 
 
 @in_virtual_time
-async def test_who_says_something_is_told_whether_it_was_taken() -> None:
+async def test_a_visitor_learns_whether_their_text_was_taken() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -164,7 +164,7 @@ async def test_a_conversation_is_kept_for_a_while_and_then_ends_in_order() -> No
 
 
 @in_virtual_time
-async def test_who_leaves_for_good_is_bidden_farewell() -> None:
+async def test_a_visitor_who_leaves_for_good_hears_goodbye() -> None:
     async with page(parrot, keeper) as app, Visit(app) as visit:
         await visit.hello()
         visit.tell("bye")
@@ -202,7 +202,7 @@ async def test_an_agent_that_leaves_ends_this_conversation_alone() -> None:
 
 
 @in_virtual_time
-async def test_what_is_said_while_it_ends_leaves_nothing_behind() -> None:
+async def test_a_text_during_the_end_leaves_nothing_behind() -> None:
     async with page(quitter) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("go")

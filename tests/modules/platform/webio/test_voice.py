@@ -252,7 +252,7 @@ async def test_the_agent_may_say_goodbye_aloud() -> None:
 
 
 @in_virtual_time
-async def test_what_was_heard_belongs_to_the_message_that_begins_with_it() -> None:
+async def test_heard_words_belong_to_the_message_that_begins_with_them() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         context = session_of(app).context
@@ -273,7 +273,7 @@ async def test_what_was_heard_belongs_to_the_message_that_begins_with_it() -> No
 
 
 @in_virtual_time
-async def test_what_was_heard_of_a_growing_utterance_marks_the_message_that_it_becomes() -> None:
+async def test_heard_words_of_a_growing_utterance_mark_the_message_that_it_becomes() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)

@@ -1,4 +1,4 @@
-"""Short silences for the scenarios, which count in them."""
+"""Short silences, to which the times in the scenarios refer."""
 
 from collections.abc import Iterator
 

@@ -41,7 +41,7 @@ def changed(**facts: Any) -> Life:
 def test_memory_has_a_relation_and_a_type_for_each_fact_that_becomes_one() -> None:
     types = types_of(ontology.Settings())
     for relation, type in RELATIONS.values():
-        types.check_relation("Robot", relation, type)  # raises, if it has none
+        types.check_relation("Robot", relation, type)  # raises if memory has no such relation
 
 
 def test_the_node_follows_the_file_from_start_to_start(with_memory: Any) -> None:
@@ -91,7 +91,7 @@ def test_memory_keeps_facts_that_the_file_does_not_mention(with_memory: Any) -> 
         assert (await recall(LIFE, memory))["friends"] == ("Ada",)
         await settle(changed(friends=("Bob",)), memory)
         assert (await recall(LIFE, memory))["friends"] == ("Bob",)
-        assert await memory.find("Person", name="Ada")  # she is known all the same
+        assert await memory.find("Person", name="Ada")  # Ada stays in memory
 
     with_memory(use)
 

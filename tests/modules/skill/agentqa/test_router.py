@@ -63,7 +63,7 @@ def test_an_indirect_question_counts_where_something_is_asked(router: Router) ->
 
 
 def test_without_numpy_the_examples_themselves_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ravestate.language.acts.bundled_matcher", bundled_matcher.__wrapped__)  # none is loaded yet
+    monkeypatch.setattr("ravestate.language.acts.bundled_matcher", bundled_matcher.__wrapped__)  # not the cached one
     monkeypatch.setitem(sys.modules, "numpy", None)
     router = Router(read_life())
     with pytest.raises(PlatformError, match=r"need numpy: pip install 'ravestate\[sentences\]'"):

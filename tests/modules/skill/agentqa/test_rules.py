@@ -216,7 +216,7 @@ def test_the_agents_question_may_be_returned(question: str, answer: str, topic: 
     own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
     with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
         sim.put(rawio.output, question)
-        assert say(sim, answer) == f"This is my {topic}."  # the user has told the rest
+        assert say(sim, answer) == f"This is my {topic}."  # without "And yours?", which the user has answered
 
 
 def test_nothing_is_asked_back_where_nothing_was_asked(tmp_path: Path) -> None:

@@ -23,12 +23,12 @@ TEMPLATES = [
     for name, texts in load_yaml(PHRASES.read_text(), "phrases").items()
     for text in sorted(texts["en"], key=len, reverse=True)
 ]
-TEMPLATES.sort(key=lambda template: -len(template[1].pattern))  # "Watch me!" before any riddle
+TEMPLATES.sort(key=lambda template: -len(template[1].pattern))  # longest first: "{riddle}" also matches "Watch me!"
 COUNTDOWN = "count count count go"
 
 
 def phrase(text: str) -> str:
-    """Return the name of the charades phrase that a text is; the text itself if it is none."""
+    """Return the name of the charades phrase with this text; if there is none, return the text."""
     return next((name for name, pattern in TEMPLATES if pattern.fullmatch(text)), text)
 
 

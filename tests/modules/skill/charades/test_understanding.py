@@ -1,4 +1,4 @@
-"""The user's words during the game are the right moves. None of these sentences is an example."""
+"""The user's words during the game are understood as the right moves. None of these sentences is an example."""
 
 from __future__ import annotations
 

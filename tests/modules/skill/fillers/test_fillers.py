@@ -247,7 +247,7 @@ async def ponder(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @pytest.mark.parametrize("first", ["10", "30"])
 def test_the_answer_to_the_first_words_is_none_to_the_second(first: str) -> None:
-    """The filler for the second words still owes an answer, and no rule has one."""
+    """After the filler for the second words, the user expects an answer, but no rule has one."""
     with simulate(fillers, both) as sim:
         sim.say(first)
         sim.advance(5.9)
@@ -306,4 +306,4 @@ def test_an_old_answer_does_not_end_the_wait_for_the_next() -> None:
         sim.say("second?")
         sim.advance(70.0)
         after = sim.said[sim.said.index("first answer") + 1 :]
-        assert after  # a filler, the delay, the loss: whatever it says, it is not silent
+        assert after  # the agent may fill the pause, or admit a delay or a loss, but is not silent

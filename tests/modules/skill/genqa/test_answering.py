@@ -54,7 +54,7 @@ def test_questions_beyond_the_documents_get_no_sure_answer(collection: Answerer,
 
 
 def test_the_questions_of_the_calibration_are_answered_as_well_as_was_measured(collection: Answerer) -> None:
-    """Most questions with an answer are answered right, and hardly any sure answer is wrong. Every third is asked here."""
+    """Most questions with an answer are answered right, and hardly any sure answer is wrong. This test asks every third question."""
     asked = cast("dict[str, str | None]", yaml.safe_load(QUESTIONS.read_text(encoding="utf-8")))
     sure, settings = list[bool](), Settings()
     right = answerable = 0

@@ -106,7 +106,7 @@ def test_a_follow_up_without_an_answer_of_its_kind_means_silence(answerer: Answe
     assert ask(answerer, "How deep is Lake Orm?", follow) == ""
 
 
-def test_what_else_is_not_answered_with_the_same_again(answerer: Answerer) -> None:
+def test_a_question_with_else_does_not_get_the_same_answer_again(answerer: Answerer) -> None:
     assert ask(answerer, "How deep is Lake Orm?", "how deep else is it?") == ""
 
 

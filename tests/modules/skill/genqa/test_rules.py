@@ -50,7 +50,7 @@ def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, An
 
 
 def test_the_sample_conversation_of_the_paper(settings: dict[str, dict[str, Any]]) -> None:
-    """Whether it will rain is small talk; when it started to rain is a fact."""
+    """*Will it rain?* is small talk; *when did it start to rain?* asks for a fact."""
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Will it rain today?")
         assert sim.said == ["Hm."]

@@ -75,7 +75,7 @@ def test_names_count_in_any_case_if_a_document_is_about_them() -> None:
     assert first.text == "who was the captain of the ostara?"
 
 
-def test_what_the_agent_said_gives_names_as_well() -> None:
+def test_the_agents_words_give_names_as_well() -> None:
     said = overheard("I live in Hannover.", 0.0)
     assert "how many people live in Hannover?" in [
         r.text for r in readings(parse("how many people live there?"), [said])
@@ -93,7 +93,7 @@ def test_a_question_word_with_a_pronoun_has_readings(follow: str) -> None:
     assert readings(parse(follow), talk(HUSBAND))
 
 
-def test_what_something_is_called_by_is_no_referent() -> None:
+def test_the_kind_of_a_thing_is_no_referent() -> None:
     turns = talk(("What is Okapia?", "Okapia is a board game.", "Okapia"))
     assert [reading.about for reading in readings(parse("who invented it?"), turns)] == ["Okapia"]
 

@@ -34,7 +34,7 @@ def file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def look(file: Path) -> Look:
-    """Return the people in memory while no agent runs: relations by name, with the names at their ends."""
+    """Return a function that returns, while no agent runs, the people in memory: name → relation → names at its end."""
 
     def people() -> dict[str, Any]:
         memory = open_memory(ontology.Settings(path=file))

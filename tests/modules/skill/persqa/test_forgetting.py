@@ -34,7 +34,7 @@ def test_nothing_of_a_forgotten_person_stays_on_disk(file: Path) -> None:
     assert not any(word in left for word in (b"Zwentibold", b"Quakenbrueck", b"Ermintrude", b"basilisk"))
 
 
-def test_who_is_meant_is_asked_when_nobody_is_recognised(file: Path, look: Look) -> None:
+def test_the_agent_asks_whom_to_forget_when_nobody_is_recognised(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file, confirm=True) as sim:

@@ -68,7 +68,7 @@ def test_nothing_leaks_before_the_answer(ada: Path) -> None:
             assert "Emma" not in said and "you live in Hannover" not in said
 
 
-def test_who_tells_a_fact_that_the_agent_knows_needs_no_question(ada: Path) -> None:
+def test_a_user_who_tells_a_known_fact_needs_no_question(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         assert meant(answers(sim, "my name is ada and i live in hannover"), "welcome_back")
 

@@ -10,7 +10,7 @@ from ravestate.testing import simulate
 pytestmark = pytest.mark.usefixtures("reader")
 
 
-def test_what_is_known_of_the_user_is_shared(file: Path) -> None:
+def test_known_facts_about_the_user_are_shared(file: Path) -> None:
     with simulate(persqa, settings={"ontology": {"path": file}}) as sim:
         sim.say("My name is Tom.")
         sim.say("I live in Hannover.")

@@ -172,7 +172,7 @@ def test_the_papers_sample_conversation(file: Path, look: Look) -> None:
         said = answers(sim, "hannover")
         assert meant(said, "learned_home") and "persqa:respond" in sim.fired
         sim.say("my name is ada")
-    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # also the fact from before the name
+    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # also a fact that Ada told before her name
 
 
 @pytest.mark.parametrize("phrase", ["Which town do you call your home?", "Oh, I should visit {home}."])
@@ -373,7 +373,7 @@ def test_boredom_and_the_users_words_at_once(file: Path) -> None:
 
 
 def at_once(sim: Simulation, *texts: str) -> None:
-    """Put all these in before any of them is read."""
+    """Give the agent all these texts before it reads any of them."""
     for text in texts:
         sim.context.put(rawio.input, text)
     sim.settle()
@@ -614,7 +614,7 @@ def test_100_kb_at_once(file: Path, look: Look, text: str) -> None:
     assert look() == {"Ada": {}}
 
 
-# ------------------------------------------------------------------------------------ questions about himself
+# ------------------------------------------------------------------------------------ questions about the user
 
 
 def test_questions_about_oneself(file: Path) -> None:

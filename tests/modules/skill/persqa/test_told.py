@@ -103,7 +103,7 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
         ("Jonas plays the violin", "forget Jonas", "what does Jonas play, do you remember?"),
     ],
 )
-def test_what_is_forgotten_is_not_found_in_the_talk(file: Path, told: str, wish: str, question: str) -> None:
+def test_forgotten_words_are_not_found_in_the_talk(file: Path, told: str, wish: str, question: str) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         sim.say(told)

@@ -25,7 +25,7 @@ from ravestate.modules.skill.wildtalk.download import download, interrupted, siz
 def hub(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
     monkeypatch.setattr(model_store, "folder", lambda: tmp_path / "models")
     monkeypatch.setattr(time, "sleep", lambda _: None)
-    monkeypatch.setattr(constants, "DOWNLOAD_CHUNK_SIZE", 10_000)  # of which the last is lost with the connection
+    monkeypatch.setattr(constants, "DOWNLOAD_CHUNK_SIZE", 10_000)  # a broken connection loses the last chunk
     enable_progress_bars()
     for name in ("HF_TOKEN", "HF_HUB_OFFLINE"):
         monkeypatch.delenv(name, raising=False)

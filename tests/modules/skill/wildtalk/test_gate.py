@@ -78,7 +78,7 @@ def test_it_is_lenient(heard: str, answer: str) -> None:
     assert gate(heard).refuse(answer) == ""
 
 
-def test_what_was_said_before_is_refused() -> None:
+def test_words_that_were_said_before_are_refused() -> None:
     assert gate(said=("Moving is hard work. I know.",)).refuse("Moving is hard work!") == "a repetition"
 
 

@@ -265,6 +265,6 @@ def test_closing_in_the_middle_of_an_answer_is_no_failure() -> None:
             await anext(pieces)
             await backend.close()
             async for _ in pieces:
-                """Pieces that were under way."""
+                """Take the pieces that were under way."""
 
     asyncio.run(main())

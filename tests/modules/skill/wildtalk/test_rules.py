@@ -267,7 +267,7 @@ def test_a_bare_machine_listens() -> None:
 
 
 class Choosing:
-    """A choice that takes until `go`."""
+    """A choice that waits for `go`."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.begun, self.go = asyncio.Event(), threading.Event()

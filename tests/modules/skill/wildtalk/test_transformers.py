@@ -1,4 +1,4 @@
-"""Causal models of transformers: a tiny one, with random weights, made here; the library, its format and its hub are real."""
+"""A tiny causal model with random weights. The library, its format and its client of the hub are real."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path) -> None
 
     asyncio.run(story())
     for thread in threading.enumerate():
-        if thread.name == file.LOADER:  # it may be in its last line
+        if thread.name == file.LOADER:  # the thread may still be ending
             thread.join()
     assert str(tiny) not in file._Model._loaded
 
@@ -127,7 +127,7 @@ def test_an_answer_is_no_longer_than_the_model_can_remember(tiny: Path) -> None:
     async def story() -> list[str]:
         return await answer(TransformersBackend(str(tiny)), max_tokens=100_000, temperature=2.0)
 
-    assert asyncio.run(story())  # and no failure
+    assert asyncio.run(story())  # it did not fail
 
 
 def test_leaving_stops_the_model(tiny: Path) -> None:
@@ -137,7 +137,7 @@ def test_leaving_stops_the_model(tiny: Path) -> None:
         with contextlib.suppress(StopAsyncIteration):
             await anext(pieces)
         await pieces.aclose()
-        return await answer(backend)  # which waits for nobody
+        return await answer(backend)  # the first answer no longer holds the model
 
     asyncio.run(story())
     for thread in threading.enumerate():
@@ -265,7 +265,7 @@ def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path, monkeypa
     def load() -> None:
         asyncio.run(TransformersBackend("someone/tiny").load())
         for thread in threading.enumerate():
-            if thread.name == file.LOADER:  # it may be in its last line, and still hold the model
+            if thread.name == file.LOADER:  # the thread may still be ending, and hold the model
                 thread.join()
 
     monkeypatch.setattr(constants, "HF_HUB_CACHE", str(tmp_path))  # the library reads the environment only once

@@ -23,7 +23,7 @@ class FaceVec:
         track: The number of the track: the same face from picture to picture.
         person: The person in memory whose stored face is close enough; None if no person is close enough.
         distance: The Euclidean distance to that person's nearest stored vector; None without a person.
-        quality: The visibility of the face in the picture of the vector (0 to 1).
+        quality: The visibility of the face in the picture that `vector` comes from (0 to 1).
         fresh: Whether the vector comes from this picture, and not from an earlier picture.
         time: The time of the picture (seconds on the context's clock); None for now.
     """

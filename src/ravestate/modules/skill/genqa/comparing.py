@@ -15,7 +15,7 @@ from .reckoning import apart, dates_in, focused, measured, of_both
 from .thread import Turn, phrase_of, referents, refers
 
 _BOTH = ("difference", "together", "total", "altogether")
-"""Words that ask for both numbers of the thread."""
+"""Words that ask about two numbers of the thread together: *what is the difference?*."""
 _TIMED = ("old", "early", "late")
 """Adjectives whose measure is a date."""
 

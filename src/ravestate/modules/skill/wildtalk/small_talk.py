@@ -27,7 +27,7 @@ MENTIONED = 4
 SORROWFUL = frozenset(("console", "mourn"))
 """Moves (next steps of a good listener) in reply to a sorrow."""
 OVERHEARD = 6
-"""The number of latest utterances whose traces are kept until the listening skill answers."""
+"""The number of latest utterances whose tone and persons are kept in `overheard`."""
 
 _TONES = {
     "sad": "The user is sad. Be gentle and brief.",
@@ -42,7 +42,7 @@ _making = threading.Lock()
 
 def listener() -> Listener:
     """Return the listening skill, which all contexts share. The first call reads the phrases (0.7 s)."""
-    with _making:  # two threads would make two, and only one of them learns
+    with _making:  # without the lock, two threads may make two listeners; only one would learn the examples
         return _listener()
 
 
@@ -76,7 +76,7 @@ def needs_comfort(seen: nlp.Analysis | None) -> bool:
 
 
 def may_be_known(seen: nlp.Analysis | None) -> bool:
-    """Return whether the listening skill may have a reply to almost the same words. `is_known` looks closer.
+    """Return whether the listening skill may have a reply to these words or almost the same. `is_known` looks closer.
 
     Other skills answer hello and goodbye. A short *yes* or *no* belongs to the module that asked.
     """
@@ -88,7 +88,7 @@ def may_be_known(seen: nlp.Analysis | None) -> bool:
 
 
 async def is_known(seen: nlp.Analysis) -> bool:
-    """Return whether the listening skill has a reply to almost the same words. Takes some 50 ms, in a thread."""
+    """Return whether the listening skill has a reply to these words or almost the same. Takes some 50 ms, in a thread."""
     return may_be_known(seen) and await asyncio.to_thread(listener().knows, seen)
 
 
@@ -104,7 +104,7 @@ def is_open(state: State) -> bool:
     """Return whether the skill waits for the user's turn in a game, or for an answer, or for a follow-up."""
     if state.game is not None or state.pending is not None:
         return True
-    return bool(state.moment or state.thread) and listener().expects(state)  # a new talk must not wait for the phrases
+    return bool(state.moment or state.thread) and listener().expects(state)  # `expects` reads the phrases first
 
 
 async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:

@@ -43,7 +43,7 @@ def test_of_several_clauses_the_one_that_says_most_is_taken() -> None:
 
 
 @pytest.mark.parametrize("text", ["hello", "yes", "Go away!", "what is this?", "I told you so", "hm"])
-def test_what_tells_nothing_or_addresses_the_agent_is_not_taken(text: str) -> None:
+def test_words_that_tell_nothing_or_address_the_agent_are_not_taken(text: str) -> None:
     assert told(text) is None
 
 

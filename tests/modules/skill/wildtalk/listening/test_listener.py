@@ -240,7 +240,7 @@ def test_it_seldom_asks_three_times_in_a_row(begin: Callable[[int], Any]) -> Non
         talk = begin(seed)
         said = [talk.say(text).endswith("?") for text in PLAIN * 2]
         rows += sum(all(said[place : place + 3]) for place in range(len(said) - 2))
-    assert rows <= 9  # of 36 places; a question of the bank that suits comes before a general remark
+    assert rows <= 9  # of 36; the bank's questions come before general remarks
 
 
 def test_its_opinions_stay(begin: Callable[[int], Any]) -> None:
@@ -262,7 +262,7 @@ def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Any]) -> None:
     ("text", "group"),
     [("asdfghj", "nonsense"), ("42", "number"), ("Ich verstehe das nicht", "tongue"), ("где ты живёшь", "tongue")],
 )
-def test_what_is_no_english_is_answered_honestly(text: str, group: str, talk: Any) -> None:
+def test_an_utterance_that_is_no_english_is_answered_honestly(text: str, group: str, talk: Any) -> None:
     assert talk.say(text) in [line.text for line in lines_of(material().plain[group])]
 
 
@@ -273,7 +273,7 @@ def test_what_is_no_english_is_answered_honestly(text: str, group: str, talk: An
         ("which key opens the shed", "which key opens the shed?"),
     ],
 )
-def test_what_it_does_not_know_is_named(text: str, named: str, begin: Callable[[int], Any]) -> None:
+def test_the_answer_to_an_unknown_fact_names_the_question(text: str, named: str, begin: Callable[[int], Any]) -> None:
     assert all(named in begin(seed).say(text).lower() for seed in range(4))
 
 
