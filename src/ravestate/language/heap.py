@@ -11,7 +11,7 @@ _ARENA_MAX = -8
 """The number of the option M_ARENA_MAX in glibc's malloc.h."""
 
 _loaded = threading.Event()
-"""Set if something was loaded after the last `give_back`."""
+"""Set if something large was loaded after the last `give_back`."""
 
 
 def keep_few_heaps() -> None:
@@ -26,7 +26,7 @@ def keep_few_heaps() -> None:
 
 
 def note_load() -> None:
-    """Note that a model or examples were loaded, which leaves tens of megabytes in the heap of the thread."""
+    """Note that a model, examples or a second database was loaded, which leaves tens of megabytes in the heap."""
     _loaded.set()
 
 

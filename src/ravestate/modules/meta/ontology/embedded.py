@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from ravestate.errors import PlatformError
-from ravestate.language.heap import give_back
+from ravestate.language.heap import give_back, note_load
 from ravestate.language.loading import LOADING
 
 from .database import connect, copy_database, survives
@@ -267,6 +267,7 @@ class EmbeddedStore:
             )
             with contextlib.suppress(OSError):
                 self._files.remove_rewrite()
+        note_load()
         give_back()  # two open databases have needed tens of megabytes more than one
         if kept := ", ".join(map(str, self._files.kept())):
             what = "logs that were set aside may still have data of the forgotten nodes; remove them"
