@@ -144,7 +144,7 @@ async def test_a_client_that_reports_writing_all_the_time_is_heard_at_once() -> 
 
 
 @in_virtual_time
-async def test_of_too_many_that_tell_of_writing_the_rest_is_left_aside() -> None:
+async def test_messages_about_typing_are_ignored_above_a_limit() -> None:
     noticed = 0
     scribe = rs.Module("scribe", requires=(rawio,))
 

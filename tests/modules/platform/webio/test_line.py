@@ -53,7 +53,7 @@ async def test_sound_of_any_size_comes_in_blocks_of_20_ms() -> None:
 
 
 @in_virtual_time
-async def test_of_sound_that_the_agent_does_not_take_the_newest_is_kept() -> None:
+async def test_the_newest_sound_is_kept_if_the_agent_takes_none() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     for number in range(30):
