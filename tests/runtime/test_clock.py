@@ -1,4 +1,4 @@
-"""The clock of a context: it can be halted, set forward and started again, without traces."""
+"""The clock of a context: it can be halted, set forward and started again, and nothing else changes."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ async def test_a_silent_client_is_told_what_was_expected_and_closed() -> None:
         ('{"type": "say", "id": "a", "text": " "}', "has nothing in it"),
     ],
 )
-def test_a_client_that_begins_without_hello_is_told_and_closed(first: str | bytes, said: str) -> None:
+def test_a_client_that_begins_without_hello_gets_an_error_and_is_closed(first: str | bytes, said: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with page() as app, Visit(app) as visit:
@@ -60,7 +60,7 @@ def test_a_client_that_begins_without_hello_is_told_and_closed(first: str | byte
 
 
 @in_virtual_time
-async def test_a_bad_frame_later_is_told_and_the_conversation_goes_on() -> None:
+async def test_a_later_bad_frame_gets_an_error_and_the_conversation_goes_on() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -162,7 +162,7 @@ async def test_messages_about_typing_are_ignored_above_a_limit() -> None:
         before = noticed
         visit.tell("writing")
         await past(1.0)
-        assert noticed == before + 1  # it owes nothing
+        assert noticed == before + 1  # the ignored messages use up no tokens
 
 
 @in_virtual_time

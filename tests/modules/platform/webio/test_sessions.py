@@ -124,7 +124,7 @@ async def test_all_windows_of_a_visitor_show_the_same() -> None:
 
 
 @in_virtual_time
-async def test_a_conversation_that_is_not_known_is_not_made_up() -> None:
+async def test_a_client_cannot_choose_the_id_of_a_new_conversation() -> None:
     async with page() as app, Visit(app) as visit:
         welcome = await visit.hello(session="chosen-by-the-client", last=7)
         assert not welcome["resumed"]
@@ -226,7 +226,7 @@ async def test_an_agent_that_fails_ends_this_conversation_and_says_so(
 
 
 @in_virtual_time
-async def test_beyond_the_limit_those_end_first_that_are_missed_least() -> None:
+async def test_beyond_the_limit_silent_abandoned_conversations_end_first() -> None:
     async with page(sessions=3) as app, Visit(app) as present:
         await present.hello()
         async with Visit(app) as talker:
@@ -251,7 +251,7 @@ async def test_beyond_the_limit_those_end_first_that_are_missed_least() -> None:
 
 
 @in_virtual_time
-async def test_a_conversation_has_only_so_many_windows() -> None:
+async def test_the_number_of_windows_of_a_conversation_is_limited() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         windows = [Visit(app) for _ in range(sessions.ONLOOKERS - 1)]
