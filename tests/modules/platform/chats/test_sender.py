@@ -64,7 +64,7 @@ class Stubborn(Post):
 
 
 @in_virtual_time
-async def test_a_message_is_sent_once_though_the_file_cannot_be_written_meanwhile(tmp_path: Path) -> None:
+async def test_a_message_is_sent_once_even_if_the_file_cannot_be_written_meanwhile(tmp_path: Path) -> None:
     post = Stubborn()
     async with room(tmp_path, post) as opened:
         post.database = opened.store._db

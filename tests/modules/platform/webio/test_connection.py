@@ -24,7 +24,7 @@ async def talk_without_end(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_a_silent_client_is_told_what_was_expected_and_closed() -> None:
+async def test_a_silent_client_gets_a_message_about_the_expected_frame_and_is_closed() -> None:
     async with page() as app, Visit(app) as visit:
         error = await visit.next()
         assert error["text"] == 'no hello within 10 s: begin with {"type": "hello", "v": 1}'

@@ -177,7 +177,7 @@ async def test_a_visitor_who_leaves_for_good_hears_goodbye() -> None:
 
 
 @in_virtual_time
-async def test_when_the_page_is_closed_all_are_told() -> None:
+async def test_all_visitors_get_a_message_when_the_page_is_closed() -> None:
     async with page() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -191,7 +191,7 @@ async def test_when_the_page_is_closed_all_are_told() -> None:
 
 
 @in_virtual_time
-async def test_an_agent_that_leaves_ends_this_conversation_alone() -> None:
+async def test_an_agent_that_leaves_ends_only_this_conversation() -> None:
     async with page(quitter) as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()

@@ -355,7 +355,7 @@ async def test_sound_beyond_the_speed_of_speech_is_ignored() -> None:
 
 
 @in_virtual_time
-async def test_sound_and_reports_leave_the_limit_of_words_alone() -> None:
+async def test_sound_and_reports_do_not_count_towards_the_limit_of_words() -> None:
     async with calling() as (_, caller):
         for _ in range(100):
             caller.send(bytes(640))
