@@ -223,7 +223,7 @@ def test_pieces_are_spoken_once_and_another_text_follows_them(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """This holds even if the pieces end in a space that the whole utterance lacks, or without the flag ``rawio.speaking``."""
+    """This holds even if the pieces end in a space that the utterance lacks, or without the flag ``rawio.speaking``."""
     script(monkeypatch, "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
     said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
