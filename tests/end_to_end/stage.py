@@ -31,7 +31,7 @@ expect.set_options(timeout=30_000)  # milliseconds; long, because a slow machine
 PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
 CHROMIUM = ("chromium", "chromium-browser")
 SHELL = "chromium-headless-shell"
-"""Chromium without windows. A page takes a third of the time. This Chromium cannot deny a page the microphone or camera."""
+"""Chromium without windows. A page takes a third of the time in it. It cannot deny a page the microphone or camera."""
 FLAGS = [
     "--no-sandbox",  # for tests that run as root, in a container
     "--disable-gpu",
