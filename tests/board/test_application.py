@@ -46,7 +46,7 @@ def test_a_recording_that_was_sent_is_looked_at(trace: bytes) -> None:
     test()
 
 
-def test_of_recordings_that_come_together_one_is_read_at_a_time(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_recordings_that_come_together_are_read_one_at_a_time(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     taken: list[str] = []
 
     async def slowly(work: Callable[..., Any], *arguments: Any) -> Any:

@@ -75,7 +75,7 @@ async def test_conversations_are_listed_with_their_beginning_and_last_words_and_
     assert after == {**before, "said": "My name is Ada, and I live xxxxxxxxxxxxxxxxxxxxx"}
 
 
-def test_of_many_conversations_the_newest_are_listed_and_the_one_that_is_looked_at(
+def test_the_newest_conversations_and_the_one_in_view_are_listed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     @in_virtual_time

@@ -137,7 +137,7 @@ CONTAINERS: list[tuple[Any, Any, list[Any], list[Any]]] = [
 
 
 @pytest.mark.parametrize(("kind", "default", "taken", "refused"), CONTAINERS, ids=lambda one: str(one))
-def test_of_a_type_of_containers_the_container_is_asked_for(
+def test_a_container_type_takes_only_such_containers(
     kind: Any, default: Any, taken: list[Any], refused: list[Any]
 ) -> None:
     slot = rs.Module("boxes").slot("box", default, type=kind)

@@ -461,7 +461,7 @@ def test_it_waited_for_a_slot_that_was_taken(stage: Stage) -> None:
     assert found.words.endswith("demo:long answered at 3.000 s")
 
 
-def test_of_equals_the_first_declared_answers(stage: Stage) -> None:
+def test_the_first_declared_of_equal_rules_answers(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
     async def first(ctx: rs.RuleContext) -> None:
         await asyncio.sleep(0)

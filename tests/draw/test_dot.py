@@ -40,7 +40,7 @@ def test_a_loop_as_text() -> None:
     assert 'label=" ≥ 10 s "' in text
 
 
-def test_the_comments_explain_the_kinds_in_the_picture_alone() -> None:
+def test_the_comments_explain_only_the_kinds_in_the_picture() -> None:
     text = dot(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
     comments = [line.split(":")[0].strip() for line in text.splitlines() if line.startswith("  //")]
     assert comments == ["// signal", "// rule", "// condition"]

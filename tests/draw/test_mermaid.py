@@ -45,7 +45,7 @@ def test_a_comment_mentions_too_many_edges_for_the_default() -> None:
     assert "maxEdges" not in mermaid(build(games().rules))
 
 
-def test_the_comments_explain_the_kinds_in_the_picture_alone() -> None:
+def test_the_comments_explain_only_the_kinds_in_the_picture() -> None:
     text = mermaid(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
     comments = [line.split()[1] for line in text.splitlines() if line.startswith("  %%")]
     assert comments == ["signal", "rule", "condition"]

@@ -75,7 +75,7 @@ def test_the_legend_of_a_picture_with_every_kind_has_the_whole_notation() -> Non
     assert legend(diagram) == [*plain, *EDGES.values(), *junctions]
 
 
-def test_the_legend_explains_the_kinds_in_the_picture_alone() -> None:
+def test_the_legend_explains_only_the_kinds_in_the_picture() -> None:
     assert legend(Diagram((), ())) == []
     module = Module("m")
     rule(module, "r", module.signal("a"))

@@ -1,6 +1,6 @@
 """Run servers and Chromium for browser tests, on one loop in a thread of its own.
 
-Playwright makes its thread one with a running loop, and the other tests need a thread without a loop.
+A thread that uses Playwright has a running loop, and the other tests need a thread without a running loop.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ expect.set_options(timeout=30_000)  # milliseconds; long, because a slow machine
 PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
 CHROMIUM = ("chromium", "chromium-browser")
 SHELL = "chromium-headless-shell"
-"""Chromium without windows, in which a page takes a third of the time. It cannot refuse a microphone or a camera."""
+"""Chromium without windows. A page takes a third of the time in it. It cannot deny a page the microphone or camera."""
 FLAGS = [
     "--no-sandbox",  # for tests that run as root, in a container
     "--disable-gpu",

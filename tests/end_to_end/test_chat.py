@@ -316,7 +316,7 @@ async def test_a_frozen_server_does_not_look_present(stage: Stage) -> None:
 
 
 @on_stage
-async def test_of_five_thousand_lines_only_those_near_the_view_are_in_the_page(stage: Stage) -> None:
+async def test_only_the_lines_near_the_view_are_in_the_page_of_five_thousand_lines(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         (session,) = served.sessions

@@ -23,7 +23,7 @@ def standing(ran: dict[int, float], now: float, **options: dict[str, Any]) -> tu
     return found, [rule.clauses[0] for rule in policy.rule_plans]
 
 
-def test_of_equals_the_first_declared_goes_first() -> None:
+def test_the_first_declared_of_equal_rules_goes_first() -> None:
     here, (one, other) = standing({}, 0.0, one={}, other={})
     assert here.is_ahead(one, other)
     assert not here.is_ahead(other, one)

@@ -1,4 +1,4 @@
-"""The benchmarks fit the present code."""
+"""The benchmarks can be imported, and their tables and pictures fit the pages."""
 
 from __future__ import annotations
 

@@ -42,13 +42,13 @@ def test_the_readme_is_a_page_long() -> None:
     assert len(before.split()) <= 700
 
 
-def test_every_extra_is_told() -> None:
+def test_the_page_lists_every_extra() -> None:
     extras = set(tomllib.loads(text_of("pyproject.toml"))["project"]["optional-dependencies"])
     page = text_of("docs/how-to/install-it-in-a-project.md")
     assert set(re.findall(r"^\| `([\w-]+)` \|", page, re.MULTILINE)) == extras - {"dev", "docs"}
 
 
-def test_the_models_are_those_that_make_installs() -> None:
+def test_the_pages_name_the_models_that_make_installs() -> None:
     found = re.search(r"^SENTENCES := (.*)$", text_of("Makefile"), re.MULTILINE)
     assert found is not None
     page = text_of("docs/how-to/install-it-in-a-project.md")

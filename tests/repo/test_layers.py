@@ -1,7 +1,8 @@
 """The layers of the source: which package may import which.
 
 `pyproject.toml` has the order of the layers as an import-linter contract. This file
-proves the rest from the source itself: imports of the standard library, and modules that are named lazily.
+proves the rest from the source itself: imports of the standard library, and of modules that `ravestate.modules` loads on
+first use.
 """
 
 import ast
@@ -39,7 +40,7 @@ def files_of(*rooms: str) -> list[Path]:
 
 
 class Import(NamedTuple):
-    """An import: its absolute module, the names taken from it, and whether it waits for a call of its function."""
+    """An import: its absolute module, the names taken from it, and whether it runs only when its function is called."""
 
     line: int
     module: str
@@ -129,7 +130,7 @@ def test_modules_are_folders_all_built_alike() -> None:
 
 
 def test_no_import_leads_back_to_its_file() -> None:
-    """Imports at the top of files form no circle; those within functions run later and do not count."""
+    """Imports at the top of files form no circle. Imports within functions run later, so they do not count."""
     files = {_name_of(file): file for file in SOURCE.rglob("*.py")}
     graph: dict[str, set[str]] = {}
     for name, file in files.items():

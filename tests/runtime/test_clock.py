@@ -1,4 +1,4 @@
-"""The clock of a context: it can be halted, set forward and started again, without traces."""
+"""The clock of a context: it can be halted, set forward and started again, and nothing else changes."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def test_a_paused_context_may_be_stepped_from_within_a_task() -> None:
     assert asyncio.run(talk()).startswith("answer at 2")
 
 
-def test_a_driven_clock_moves_only_as_it_is_told_and_rules_follow_it() -> None:
+def test_a_driven_clock_moves_only_when_it_is_set_and_rules_follow_it() -> None:
     m = rs.Module("m")
     tick = m.signal("tick", payload=float)
     go = m.signal("go")

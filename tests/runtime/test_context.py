@@ -191,7 +191,7 @@ async def test_order_from_one_thread_is_kept() -> None:
 
 
 @on_loop
-async def test_several_may_wait_for_the_same() -> None:
+async def test_several_tasks_may_wait_for_the_same_signal() -> None:
     async with rs.Context(policy) as context:
         waiting = [asyncio.create_task(context.next(number)) for _ in range(3)]
         await turns(1)
@@ -263,7 +263,7 @@ async def test_the_end_of_the_context_fails_the_tasks_that_wait() -> None:
 
 
 @on_loop
-async def test_quiet_waits_for_what_runs_and_ends_with_the_context() -> None:
+async def test_quiet_waits_for_running_rules_and_ends_with_the_context() -> None:
     m = rs.Module("m")
     go, done = m.signal("go"), m.slot("done", 0)
     gate = asyncio.Event()
@@ -278,7 +278,7 @@ async def test_quiet_waits_for_what_runs_and_ends_with_the_context() -> None:
         await asyncio.get_running_loop().create_future()
 
     async with rs.Context(m) as context:
-        await context.quiet()  # what is in the background does not count
+        await context.quiet()  # background rules do not count
         context.emit(go)
         waiting = asyncio.create_task(context.quiet())
         await turns()
@@ -290,7 +290,7 @@ async def test_quiet_waits_for_what_runs_and_ends_with_the_context() -> None:
         context.emit(go)
         waiting = asyncio.create_task(context.quiet())
         await turns()
-    await waiting  # nothing runs any more
+    await waiting  # no rule runs any more
 
 
 @on_loop
@@ -389,7 +389,7 @@ async def test_a_snapshot_is_plain_data() -> None:
 
 
 @on_loop
-async def test_the_trace_is_kept_or_told_or_neither() -> None:
+async def test_the_trace_is_kept_or_passed_to_a_function_or_neither() -> None:
     told: list[object] = []
     for trace in (False, True, told.append):
         async with rs.Context(policy, trace=trace) as context:
@@ -789,7 +789,7 @@ async def test_a_rule_that_refuses_to_end_does_not_keep_the_process_alive() -> N
 
 
 @on_loop
-async def test_cancelling_the_end_breaks_off() -> None:
+async def test_cancelling_the_shutdown_breaks_it_off() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown)

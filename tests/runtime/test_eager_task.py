@@ -184,7 +184,7 @@ async def test_tools_of_asyncio_work_from_the_first_step() -> None:
         await asyncio.sleep(0)
         return result
 
-    async def once() -> AsyncIterator[None]:  # that does not wait
+    async def once() -> AsyncIterator[None]:  # an async generator that does not wait
         yield
 
     async def with_timeout() -> object:
@@ -333,7 +333,7 @@ async def test_cancelling_reaches_the_awaited_tasks(fresh: bool) -> None:
     with pytest.raises(asyncio.CancelledError):
         await eager.task
     await turns()
-    assert told in ([], ["inner", "inner"])  # those that had begun
+    assert told in ([], ["inner", "inner"])  # tasks that have not begun clean up nothing
     assert len(asyncio.all_tasks()) == 1
 
 

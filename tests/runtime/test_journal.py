@@ -126,7 +126,7 @@ async def doubt(ctx: rs.RuleContext) -> None:
 
 @on_loop
 async def test_a_recorded_or_traced_run_decides_the_same_as_a_quick_one() -> None:
-    """Only a run that nobody records reaches the engine without event records (L25)."""
+    """A run without a journal and a trace passes no event records to the engine, and still decides the same (L25)."""
 
     async def ends(**options: Any) -> list[Ended]:
         found: list[Ended] = []

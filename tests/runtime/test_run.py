@@ -255,7 +255,7 @@ async def _fail() -> None:
     raise rs.PlatformError("too slow")
 
 
-def test_when_one_of_several_ends_the_others_do_and_its_fault_is_not_lost() -> None:
+def test_when_one_task_ends_the_others_end_too_and_its_error_is_raised() -> None:
     ended: list[str] = []
     asyncio.run(until_first_ends(_for_ever(ended), _end()))
     with pytest.raises(rs.PlatformError, match="too slow"):

@@ -538,7 +538,7 @@ async def test_a_partial_an_object_or_a_method_may_be_a_plain_rule(function: Any
 
 @on_loop
 async def test_wiping_the_signal_of_a_plain_partial_does_not_end_it() -> None:
-    """A thread cannot be stopped, so the run goes on: the declaration says that the rule is a plain one."""
+    """The engine knows that the rule is a plain function. Its thread cannot be stopped, so the run goes on."""
     talk = Talk()
     begun, release = threading.Event(), threading.Event()
 

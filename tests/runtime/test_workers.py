@@ -119,8 +119,8 @@ def test_an_abandoned_job_leaves_its_place_to_the_next() -> None:
 
     hanging = [jobs.submit(hang) for _ in range(SHARE + 2)]
     jobs.submit(lambda: done.put("late"))
-    jobs.abandon(hanging[-1])  # which has not begun
-    jobs.abandon(hanging[0])  # whose place the next one takes
+    jobs.abandon(hanging[-1])  # a job that has not begun
+    jobs.abandon(hanging[0])  # the next job takes its place
     jobs.abandon(hanging[1])
     assert done.get(timeout=LIMIT) == "late"
     finished(jobs)

@@ -403,7 +403,7 @@ def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_
         ),
     ],
 )
-def test_of_a_bad_document_nothing_is_loaded(memory: Memory, document: dict[str, Any], said: str) -> None:
+def test_nothing_of_a_bad_document_is_loaded(memory: Memory, document: dict[str, Any], said: str) -> None:
     with pytest.raises(RuleError) as caught:
         memory.load(document).result()
     assert said in str(caught.value)

@@ -147,7 +147,7 @@ def test_any_rule_may_raise_a_feeling_before_or_after_it_speaks() -> None:
             assert sim.said[1] in EMOJI["happy"]
 
 
-def test_of_two_feelings_one_emoji_shows_that_of_the_later() -> None:
+def test_one_emoji_shows_the_later_of_two_feelings() -> None:
     glad = rs.Module("glad", requires=[rawio, emotion])
 
     @glad.rule(when=rawio.input.changed, writes=rawio.output, emits=(emotion.happy, emotion.affectionate))

@@ -93,7 +93,7 @@ def test_no_trace_has_a_vector(memory: Path) -> None:
     assert not any(repr(number) in text for number in faces()["obama"].vector)
 
 
-def test_of_several_users_whom_the_agent_does_not_see_none_is_forgotten(memory: Path) -> None:
+def test_nobody_is_forgotten_if_there_are_several_users_whom_the_agent_does_not_see(memory: Path) -> None:
     with agent(memory) as sim:
         sim.put(interloc.users, {"a": interloc.Recognised("Ada", Node("Person", {"name": "Ada"})), "b": None})
         sim.say("forget my face")

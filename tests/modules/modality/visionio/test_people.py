@@ -53,7 +53,7 @@ def test_the_nearest_person_is_found_up_to_the_threshold(graph: Memory) -> None:
     assert 0.6 < do(graph, lambda g: people.least(g, vector("six_1"))) < 1.0
 
 
-def test_of_two_people_who_are_as_near_nobody_is_recognised(graph: Memory) -> None:
+def test_nobody_is_recognised_if_two_people_are_equally_near(graph: Memory) -> None:
     keep(graph, "Barack", "obama")
     keep(graph, "Bary", "obama")
     assert do(graph, lambda g: people.nearest(g, vector("obama3"), 0.55)) is None

@@ -35,7 +35,7 @@ async def greet(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_a_user_who_blocks_the_agent_during_a_slow_answer_ends_their_chat_alone(tmp_path: Path) -> None:
+async def test_a_user_who_blocks_the_agent_during_a_slow_answer_ends_only_their_own_chat(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow) as opened:
         opened.receive([letter("one", "a"), letter("two", "b")])
@@ -48,7 +48,7 @@ async def test_a_user_who_blocks_the_agent_during_a_slow_answer_ends_their_chat_
 
 
 @in_virtual_time
-async def test_a_send_that_is_forbidden_during_a_slow_answer_ends_that_chat_alone(tmp_path: Path) -> None:
+async def test_a_send_that_is_forbidden_during_a_slow_answer_ends_only_that_chat(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow, greeter) as opened:
         post.failures += [DeliveryError("blocked", gone=True)]
@@ -100,7 +100,7 @@ async def test_a_late_refusal_does_not_close_the_chat_of_a_user_who_has_returned
 
 
 @in_virtual_time
-async def test_a_slow_answer_to_one_person_is_given_though_a_known_one_returns(tmp_path: Path) -> None:
+async def test_a_slow_answer_to_one_person_is_given_even_if_another_returns(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow, greeter, rest=60.0) as opened:
         opened.receive([letter("one", "g", person=ADA, group=True), letter("two", "g", person=BOB, group=True)])
@@ -115,7 +115,7 @@ async def test_a_slow_answer_to_one_person_is_given_though_a_known_one_returns(t
 
 
 @pytest.mark.parametrize("seconds", [3.0, 30.0])
-def test_a_question_is_answered_though_another_person_asks_to_be_forgotten(tmp_path: Path, seconds: float) -> None:
+def test_a_question_is_answered_even_if_another_person_asks_to_be_forgotten(tmp_path: Path, seconds: float) -> None:
     thinker = rs.Module("thinker", requires=(rawio,))
 
     @thinker.rule(when=rawio.input.changed, writes=rawio.output)
@@ -193,7 +193,7 @@ def test_a_file_that_cannot_be_written_delays_an_answer_and_loses_none(tmp_path:
 
 
 @in_virtual_time
-async def test_words_that_no_message_has_caused_are_kept_once_the_file_can_be_written(tmp_path: Path) -> None:
+async def test_words_without_a_message_are_sent_once_the_file_can_be_written(tmp_path: Path) -> None:
     post = Post()
     herald = rs.Module("herald", requires=(rawio,))
     news = herald.signal("news", input=True)

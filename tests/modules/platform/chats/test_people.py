@@ -12,7 +12,7 @@ from ravestate.runtime.agent import Agent
 ADA, OTHER = Person("1", "Ada"), Person("2", "Ada")
 
 
-def test_a_stranger_of_the_same_name_hears_nothing_of_what_the_first_one_told(tmp_path: Path) -> None:
+def test_a_stranger_of_the_same_name_hears_nothing_about_the_first_person(tmp_path: Path) -> None:
     async def talk(*said: tuple[Person, str]) -> list[str]:
         settings = {"ontology": {"path": tmp_path / "memory.lbug"}, "letters": {"path": tmp_path / "letters.db"}}
         post = Post()

@@ -57,7 +57,7 @@ async def test_beyond_the_limit_the_chat_that_was_silent_longest_rests(tmp_path:
 
 
 @in_virtual_time
-async def test_many_new_chats_at_once_soon_are_no_more_than_the_limit(tmp_path: Path) -> None:
+async def test_many_new_chats_at_once_are_soon_reduced_to_the_limit(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, chats=5) as opened:
         opened.receive([letter("x", name) for name in "abcde"])
@@ -235,7 +235,7 @@ async def test_a_chat_that_is_closed_is_forgotten(tmp_path: Path) -> None:
 
 
 @in_virtual_time
-async def test_a_file_that_cannot_be_fetched_is_admitted(tmp_path: Path) -> None:
+async def test_the_agent_admits_that_it_could_not_fetch_a_file(tmp_path: Path) -> None:
     post = Post()
     post.files["1"] = b"picture"
     looker = rs.Module("looker", requires=(rawio,))

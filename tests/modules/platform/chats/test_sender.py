@@ -14,7 +14,7 @@ from ravestate.modules.platform.chats.store import Answer
 async def test_a_spare_turn_is_one_for_which_no_message_waits() -> None:
     pace = Pace(20.0)
     await past(10.0)
-    while pace.spare():  # those of the burst
+    while pace.spare():  # use up the turns of the burst
         pass
     await pace.turn()
     assert not pace.spare()
@@ -64,7 +64,7 @@ class Stubborn(Post):
 
 
 @in_virtual_time
-async def test_a_message_is_sent_once_though_the_file_cannot_be_written_meanwhile(tmp_path: Path) -> None:
+async def test_a_message_is_sent_once_even_if_the_file_cannot_be_written_meanwhile(tmp_path: Path) -> None:
     post = Stubborn()
     async with room(tmp_path, post) as opened:
         post.database = opened.store._db

@@ -81,7 +81,7 @@ def test_an_answer_goes_from_queued_over_begun_to_sent(tmp_path: Path) -> None:
     assert store.recorded(entry.n) == []
 
 
-def test_the_answer_to_the_newest_message_alone_is_found_for_an_edit(tmp_path: Path) -> None:
+def test_only_the_answer_to_the_newest_message_is_found_for_an_edit(tmp_path: Path) -> None:
     store = opened(tmp_path)
     first = store.take(letter("one", id="m1"))
     assert first is not None
@@ -99,7 +99,7 @@ def test_the_answer_to_the_newest_message_alone_is_found_for_an_edit(tmp_path: P
     assert store.answer_to(unanswered) is None  # an edit of the first message came in between
 
 
-def test_a_message_that_kills_each_process_is_given_up_and_one_that_nobody_heard_is_not(tmp_path: Path) -> None:
+def test_a_message_that_kills_each_process_is_given_up_but_not_an_unheard_message(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("deadly"))
     store.take(letter("innocent"))
@@ -113,7 +113,7 @@ def test_a_message_that_kills_each_process_is_given_up_and_one_that_nobody_heard
     assert left == [["deadly", "innocent"]] * TRIES + [["innocent"]] * 2
 
 
-def test_a_change_of_a_message_that_is_not_heard_takes_its_place(tmp_path: Path) -> None:
+def test_an_edit_replaces_a_message_that_is_not_heard_yet(tmp_path: Path) -> None:
     store, message = opened(tmp_path), letter("one")
     entry, edit = store.take(message), store.take(letter("two", id=message.id, kind="edit"))
     assert entry is not None

@@ -24,7 +24,7 @@ def test_a_damaged_note_is_refused() -> None:
         asyncio.run(words_in(b"no sound at all"))
 
 
-def test_without_speech_there_is_a_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_speech_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, VOICE, None)
     assert asyncio.run(spoken("Hello")) is None
     with pytest.raises(PlatformError, match=r"pip install 'ravestate\[voice\]'"):

@@ -228,7 +228,7 @@ def test_lines_of_a_pipe_are_answered_one_by_one(keys: Keys) -> None:
         assert sim.said == ["one two", "three four", "Bye!"]
 
 
-def test_the_history_is_the_users_choice(monkeypatch: pytest.MonkeyPatch, keys: Keys) -> None:
+def test_a_setting_turns_the_history_off(monkeypatch: pytest.MonkeyPatch, keys: Keys) -> None:
     seen: list[dict[str, Any]] = []
     monkeypatch.setattr(conio.rules, "Console", lambda **options: seen.append(options) or Console(keys))
     monkeypatch.setattr(conio.rules, "history_file", lambda: Path("file"))

@@ -78,7 +78,7 @@ def test_lines_are_typed_and_edited() -> None:
     play(scene)
 
 
-def test_each_key_calls_on_key_but_sending_the_line_does_not() -> None:
+def test_each_key_calls_on_key_except_the_key_that_sends_the_line() -> None:
     count = 0
 
     def on_key() -> None:

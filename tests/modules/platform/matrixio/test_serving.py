@@ -122,7 +122,7 @@ def test_a_room_that_cannot_be_joined_yet_delays_no_other(homeserver: Homeserver
             await ada.say(second, "two")
             await ada.say(first, "three")
             assert await ada.listen(2) == [f"{first}: one", f"{first}: three"]
-            failed.times = JOINS + 3  # no number of such failures is too large
+            failed.times = JOINS + 3  # the agent tries again after any number of such failures
             await failed.met.wait()
             assert (await ada.listen(3))[2:] == [f"{second}: two"]
 
@@ -301,7 +301,7 @@ async def test_malformed_events_are_left_out(tmp_path: Path, robin: Account, ada
 
 
 @live("Robin", "Ada")
-async def test_a_picture_is_sent_as_what_it_is(tmp_path: Path, robin: Account, ada: Account) -> None:
+async def test_a_picture_is_sent_with_its_own_type(tmp_path: Path, robin: Account, ada: Account) -> None:
     painter = rs.Module("painter", requires=(rawio,))
 
     @painter.rule(when=rawio.input.changed, reads=matrixio.chat)

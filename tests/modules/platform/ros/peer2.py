@@ -53,7 +53,7 @@ def main():
         return response
 
     async def silent(request, response):
-        await Future()  # for ever, and without a thread
+        await Future()  # waits for ever, without occupying a thread
         return response
 
     def count(goal):

@@ -106,7 +106,7 @@ def test_other_types_and_addresses_are_refused_in_words(caplog: pytest.LogCaptur
     asyncio.run(limited())
 
 
-def test_a_slow_node_of_the_latest_skips_messages_and_its_rate_is_kept() -> None:
+def test_a_channel_with_a_rate_skips_messages_and_the_latest_arrives() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
             newest: list[int] = []
@@ -147,6 +147,6 @@ def test_a_server_that_goes_away_fails_its_calls_at_once() -> None:
             await robot.close()
             with pytest.raises(PlatformError, match="the node of the service is gone"):
                 await call
-            await until(lambda: not bus._calls)  # nothing stays of the call that timed out either
+            await until(lambda: not bus._calls)  # the call that timed out is gone, too
 
     asyncio.run(main())

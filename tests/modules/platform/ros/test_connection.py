@@ -20,7 +20,7 @@ def wire(*bodies: bytes) -> bytes:
 
 
 def receive(main: Callable[[socket.socket, Taken, list[str]], Awaitable[None]], *, first: bytes = b"") -> None:
-    """Run a test with a publisher's socket, the messages that have been taken, and what else has happened."""
+    """Run a test with a publisher's socket, the messages taken so far, and a list of other events."""
 
     async def run() -> None:
         ours, theirs = socket.socketpair()
@@ -77,7 +77,7 @@ def test_messages_arrive_whole_in_pieces_of_any_size(piece: int) -> None:
     asyncio.run(main())
 
 
-def test_the_newest_of_all_that_have_come_is_known() -> None:
+def test_the_newest_of_all_messages_that_have_come_is_marked() -> None:
     bodies = [bytes([n]) * 8000 for n in range(20)]  # each is longer than a block
 
     async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
@@ -113,7 +113,7 @@ def test_the_reads_of_a_long_message_stay_short() -> None:
         assert taken == [size]
         assert statistics.median(times[-100:]) < 20 * statistics.median(
             times[:100]
-        )  # a copy of all takes 200 times as long
+        )  # copying the whole message each time would take 200 times as long
         connection.close()
         theirs.close()
 

@@ -101,7 +101,7 @@ def test_a_new_channel_has_the_latched_message_that_overtakes_it_and_no_older_on
     run(main)
 
 
-def test_the_rate_of_a_channel_holds_for_both_ways_of_its_messages_together() -> None:
+def test_the_rate_of_a_channel_limits_direct_and_bridged_messages_together() -> None:
     async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
         channel = reader.channel(1, pause=1e6)
         bridge = partial(channel.offer, owed=True)

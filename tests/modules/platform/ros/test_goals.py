@@ -49,7 +49,7 @@ def test_an_action_without_a_server_fails(ros1_network: Network) -> None:
 
 
 def test_a_goal_that_its_server_no_longer_knows_is_lost(ros1_network: Network) -> None:
-    """The test is the server. A restarted server lists no goals."""
+    """The test plays the server. After a restart, a server lists no goals."""
 
     async def main() -> None:
         async with ros1_network.lent() as node:
@@ -69,7 +69,7 @@ def test_a_goal_that_its_server_no_longer_knows_is_lost(ros1_network: Network) -
                     status.publish({"status_list": []}),
                 ],  # type: ignore[arg-type,return-value]
             )
-            with pytest.raises(PlatformError, match="the goal was lost: its server began anew"):
+            with pytest.raises(PlatformError, match="the goal was lost: its server restarted"):
                 await goal
 
     ros1_network.run(main)

@@ -47,7 +47,7 @@ def test_messages_go_there_and_come_back(either: Network) -> None:
     either.run(main)
 
 
-def test_all_of_a_fast_topic_arrives_in_order(either: Network) -> None:
+def test_every_message_of_a_fast_topic_arrives_in_order(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             got: list[int] = []
@@ -62,7 +62,7 @@ def test_all_of_a_fast_topic_arrives_in_order(either: Network) -> None:
     either.run(main)
 
 
-def test_the_latest_of_a_fast_topic_replaces_those_that_wait(either: Network) -> None:
+def test_the_latest_message_of_a_fast_topic_replaces_messages_that_wait(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             got: list[int] = []
@@ -180,7 +180,7 @@ def test_a_message_of_the_wrong_type_is_named_and_dropped(either: Network, caplo
     )
 
 
-def test_a_message_of_an_own_package_is_read_from_its_file(ros1_network: Network) -> None:
+def test_a_message_of_an_uninstalled_package_is_read_from_its_file(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             got: list[Any] = []
@@ -245,7 +245,7 @@ def test_the_clock_of_a_simulation_arrives_where_rospy_would_follow_it(ros1_netw
             master.deleteParam("/test", "/use_sim_time")
 
 
-def test_two_nodes_without_ros_speak_dds_with_an_own_package(ros2_network: Network) -> None:
+def test_two_nodes_without_ros_speak_dds_with_a_package_of_their_own(ros2_network: Network) -> None:
     async def main() -> None:
         async with ros2_network.lent(backend="dds") as one, opened(ros2_network.node(backend="dds")) as other:
             got: list[Any] = []

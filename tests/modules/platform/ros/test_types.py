@@ -59,7 +59,7 @@ def test_own_definitions_are_read_with_all_that_they_contain() -> None:
         assert plain(again) == {"all": [{"value": 1, "unit": "V"}, {"value": 2, "unit": ""}], "done": True}
 
 
-def test_ros_1_knows_types_by_their_sums() -> None:
+def test_ros_1_knows_types_by_their_checksums() -> None:
     types = Types(1)
     known = {
         "std_srvs/SetBool": "09fb03525b03e7ea1fd3992bafd87e16",

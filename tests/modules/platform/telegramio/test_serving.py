@@ -490,9 +490,7 @@ async def test_another_program_that_gets_the_messages_is_named(bot: Bot, tmp_pat
             await task
 
 
-def test_of_two_agents_of_one_bot_the_newcomer_gives_up(
-    bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_newer_of_two_agents_of_one_bot_gives_up(bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     @live
     async def test(bot: Bot, folder: Path) -> None:
         monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.SETTLED", 0.0)

@@ -71,7 +71,7 @@ def test_a_closed_ear_frees_its_canceller() -> None:
     assert list(hear(ear, bytes(6400))) == []
 
 
-def test_turns_that_were_taken_are_apart() -> None:
+def test_two_turns_do_not_overlap() -> None:
     ear = Ear()
     pcm = track((0.5, "What time is it?"), (3.0, "Thank you."), length=5.0)
     list(hear(ear, pcm[: 2 * 40000]))

@@ -133,7 +133,7 @@ def test_nothing_is_heard_of_the_next_utterance_before_it_sounds() -> None:
     run(listen)
 
 
-def test_the_echos_reference_is_the_sound_that_plays() -> None:
+def test_the_reference_of_the_echo_is_the_sound_that_plays() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()

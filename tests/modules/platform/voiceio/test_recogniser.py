@@ -47,7 +47,7 @@ def test_a_short_sound_is_not_written_twice() -> None:
     small.close()
 
 
-def test_a_last_word_that_needs_more_remains_plausible() -> None:
+def test_a_last_word_that_cannot_end_a_sentence_remains_plausible() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     found = small.recognise(bytes(9600) + spoken("It is a photograph of my") + bytes(6400))
     assert found.last.get("my", 0.0) > 0.05
@@ -85,7 +85,7 @@ def test_a_missing_grammar_is_named(tmp_path: Path) -> None:
         Recogniser(Settings(recogniser="grammar", model="none.gram"))
 
 
-def test_a_grammar_with_a_fault_is_told(tmp_path: Path) -> None:
+def test_a_grammar_with_a_fault_is_refused(tmp_path: Path) -> None:
     (tmp_path / "bad.gram").write_text("#JSGF V1.0; grammar bad; public <x> = xyzzyq;")
     broken = Recogniser(Settings(recogniser="grammar", model=str(tmp_path / "bad.gram")))
     with pytest.raises(PlatformError, match="cannot load grammar"):
@@ -93,7 +93,7 @@ def test_a_grammar_with_a_fault_is_told(tmp_path: Path) -> None:
     broken.close()
 
 
-def test_a_missing_model_is_told_with_its_remedy() -> None:
+def test_the_message_about_a_missing_model_says_what_to_do() -> None:
     with pytest.raises(PlatformError, match=r"no model 'huge'; there are: .*ravestate voice get huge"):
         Recogniser(Settings(model="huge"))
 
@@ -156,7 +156,7 @@ def test_a_long_recording_is_understood_in_pieces(monkeypatch: pytest.MonkeyPatc
     small.close()
 
 
-def test_a_sound_of_the_greatest_length_fits_into_the_models_window() -> None:
+def test_a_sound_of_maximum_length_fits_into_the_models_window() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     pcm = bytes(16000) + spoken("Dinner is ready.")
     found = small.recognise(pcm.ljust(round(32000 * recogniser.LONGEST), b"\0"))

@@ -78,7 +78,7 @@ def test_a_question_is_answered(tmp_path: Path) -> None:
 
 
 def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also while somebody else uses the same voice, which varies from sentence to sentence."""
+    """This holds even while another program uses the same voice, whose sound varies from sentence to sentence."""
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "No, stop."), length=8.0))
     other = Synthesiser(Settings(voice=FAST["voiceio"]["voice"]))
     runs: list[tuple[list[Said], str]] = []
@@ -223,7 +223,7 @@ def test_pieces_are_spoken_once_and_another_text_follows_them(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Also if the pieces end in a space that the whole utterance lacks, and without the flag ``rawio.speaking``."""
+    """This holds even if the pieces end in a space that the utterance lacks, or without the flag ``rawio.speaking``."""
     script(monkeypatch, "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
     said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
@@ -248,7 +248,9 @@ def test_a_pause_within_a_sentence_is_no_end(tmp_path: Path, monkeypatch: pytest
     assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the whole turn was heard
 
 
-def test_two_people_are_not_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_words_of_two_people_are_not_joined_to_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     script(monkeypatch, "I would like to go to the", "I would like to go to the", "No, that is much too far.")
     first, second = (
         spoken("I would like to go to the", "espeak:en-us"),
@@ -289,7 +291,7 @@ def test_a_recogniser_that_fails_makes_the_agent_ask_back(tmp_path: Path, monkey
     assert any(word in ask for word in ("catch", "again", "repeat")) and story == WHOLE
 
 
-def test_silence_and_noise_are_nobodys_turn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_silence_and_noise_are_no_turn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scripted = script(monkeypatch, "Hello?")
     assert talk(wav(tmp_path / "in.wav", noise(5.0, 2000)), None, storyteller(), settings=FAST) == []
     assert scripted.heard == []
@@ -333,7 +335,7 @@ def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.Mo
 
 
 def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A page brings its line in the instant in which its context begins."""
+    """A page provides its line at the moment when its context begins."""
 
     from modules.platform.voiceio.test_wav_line import run
     from ravestate.modules.platform.voiceio.wav_line import WavLine
@@ -359,7 +361,7 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
 
 
 def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Before the conversation, or at its end if the file is lost only then."""
+    """It ends before the conversation, or at the end of the conversation if the file is lost only then."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):

@@ -24,7 +24,7 @@ def test_the_parts_make_the_whole() -> None:
     assert "".join(sentence for _, sentence in sentences(text, whole=True)) == text
 
 
-def test_emoji_and_marks_are_not_spoken_and_places_stay() -> None:
+def test_emoji_and_marks_become_spaces_of_the_same_length() -> None:
     assert speakable("*Hi* there 😊!") == " Hi  there  !"
     assert speakable("😊 …") == ""
 

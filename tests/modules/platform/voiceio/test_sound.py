@@ -64,7 +64,7 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
         sound.decode(tmp_path / "none.wav", 16000)
 
 
-def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match="cannot write"):
         sound.write_wav(tmp_path / "none" / "out.wav", bytes(100), 16000)
 

@@ -228,7 +228,7 @@ async def test_any_bytes_on_the_line_are_survived() -> None:
 
 
 @on_loop
-async def test_frames_that_are_none_are_survived_and_do_not_fill_the_log() -> None:
+async def test_invalid_frames_are_survived_and_do_not_fill_the_log() -> None:
     no_text = b"\x81\x82\0\0\0\0\xff\xfe"
     unmasked = b"\x81\x02{}"
     reserved = b"\xf1\x80\0\0\0\0"

@@ -35,7 +35,7 @@ def test_addresses_that_others_reach(host: str) -> None:
         ("127.0.0.1:8420", "https://chat.museum.example"),
     ],
 )
-def test_the_page_and_those_who_may_embed_it_come_in(host: str, origin: str | None) -> None:
+def test_the_page_and_the_sites_that_may_embed_it_come_in(host: str, origin: str | None) -> None:
     access = Access(Settings(origins=("https://chat.museum.example",)))
     assert access.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
 

@@ -24,7 +24,7 @@ async def talk_without_end(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_a_silent_client_is_told_what_was_expected_and_closed() -> None:
+async def test_a_silent_client_gets_a_message_about_the_expected_frame_and_is_closed() -> None:
     async with page() as app, Visit(app) as visit:
         error = await visit.next()
         assert error["text"] == 'no hello within 10 s: begin with {"type": "hello", "v": 1}'
@@ -46,7 +46,7 @@ async def test_a_silent_client_is_told_what_was_expected_and_closed() -> None:
         ('{"type": "say", "id": "a", "text": " "}', "has nothing in it"),
     ],
 )
-def test_a_client_that_begins_without_hello_is_told_and_closed(first: str | bytes, said: str) -> None:
+def test_a_client_that_begins_without_hello_gets_an_error_and_is_closed(first: str | bytes, said: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with page() as app, Visit(app) as visit:
@@ -60,7 +60,7 @@ def test_a_client_that_begins_without_hello_is_told_and_closed(first: str | byte
 
 
 @in_virtual_time
-async def test_a_bad_frame_later_is_told_and_the_conversation_goes_on() -> None:
+async def test_a_later_bad_frame_gets_an_error_and_the_conversation_goes_on() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -144,7 +144,7 @@ async def test_a_client_that_reports_writing_all_the_time_is_heard_at_once() -> 
 
 
 @in_virtual_time
-async def test_of_too_many_that_tell_of_writing_the_rest_is_left_aside() -> None:
+async def test_messages_about_typing_are_ignored_above_a_limit() -> None:
     noticed = 0
     scribe = rs.Module("scribe", requires=(rawio,))
 
@@ -162,7 +162,7 @@ async def test_of_too_many_that_tell_of_writing_the_rest_is_left_aside() -> None
         before = noticed
         visit.tell("writing")
         await past(1.0)
-        assert noticed == before + 1  # it owes nothing
+        assert noticed == before + 1  # the ignored messages use up no tokens
 
 
 @in_virtual_time

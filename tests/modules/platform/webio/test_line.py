@@ -53,7 +53,7 @@ async def test_sound_of_any_size_comes_in_blocks_of_20_ms() -> None:
 
 
 @in_virtual_time
-async def test_of_sound_that_the_agent_does_not_take_the_newest_is_kept() -> None:
+async def test_the_newest_sound_is_kept_if_the_agent_takes_none() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     for number in range(30):
@@ -88,13 +88,13 @@ async def test_the_position_is_what_the_window_reports() -> None:
     await past(0.1)
     assert line.played == 0.6  # by estimate, the loudspeaker has gone on since then
     await past(1.0)
-    assert line.played == 0.7  # a report is missing
+    assert line.played == 0.7  # without a report, the estimate stops
     window.played(0.6)
-    assert line.played == 0.7  # never less
+    assert line.played == 0.7  # the position never goes back
     window.played(1.0)
     window.played(1.0)
     await past(1.0)
-    assert line.played == 1.0  # it stands still
+    assert line.played == 1.0  # the position stands still
     assert len(window.sound) == 2 * 2 * AHEAD
 
 
@@ -143,7 +143,7 @@ async def test_dropped_sound_is_neither_played_nor_sent_and_the_position_goes_on
 
 
 @in_virtual_time
-async def test_one_window_has_it_at_a_time_and_the_other_is_told() -> None:
+async def test_only_one_window_at_a_time_has_the_line_and_the_other_window_gets_a_message() -> None:
     line = PageLine()
     line.take(one := Speaker(line))
     line.take(one)
@@ -155,7 +155,7 @@ async def test_one_window_has_it_at_a_time_and_the_other_is_told() -> None:
     assert await taken(line, 1) == [bytes([2]) * BLOCK]
     line.play(tone(0.5))
     assert other.sound == tone(0.5)
-    line.leave(one)  # it has nothing any more
+    line.leave(one)  # it has already lost the line
     assert line.window is other
 
 
@@ -188,7 +188,7 @@ async def test_a_window_that_plays_nothing_loses_it() -> None:
 
 
 @in_virtual_time
-async def test_a_window_that_nobody_listens_to_is_told_so() -> None:
+async def test_a_window_gets_a_message_if_the_agent_does_not_listen() -> None:
     left: list[int] = []
     line = PageLine(lambda: left.append(1))
     line.take(window := Speaker(line))

@@ -155,7 +155,7 @@ def test_another_version_is_refused_as_such() -> None:
     assert refused.value.code == "version"
 
 
-def test_fields_that_are_not_known_are_left_aside() -> None:
+def test_unknown_fields_are_ignored() -> None:
     assert parse('{"type": "bye", "why": "tired"}', CLIENT) == Bye()
 
 
@@ -167,7 +167,7 @@ def test_fields_that_are_not_known_are_left_aside() -> None:
         ("\u0928\u093f\u200d\u0915", "\u0928\u093f\u200d\u0915"),  # spelt with a joiner
     ],
 )
-def test_a_name_is_on_one_line_and_turns_nothing_round(name: str, shown: str) -> None:
+def test_a_name_is_on_one_line_and_does_not_change_the_direction_of_writing(name: str, shown: str) -> None:
     assert parse(json.dumps({"type": "hello", "v": 1, "name": name}), CLIENT).name == shown
 
 

@@ -92,7 +92,7 @@ async def test_a_foreign_origin_is_refused() -> None:
 
 
 @on_loop
-async def test_when_it_is_ended_the_visitors_are_told_and_nothing_is_complained_of() -> None:
+async def test_at_its_end_the_visitors_get_a_message_and_no_error_is_printed() -> None:
     with Served() as served:
         async with served.connect() as visit, served.connect() as silent:
             await hello(visit)
@@ -177,18 +177,18 @@ def test_the_token_goes_to_no_output_but_a_terminal(monkeypatch: pytest.MonkeyPa
     assert err == (LINK if terminal else "")
 
 
-def test_the_address_is_the_machines_name_where_it_listens_on_all() -> None:
+def test_a_server_on_all_addresses_shows_the_name_of_the_machine() -> None:
     with Served(token=TOKEN, host="0.0.0.0") as served:
         link = f"http://{socket.gethostname()}:{served.port}/"
         assert served.line == f"The agent is at {link} (Ctrl-C ends it)\n"
 
 
-def test_where_others_can_reach_it_a_token_is_needed() -> None:
+def test_a_server_that_others_can_reach_needs_a_token() -> None:
     with pytest.raises(rs.PlatformError, match=r"others can reach host '0\.0\.0\.0', so a token is needed"):
         rs.run(parrot, webio, settings={"webio": {"host": "0.0.0.0", "port": 0}})
 
 
-def test_a_port_in_use_is_said() -> None:
+def test_a_port_in_use_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(rs.PlatformError, match=f"port {port} is in use: .* --set webio.port=0"):
@@ -196,7 +196,7 @@ def test_a_port_in_use_is_said() -> None:
 
 
 @pytest.mark.parametrize("host", ["192.0.2.1", "nowhere.invalid"])
-def test_an_address_that_is_not_ours_is_said(host: str) -> None:
+def test_an_address_of_another_machine_is_reported(host: str) -> None:
     with pytest.raises(rs.PlatformError, match=host.replace(".", r"\.")):
         rs.run(parrot, webio, settings={"webio": {"host": host, "port": 0, "token": TOKEN}})
 

@@ -144,7 +144,7 @@ async def test_the_page_is_called_as_the_agent_calls_itself_and_by_its_new_name_
 
 
 @in_virtual_time
-async def test_a_name_that_is_found_out_later_is_shown_then_as_plain_text() -> None:
+async def test_a_name_that_is_found_later_is_shown_at_that_time_as_plain_text() -> None:
     async with page(late) as app, Visit(app) as visit:
         assert (await visit.hello())["agent"] == "Ravestate"
         assert await visit.next() == {"type": "renamed", "agent": "Robin"}
@@ -206,7 +206,7 @@ async def test_the_visitor_reads_you_left_and_others_read_the_visitor_left() -> 
 
 
 @pytest.mark.parametrize("ending", [ending for ending in Ending if ending is not Ending.BYE])
-def test_why_it_has_ended_is_told_to_the_visitor_as_to_others_if_it_was_not_the_visitor(
+def test_the_visitor_reads_the_same_reason_as_others_unless_the_visitor_left(
     ending: Ending,
 ) -> None:
     assert ending.for_visitor == str(ending)

@@ -124,7 +124,7 @@ async def test_all_windows_of_a_visitor_show_the_same() -> None:
 
 
 @in_virtual_time
-async def test_a_conversation_that_is_not_known_is_not_made_up() -> None:
+async def test_a_client_cannot_choose_the_id_of_a_new_conversation() -> None:
     async with page() as app, Visit(app) as visit:
         welcome = await visit.hello(session="chosen-by-the-client", last=7)
         assert not welcome["resumed"]
@@ -177,7 +177,7 @@ async def test_a_visitor_who_leaves_for_good_hears_goodbye() -> None:
 
 
 @in_virtual_time
-async def test_when_the_page_is_closed_all_are_told() -> None:
+async def test_all_visitors_get_a_message_when_the_page_is_closed() -> None:
     async with page() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -191,7 +191,7 @@ async def test_when_the_page_is_closed_all_are_told() -> None:
 
 
 @in_virtual_time
-async def test_an_agent_that_leaves_ends_this_conversation_alone() -> None:
+async def test_an_agent_that_leaves_ends_only_this_conversation() -> None:
     async with page(quitter) as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -226,7 +226,7 @@ async def test_an_agent_that_fails_ends_this_conversation_and_says_so(
 
 
 @in_virtual_time
-async def test_beyond_the_limit_those_end_first_that_are_missed_least() -> None:
+async def test_beyond_the_limit_silent_abandoned_conversations_end_first() -> None:
     async with page(sessions=3) as app, Visit(app) as present:
         await present.hello()
         async with Visit(app) as talker:
@@ -251,7 +251,7 @@ async def test_beyond_the_limit_those_end_first_that_are_missed_least() -> None:
 
 
 @in_virtual_time
-async def test_a_conversation_has_only_so_many_windows() -> None:
+async def test_the_number_of_windows_of_a_conversation_is_limited() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         windows = [Visit(app) for _ in range(sessions.ONLOOKERS - 1)]

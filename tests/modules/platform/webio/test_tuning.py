@@ -20,7 +20,7 @@ def setting() -> tuple[float, tuple[int, int, int]]:
 OURS = (pytest.approx(SWITCH), COLLECT)
 
 
-def test_it_is_as_before_once_the_last_has_left_whoever_that_is() -> None:
+def test_the_settings_are_as_before_once_every_user_of_them_has_left() -> None:
     before = setting()
     first, second = contextlib.ExitStack(), contextlib.ExitStack()
     first.enter_context(low_latency())
@@ -32,7 +32,7 @@ def test_it_is_as_before_once_the_last_has_left_whoever_that_is() -> None:
     assert setting() == before
 
 
-def test_it_is_as_before_also_after_a_failure() -> None:
+def test_the_settings_are_as_before_after_a_failure_too() -> None:
     before = setting()
     with pytest.raises(OSError, match="the disk"), low_latency():
         raise OSError("the disk")

@@ -262,12 +262,12 @@ async def test_heard_words_belong_to_the_message_that_begins_with_them() -> None
         for heard, frame in (
             ("one  two", {"n": 3, "text": "one two"}),
             ("one two three", {"n": 3, "text": "one two  three"}),  # it was a false alarm, and the agent went on
-            ("", {"n": 5, "text": ""}),  # nothing of the newest
+            ("", {"n": 5, "text": ""}),  # the user heard nothing of the newest message
         ):
             context.put(rawio.heard, heard)
             assert (await visit.frames("heard"))[-1] == {"type": "heard", **frame}
         context.put(rawio.heard, "nothing of the kind")
-        context.put(rawio.heard, "Hello!")  # the whole of a message without a mark
+        context.put(rawio.heard, "Hello!")  # the user heard the whole message, so it gets no mark
         await past(1.0)
         assert visit.nothing_more()
 
@@ -355,7 +355,7 @@ async def test_sound_beyond_the_speed_of_speech_is_ignored() -> None:
 
 
 @in_virtual_time
-async def test_sound_and_reports_leave_the_limit_of_words_alone() -> None:
+async def test_sound_and_reports_do_not_count_towards_the_limit_of_words() -> None:
     async with calling() as (_, caller):
         for _ in range(100):
             caller.send(bytes(640))

@@ -1,4 +1,4 @@
-"""The words and the effect of forgetting a person."""
+"""Forgetting a person: the agent's answers, and the effect on its memory and on other modules."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_the_agent_asks_whom_to_forget_when_nobody_is_recognised(file: Path, loo
     assert look() == {}
 
 
-def test_nobody_has_another_person_forgotten(file: Path, look: Look) -> None:
+def test_a_user_cannot_make_the_agent_forget_another_person(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file, confirm=True) as sim:

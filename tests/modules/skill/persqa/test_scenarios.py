@@ -684,7 +684,7 @@ class Broken:
         return fail
 
 
-def test_without_memory_nobody_is_told_that_he_is_forgotten() -> None:
+def test_without_memory_users_do_not_hear_that_they_are_forgotten() -> None:
     with agent(None) as sim:
         sim.say("my name is ada")
         sim.say("forget me")
@@ -734,7 +734,7 @@ def test_facts_that_could_not_be_saved_are_saved_later(
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
 
 
-def test_memory_that_fails_when_he_comes_knows_him_later(file: Path, look: Look) -> None:
+def test_a_memory_that_fails_when_users_come_knows_them_later(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file) as sim:
@@ -835,7 +835,7 @@ def test_a_user_who_comes_with_a_name_is_reminded(file: Path) -> None:
         assert answers(sim, "peru") != "I see."
 
 
-def test_a_user_without_a_name_gets_it_and_when_he_leaves_the_next_is_another(file: Path) -> None:
+def test_a_user_gets_a_name_and_the_next_user_is_another_person(file: Path) -> None:
     with agent(file) as sim:
         sim.put(interloc.users, {"console": None})
         sim.say("my name is ada")

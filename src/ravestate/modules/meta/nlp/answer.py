@@ -98,7 +98,7 @@ def yesno_of(text: str) -> YesNo:
 
 
 def _score(text: str) -> int | None:
-    """Return the score of the first sentence of a text that has more than fillers."""
+    """Return the score of a text's first sentence. Sentences of fillers alone do not count."""
     found: int | None = None
     opened = hedged = False
     for part, marks in _parts(text):
@@ -137,7 +137,11 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _score_of_part(part: str, asks: bool) -> int | None:
-    """Return the score of a part. A question has a score only if it resembles an example that asks likewise, or a weak answer."""
+    """Return the score of a part.
+
+    A part with a question mark must match an example with the same word order. If that is not the order of a question,
+    the example must also be a weak or an unsure answer.
+    """
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
     if match is not None and asks:
@@ -157,6 +161,6 @@ def _explicit(part: str) -> int | None:
 
 
 def _score_of_sentence(text: str) -> int | None:
-    """Return the score of the first sentence of a text as a whole: the parts of *heavens, no* contradict each other."""
+    """Return the score of a text's first sentence as a whole, when its parts have no score or contradict each other."""
     match = next(iter(bundled_matcher("answers").match_all(sentences(text)[:1])), None)
     return None if match is None else _SCORES[match.name]

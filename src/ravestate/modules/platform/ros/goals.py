@@ -108,7 +108,7 @@ class GoalTopics:
                 goal.tracked = True
                 goal.listed.set()
             elif goal.tracked and not goal.result.done():
-                goal.result.set_exception(self._failure("lost: its server began anew"))
+                goal.result.set_exception(self._failure("lost: its server restarted"))
 
     def _feedback(self, message: Any) -> None:
         goal = self._goals.get(message.status.goal_id.id)

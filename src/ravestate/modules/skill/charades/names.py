@@ -53,7 +53,7 @@ invited: rs.Signal[Move] = module.signal("invited", payload=Move)
 """The user wants to play something, or is bored."""
 
 strayed: rs.Slot[float] = module.slot("strayed", 0.0, always=True)
-"""The time of the user's last words during a game that were no move, in seconds since the context began."""
+"""The time at which the user last said something other than a move during a game (seconds since the context began)."""
 
 prompted: rs.Signal[int] = module.signal("prompted", payload=int, keep="latest")
 """The agent waits for the user's next move. The payload is `Game.turn` at that time."""

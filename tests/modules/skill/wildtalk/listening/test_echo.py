@@ -35,7 +35,7 @@ def test_a_statement_is_turned(text: str, echo: str, subject: str, tense: str) -
     assert (found.echo, found.subject, found.tense) == (echo, subject, tense)
 
 
-def test_of_several_clauses_the_one_that_says_most_is_taken() -> None:
+def test_the_clause_that_says_most_is_taken() -> None:
     found = told("It rained, and my brother lost his new umbrella on the bridge.")
     assert found is not None
     assert found.echo == "your brother lost his new umbrella on the bridge"

@@ -306,7 +306,7 @@ def test_a_question_is_answered_by_its_kind_and_its_area_of_life(
         ("should I call my boss or wait till Monday?", ("call your boss", "wait till Monday")),
     ],
 )
-def test_of_two_options_it_chooses_one(text: str, options: tuple[str, str], begin: Callable[[int], Any]) -> None:
+def test_it_chooses_one_of_two_options(text: str, options: tuple[str, str], begin: Callable[[int], Any]) -> None:
     for seed in range(4):
         assert any(option.lower() in begin(seed).say(text).lower() for option in options)
 

@@ -1,8 +1,9 @@
 """The backend of speech recognition by faster-whisper. `serve` runs this file.
 
-Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So this backend does not
-fill up sounds, of at most 25 seconds, with silence: a sentence then takes a fifth of the time. In such a short window,
-the model often misses the end, and writes the same words again. The backend cuts the repetition off.
+Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So this backend
+does not fill the window: it adds only a few seconds of silence (`TAIL`) to a sound. A sentence then takes a fifth of
+the time. A sound has at most 25 seconds. In such a short window, the model often misses the end, and writes the same
+words again. The backend cuts the repetition off.
 """
 
 # pyright: basic
@@ -13,15 +14,15 @@ import zlib
 from typing import Any
 
 TAIL = 5.0
-"""The seconds of silence behind the sound. With less silence, the model repeats itself more often."""
+"""The seconds of silence after the sound. With less silence, the model repeats itself more often."""
 MOST = 8
 """The maximum number of tokens in a second of speech. People say at most five words in a second."""
 PHRASE = 3
-"""The minimum number of words in a phrase that nobody says twice in a row. People repeat short phrases ("no, no")."""
+"""The minimum number of words in a repeated phrase that is cut off. People do repeat shorter phrases ("no, no")."""
 PLAUSIBLE = 0.02
-"""The probability above which another last word is reported."""
+"""The probability above which an alternative for the last word is reported."""
 POOR = -1.0
-"""The mean log probability of a token below which the backend recognises the sound again, in the usual window."""
+"""If the mean log probability of the tokens is below this, the backend tries again with windows of 30 seconds."""
 REPEATED = 2.4
 """The ratio of compression above which a text repeats itself, as a confused model does."""
 
