@@ -529,6 +529,23 @@ def test_an_outdated_fact_is_removed_and_asked_again(file: Path, look: Look) -> 
     assert look() == {"Ada": {}}
 
 
+@pytest.mark.parametrize(
+    ("told", "ended", "question", "value"),
+    [
+        ("i live in leeds", "i don't live in leeds any more", "where do i live?", "you live in leeds"),
+        ("my hobby is chess", "i gave up chess", "what is my hobby?", "your hobby is chess"),
+    ],
+)
+def test_an_ended_fact_is_not_recalled_from_an_earlier_statement(
+    file: Path, told: str, ended: str, question: str, value: str
+) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say(told)
+        assert meant(answers(sim, ended), "struck")
+        assert value not in answers(sim, question).lower()
+
+
 def test_a_second_hobby_is_added_and_a_correction_replaces_the_last(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")

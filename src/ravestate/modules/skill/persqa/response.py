@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import random
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -15,6 +15,7 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
 from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
+from .told import Told
 from .topics import NAME, TOPICS, Fact, in_order
 from .understanding import EVERYTHING, Meaning, is_idle
 from .wording import among, clauses, joined, learned, memorable, same, say, stating, without
@@ -159,7 +160,13 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
     before = user
     news = learn(user.facts, meaning.facts, user.talk.latest if meaning.kind == "corrected" else ())
     told = {**user.told, **{one.key: one for one in meaning.free}}
-    user = replace(user, facts=news.facts, talk=_learning(user.talk, meaning, news, name), told=told)
+    lost = [
+        value for topic in news.changed for value in without(before.facts.get(topic, ()), news.facts.get(topic, ()))
+    ]
+    older = tuple(one for one in user.talk.said if one not in meaning.said)
+    said = (*_unrelated(older, lost), *meaning.said)[-LONGEST:]  # "I live in Leeds" no longer holds
+    talk = replace(_learning(user.talk, meaning, news, name), said=said)
+    user = replace(user, facts=news.facts, talk=talk, told=told)
     if name is not None and user.who is None:
         user = replace(user, who=ontology.Node("Person", {NAME: name}))
 
@@ -307,11 +314,11 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
             if before != kept:
                 gone[topic] = without(before, kept)
     values = [value.lower() for values in gone.values() for value in values]
-    said = (one for one in user.talk.said if one.key not in free and not any(v in one.text.lower() for v in values))
+    said = _unrelated((one for one in user.talk.said if one.key not in free), values)
     if not gone and not meaning.free:
         return Response(say("strike_unknown", user.known), user)
     words = (one for one in user.talk.words if not any(v in one.lower() for v in values))
-    talk = replace(user.talk.striking(gone), said=tuple(said), words=tuple(words))
+    talk = replace(user.talk.striking(gone), said=said, words=tuple(words))
     user = replace(user, facts=left, talk=talk, told=told)
 
     async def write(memory: ontology.Memory | None) -> Response:
@@ -319,6 +326,12 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
         return Response(say("forget_failed" if after.talk.trouble else "strike", after.known), after)
 
     return Response(None, user, write)
+
+
+def _unrelated(said: Iterable[Told], values: Sequence[str]) -> tuple[Told, ...]:
+    """Return the statements that contain the last word of none of some values: *chess* of *playing chess*."""
+    lasts = [value.lower().split()[-1] for value in values if value]
+    return tuple(one for one in said if not any(last in one.text.lower() for last in lasts))
 
 
 def _wants_out(user: Acquaintance, now: float) -> Response:

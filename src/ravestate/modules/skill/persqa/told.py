@@ -50,6 +50,8 @@ _ADVICE = re.compile(
     re.IGNORECASE,
 )
 """Questions for advice or an opinion, not for memories."""
+_EMPTY = re.compile(r"\b(?:am|is|are|was|were)\W*$", re.IGNORECASE)
+"""The end of a statement whose parse lost the main word: *my hobby is rowing*, read as a verb."""
 _LABEL = re.compile(r"^be (?:called|named)$")
 _DEICTIC = re.compile(r"(?:(?:this|that|these|those|it|here|there)\b|(?:him|her|them)$)", re.IGNORECASE)
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
@@ -104,6 +106,8 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         if top is not None and top.dep == "relcl" and said.subject.names:
             subject = said.subject.name  # "a sister called Eva who lives in Ghent"
         text = _retold(reader, said)
+        if _EMPTY.search(text):
+            continue
         if he and last:
             text = re.sub(r"^(?:s?he|they)\b", _returned(last), text, flags=re.IGNORECASE)
         thing = said.object.text  # "a parrot called Coco"
