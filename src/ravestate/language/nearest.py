@@ -1,4 +1,4 @@
-"""Find the example that a sentence resembles most: by meaning, and by the persons that it mentions.
+"""Find the example that a sentence resembles most: by meaning, and by its pronouns (*my* or *your*).
 
 A `Matcher` learns classes of many examples. `Nearest` compares with thousands of single examples, and learns nothing.
 """
@@ -46,8 +46,8 @@ class Nearest:
         Args:
             examples: The sentences.
             encoder: By default the shared encoder.
-            searched: The number of examples that `nearest` searches, from the first; by default all. The others are
-                compared only on request. Their vectors need no memory.
+            searched: The number of examples that `nearest` searches, from the first; by default all. Only
+                `compared` uses the others; their vectors do not stay in memory.
         """
         self._examples = [plain(text) for text in examples]
         self._searched = len(examples) if searched is None else searched

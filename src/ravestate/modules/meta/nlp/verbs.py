@@ -12,7 +12,7 @@ NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 CONTACT = word_set("call phone ring text email visit meet contact write use")
-"""Verbs whose object does not do what an infinitive after it says: *I called him to say hello*."""
+"""Verbs whose object is not the subject of an infinitive after it: in *I called him to say hello*, I say hello."""
 SETTLING = word_set("sit stand lie get wake come go grow calm hurry slow run walk")
 """Verbs of posture and motion. They share no object with the verb after *and*: *sit down and read a book*."""
 FEELINGS = word_set(
@@ -44,7 +44,7 @@ _SHORT = {
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:
-    """Return whether `word` heads a clause: it is a verb, or a predicate whose *be* is missing or is an auxiliary."""
+    """Return whether `word` heads a clause. A verb may, and so may a predicate without *be* or with *be* as auxiliary."""
     if word.dep not in _HEADS:
         return False
     if word.pos not in VERBAL:

@@ -24,7 +24,8 @@ UNFINISHED = 0.3
 are."""
 
 ANOTHER = 0.03
-"""If words after which a sentence goes on have this probability together, the last word proves nothing."""
+"""Candidates for the last word after which a sentence goes on, such as *my*, count together. From this probability on,
+the turn may not be over."""
 UNCLEAR = 0.3
 """If no candidate has this probability, the last word is unclear, for example because it breaks off."""
 
