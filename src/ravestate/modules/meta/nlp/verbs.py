@@ -44,7 +44,10 @@ _SHORT = {
 
 
 def heads_clause(tree: Tree, word: Word) -> bool:
-    """Return whether `word` heads a clause. A verb may, and so may a predicate without *be* or with *be* as auxiliary."""
+    """Return whether `word` heads a clause.
+
+    A verb may, and so may a predicate without *be* or with *be* as an auxiliary.
+    """
     if word.dep not in _HEADS:
         return False
     if word.pos not in VERBAL:

@@ -9,7 +9,7 @@ from ravestate.modules.skill.wildtalk.listening.material import material
 
 
 def shows() -> Any:
-    """Return the phrases of jokes, songs, stories and games. Loading them takes a second, so do not load them at import."""
+    """Return the phrases of jokes, songs, stories and games. Loading them takes a second, so not at import."""
     return material().shows
 
 
