@@ -39,7 +39,7 @@ _PIECE = re.compile(
     r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you|yours)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
     re.IGNORECASE,
 )
-"""The end of an answer before a clause."""
+"""The end of an answer that a clause follows: *hiking! And I'm in a club*."""
 _CALL = re.compile(_PIECE.pattern.replace("|why|what|how|where|who", ""), re.IGNORECASE)
 """As before, but for a name, which may also call the agent: *Tom, where are you?*."""
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
@@ -101,16 +101,16 @@ def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
 
 
 def self_asked(text: str, seen: nlp.Analysis) -> list[Fact]:
-    """Return the fact that users ask themselves for, and answer: *my hobby? Chess.*."""
+    """Return the fact in a question that users ask and answer themselves: *my hobby? Chess.*."""
     found = re.match(r"my (?:\w+ )??((?:favou?rite )?(\w+))\? +(?=\S)", text, re.IGNORECASE)
     topic = found and (favourite(found[1]) if " " in found[1] else NOUNS.get(found[2].lower(), ""))
     return answer(text[found.end() :], topic, seen) if found and topic else []
 
 
 def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
-    """Return the answer in the words before the first clause: *hiking! And I'm in a club*; empty if there is none.
+    """Return the answer in the words before the first clause: *hiking! And I'm in a club*; empty without an answer.
 
-    If a clause follows that only points (*at the moment that is Porto*), its object is the answer.
+    If there is none, the answer may be the object of a clause about *it* or *that*: *at the moment that is Porto*.
     """
     ends = _CALL if topic == "name" else _PIECE
     pieces = [piece for piece in ends.split(text) if piece.strip(" ,.")]

@@ -1,8 +1,9 @@
 """Changes of known facts: the only place where an utterance ends a fact, or replaces its value by another.
 
-A change needs an owner and a role. The owner: the user is the subject, and nobody reports the statement. The role: the verb
-ends facts of this topic, and the value itself is its object. Without a role (*no, Bremen*, *Lora with an L*), the agent or
-the user must have mentioned the fact in the last utterances. Everything else leaves the facts alone.
+A statement changes a fact under two conditions. It must be the user's own: the user is the subject, and nobody reports
+the statement. And its verb must end facts of this topic, with the value itself as the object. A correction in a few words
+(*no, Bremen*, *Lora with an L*) works only for a fact mentioned in the last utterances, by the agent or the user.
+Everything else leaves the facts alone.
 """
 
 from __future__ import annotations
@@ -148,7 +149,7 @@ def is_limited(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def denied_beside(reader: Reader, topic: str, told: Collection[str]) -> tuple[str, ...]:
-    """Return the known values that a statement with another value of the topic denies: *Pia, not Mia, is my sister*."""
+    """Return the known values that the user denies while giving another: *Mia* in *Pia, not Mia, is my sister*."""
     pattern = r"\bnot (?:(?:an?|the|in|from|at|for|my) )?{}\b"
     return tuple(
         value
@@ -158,7 +159,7 @@ def denied_beside(reader: Reader, topic: str, told: Collection[str]) -> tuple[st
 
 
 def may_correct(seen: nlp.Analysis, topic: str) -> bool:
-    """Return whether an utterance is about a fact just mentioned: it only names, says or means something."""
+    """Return whether an utterance may correct a fact just mentioned. It may if its verbs only name, say or mean."""
     finite = {word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD")}
     pronouns = ("", "i", "it", "that", "this", "he", "she", "they")
     for said in seen.statements if finite else ():

@@ -1,4 +1,4 @@
-"""Links from statements to topics, and the pursuits that a statement tells: hobbies and trades."""
+"""Links from statements to topics, and the pursuits in a statement: hobbies and trades."""
 
 from __future__ import annotations
 

@@ -141,7 +141,10 @@ async def _settled(
 
 
 async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
-    """Stop treating the user as this person, and ask who they are. A person of this conversation leaves memory again."""
+    """Stop treating the user as this person, and ask who they are.
+
+    If this conversation created the person, remove them from memory.
+    """
     facts = told_apart(user.facts, user.talk.remembered, user.talk.told) if user.talk.met else user.facts
     if user.talk.met:
         with contextlib.suppress(RavestateError):
@@ -329,7 +332,10 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 
 
 def _unrelated(said: Iterable[Told], values: Sequence[str]) -> tuple[Told, ...]:
-    """Return the statements that contain the last word of none of some values: *chess* of *playing chess*."""
+    """Leave out the statements about some values, and return the rest.
+
+    A statement is about a value if it contains the last word of the value: *chess* of *playing chess*.
+    """
     lasts = [value.lower().split()[-1] for value in values if value]
     return tuple(one for one in said if not any(last in one.text.lower() for last in lasts))
 

@@ -51,7 +51,7 @@ _ADVICE = re.compile(
 )
 """Questions for advice or an opinion, not for memories."""
 _EMPTY = re.compile(r"\b(?:am|is|are|was|were)\W*$", re.IGNORECASE)
-"""The end of a statement whose parse lost the main word: *my hobby is rowing*, read as a verb."""
+"""The end of a statement that lacks its last word: in *my hobby is rowing*, the parser takes *rowing* for the verb."""
 _LABEL = re.compile(r"^be (?:called|named)$")
 _DEICTIC = re.compile(r"(?:(?:this|that|these|those|it|here|there)\b|(?:him|her|them)$)", re.IGNORECASE)
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
@@ -82,7 +82,10 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all; *he* is the person named last, *my sister* the known one."""
+    """Return the free statements of an utterance, and all its statements.
+
+    In both, the name of the person named last stands for *he* or *she*, and the name of a known sister for *my sister*.
+    """
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")

@@ -186,7 +186,7 @@ class _Hearing:
         return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
 
     def is_known(self, topic: str) -> bool:
-        """Return whether a question about a topic can be answered from the facts, or at least from the nearest fact."""
+        """Return whether the facts answer a question about a topic, at least with a fact of a related topic."""
         if topic in ("", EVERYTHING, *self.known):
             return True
         near = {*TOPICS[topic].besides, *(["origin"] if topic == "home" else [])}
@@ -332,7 +332,7 @@ class _Hearing:
 
 
 def is_idle(fact: Fact, known: Facts) -> bool:
-    """Return whether a denial changes no known fact: *I'm not from Spain*, if the agent thought so of no country."""
+    """Return whether a denial changes no known fact: *I'm not from Spain*, if the agent never thought so."""
     return fact.gone and bool(fact.values) and not any(among(one, known.get(fact.topic, ())) for one in fact.values)
 
 

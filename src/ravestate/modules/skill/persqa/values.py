@@ -67,7 +67,7 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
 
 
 def _typed(name: str, seen: nlp.Analysis) -> str:
-    """Return a name as the user typed it, if the normal form has changed it like a typing error."""
+    """Return a name as the user typed it, if the normal form has changed it as if it were a typing error."""
     at = seen.normal.text.lower().find(name.lower())
     start, end = seen.normal.span(at, at + len(name)) if at >= 0 else (0, 0)
     typed = seen.normal.original[start:end]
