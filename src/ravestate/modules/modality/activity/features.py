@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 LEFT_WRIST, RIGHT_WRIST = 3, 4
 TRACKS = 12
-"""The number of coordinates between which correlations are features: wrists, height and depth of the knees, depth of
-the torso, rise."""
+"""The number of coordinates whose pairwise correlations are features: wrists, height and depth of the knees, depth of the
+torso, rise."""
 
 
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:

@@ -21,7 +21,7 @@ WORDS = 5
 SHORT = 3
 """The maximum number of words in an unclear answer. A longer utterance is a remark on something else."""
 OF_ACT = (("repeat", "repeat"), ("play", "play"), ("play", "wanted"), ("bored", "play"))
-"""Pairs of an act in ``acts.yaml`` and its move. The first move that the step has counts."""
+"""Pairs of an act in ``acts.yaml`` and its move. The first pair whose move is possible in this step counts."""
 ANY_GAME = word_set("game round")
 """Nouns after *play* that name no game."""
 SURE = 2

@@ -2,7 +2,7 @@
 
 A statement changes a fact under two conditions. It must be the user's own: the user is the subject, and nobody reports
 the statement. And its verb must end facts of this topic, with the value itself as the object. A correction in a few words
-(*no, Bremen*, *Lora with an L*) works only for a fact mentioned in the last utterances, by the agent or the user.
+(*no, Bremen*, *Lora with an L*) works only for a fact that either side mentioned in the last utterances.
 Everything else leaves the facts alone.
 """
 
