@@ -280,7 +280,7 @@ def test_an_end_at_once_waits_for_nothing() -> None:
     converse(talk, talker)
 
 
-def test_only_the_agents_own_wish_to_leave_is_told() -> None:
+def test_only_the_agents_own_wish_to_leave_is_reported() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output)

@@ -61,7 +61,7 @@ def test_a_movement_is_taught_and_then_guessed(tmp_path: Path, folder: str, caps
         (["teach", "x", "{tmp}/bad.npz"], 1, "no file of landmarks"),
     ],
 )
-def test_wrong_use_is_told(
+def test_wrong_use_is_reported(
     tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, message: str
 ) -> None:
     (tmp_path / "bad.npz").write_text("hello")
@@ -71,7 +71,7 @@ def test_wrong_use_is_told(
     assert not Path(folder).exists()
 
 
-def test_people_who_walk_in_a_real_video_are_unknown_and_a_demonstration_that_would_not_be_recognised_is_told(
+def test_people_who_walk_in_a_real_video_are_unknown_and_a_demonstration_that_would_not_be_recognised_is_reported(
     folder: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nobody has taught the recogniser to know walking. In this video, people come and go. It is read once."""

@@ -167,7 +167,7 @@ def test_asking_the_documents_without_the_extra_says_what_to_type(tmp_path: Path
     assert "pip install 'ravestate[nlp]'" in complaints(run.stderr)
 
 
-def test_a_missing_microphone_is_told_before_the_agent_greets(started: Any, capsys: Capture) -> None:
+def test_a_missing_microphone_is_reported_before_the_agent_greets(started: Any, capsys: Capture) -> None:
     code, out, errors = call(capsys, "chat", "voiceio", "--set", "voiceio.source=no such microphone")
     assert (code, out, started) == (1, "", [])
     assert "no microphone: " in errors or "no recogniser: " in errors

@@ -76,7 +76,9 @@ def test_a_spoken_conversation_has_a_transcript_unless_a_platform_shows_it(
     assert ["transcript" in modules for modules in ran] == [True, False, False, False]
 
 
-def test_a_platform_without_a_user_is_told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_platform_without_a_user_is_reported(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """A platform that serves all users leaves none for the console."""
     monkeypatch.setattr("ravestate.runtime.run.run", lambda *_, **__: None)
     code, _, errors = call(capsys, "run", "telegramio", "conio", "voiceio")

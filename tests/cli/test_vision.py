@@ -49,7 +49,7 @@ def test_the_commands_who_learn_and_forget(tmp_path: Path, capsys: pytest.Captur
     assert rows(out) == [("unknown", "-", "obama")]
 
 
-def test_files_that_are_no_pictures_are_told_and_the_others_are_read(
+def test_files_that_are_no_pictures_are_reported_and_the_others_are_read(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bad = tmp_path / "bad.jpg"

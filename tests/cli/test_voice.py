@@ -96,7 +96,7 @@ def test_talk_holds_a_conversation(folder: Path, capsys: pytest.CaptureFixture[s
         assert file.getnframes() / file.getframerate() >= float(times[1][2])
 
 
-def test_wrong_use_is_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_use_is_reported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = call(capsys, "voice", "talk", "none.wav", "-o", "out.wav", "rawio")
     assert code == 2 and "there is no file none.wav" in errors
     code, _, errors = call(capsys, "voice", "check", "--set", "voiceio.pause=abc")

@@ -72,7 +72,7 @@ def test_answers_and_silences_are_told_apart() -> None:
     }
 
 
-def test_the_table_names_each_set_and_the_misses_are_told(
+def test_the_table_names_each_set_and_the_misses_are_listed(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     lines = ["from quality.measure import measure_labels", "def results():"]

@@ -100,23 +100,23 @@ def test_a_folder_shows_each_picture_for_a_second(eye: Eye, tmp_path: Path) -> N
         ("/dev/null", "the camera /dev/null cannot be opened"),
     ],
 )
-def test_a_camera_that_is_not_there_is_told(eye: Eye, name: str, why: str) -> None:
+def test_a_missing_camera_is_reported(eye: Eye, name: str, why: str) -> None:
     with pytest.raises(PlatformError, match=why):
         run(eye.open(name))
 
 
-def test_an_empty_folder_is_told(eye: Eye, tmp_path: Path) -> None:
+def test_an_empty_folder_is_reported(eye: Eye, tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match="has no pictures"):
         run(eye.open(str(tmp_path)))
 
 
-def test_a_file_that_is_no_video_is_told(eye: Eye, tmp_path: Path) -> None:
+def test_a_file_that_is_no_video_is_reported(eye: Eye, tmp_path: Path) -> None:
     (tmp_path / "bad.mp4").write_bytes(b"\0" * 5000)
     with pytest.raises(PlatformError, match="no video that can be read"):
         run(eye.open(str(tmp_path / "bad.mp4")))
 
 
-def test_a_video_that_breaks_off_is_told(eye: Eye, tmp_path: Path, clip: Path) -> None:
+def test_a_video_that_breaks_off_is_reported(eye: Eye, tmp_path: Path, clip: Path) -> None:
     """A Motion-JPEG file whose end is missing, as after a full disk."""
     file = tmp_path / "cut.avi"
     make(CLIP.replace("mp4v", "MJPG"), photo("obama"), photo("biden"), file)

@@ -410,7 +410,7 @@ def test_without_memory_people_come_and_go_but_have_no_names(tmp_path: Path, cap
         assert present(sim) == []
 
 
-def test_no_camera_is_told_once_and_the_conversation_goes_on(
+def test_a_missing_camera_is_reported_once_and_the_conversation_goes_on(
     memory: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.modules.modality.visionio import watching
@@ -423,7 +423,7 @@ def test_no_camera_is_told_once_and_the_conversation_goes_on(
     assert caplog.text.count("there is no camera") == 1
 
 
-def test_missing_packages_are_told_with_the_mend(
+def test_missing_packages_are_reported_with_the_remedy(
     memory: Path, caplog: pytest.LogCaptureFixture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.modules.modality.visionio import eye

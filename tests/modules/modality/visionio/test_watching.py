@@ -71,7 +71,7 @@ def run(coroutine: Any) -> Any:
     return asyncio.run(coroutine)
 
 
-def test_a_lost_camera_is_told_once_and_tried_again(
+def test_a_lost_camera_is_reported_once_and_tried_again(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     eye = Blind(8, live=True)
@@ -90,7 +90,7 @@ def test_a_file_that_fails_again_and_again_is_given_up(
     assert "gives up after 5 failures" in caplog.text
 
 
-def test_black_pictures_are_told_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+def test_black_pictures_are_reported_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     run(watched(monkeypatch, Blind(0, live=True), 70))
     assert caplog.text.count("is the lens covered") == 1
 

@@ -124,7 +124,7 @@ open(a[1], "wb").write(np.hstack([rows, np.zeros((112, 5), np.uint8)]).tobytes()
         (b"", None, "the picture is empty"),
     ],
 )
-def test_a_corrupt_picture_is_told(data: bytes, shape: tuple[int, int] | None, why: str) -> None:
+def test_a_corrupt_picture_is_reported(data: bytes, shape: tuple[int, int] | None, why: str) -> None:
     with pytest.raises(PlatformError, match=why):
         eye().look_now(["faces"], {}, frame=Frame(data, shape))
     assert look(photo("biden").read_bytes())["faces"]  # the worker lives on

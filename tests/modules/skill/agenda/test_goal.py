@@ -42,7 +42,7 @@ def test_faulty_goals(arguments: dict[str, Any], message: str) -> None:
     assert module.rules == []
 
 
-def test_a_module_that_does_not_require_the_agenda_is_told_so() -> None:
+def test_a_module_that_does_not_require_the_agenda_is_reported() -> None:
     module = rs.Module("forgetful", requires=[rawio])
     agenda.goal(module, "goal", say="a")
     with pytest.raises(rs.DeclarationErrors) as caught:

@@ -58,7 +58,7 @@ def test_two_goals_of_one_name_are_refused() -> None:
     assert "two goals are named 'a'" in str(caught.value.exceptions[0])
 
 
-def test_a_name_that_a_rule_has_is_told_and_the_agent_lives(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_name_that_a_rule_has_is_reported_and_the_agent_lives(caplog: pytest.LogCaptureFixture) -> None:
     with (
         caplog.at_level(logging.CRITICAL, "ravestate"),
         agent({"name": "take_initiative", "say": "x"}) as sim,

@@ -147,7 +147,7 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("[" * 5000, "nested more than 50 levels"),
     ],
 )
-def test_a_mistake_is_told_with_its_line(text: str, told: str, tmp_path: Path) -> None:
+def test_a_mistake_is_reported_with_its_line(text: str, told: str, tmp_path: Path) -> None:
     with pytest.raises(DeclarationError) as caught:
         life_of(text, tmp_path)
     assert told in str(caught.value)
@@ -163,7 +163,7 @@ def test_a_file_that_cannot_be_read_says_why(tmp_path: Path) -> None:
         read_life(tmp_path)
 
 
-def test_a_mistake_is_told_before_anything_runs(tmp_path: Path) -> None:
+def test_a_mistake_is_reported_before_anything_runs(tmp_path: Path) -> None:
     file = tmp_path / "robin.yaml"
     file.write_text("facts: {born: soon}")
     with pytest.raises(DeclarationErrors) as caught, simulate(agentqa, settings={"agentqa": {"life": file}}):

@@ -160,7 +160,7 @@ def test_the_collection_can_be_left_out_and_comes_back(tmp_path: Path) -> None:
     assert sizes[1] == 0
 
 
-def test_an_index_that_is_none_is_told_each_time(tmp_path: Path) -> None:
+def test_a_file_that_is_no_index_is_reported_each_time(tmp_path: Path) -> None:
     (tmp_path / "index.sqlite").write_text("Dear diary, today I had an idea for an index.", encoding="utf-8")
     answerer = Answerer(tmp_path / "index.sqlite")
     for _ in range(2):

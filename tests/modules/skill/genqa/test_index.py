@@ -129,7 +129,7 @@ def test_another_process_reads_while_one_writes(index: Index) -> None:
 # -------------------------------------------------------------------------------- what may be wrong
 
 
-def test_a_full_disk_is_told_and_nothing_is_lost(index: Index) -> None:
+def test_a_full_disk_is_reported_and_nothing_is_lost(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
     pages = index._base.execute("PRAGMA page_count").fetchone()[0]  # pyright: ignore[reportPrivateUsage]
     index._base.execute(f"PRAGMA max_page_count = {pages + 4}")  # pyright: ignore[reportPrivateUsage]
@@ -167,7 +167,7 @@ def test_a_file_that_is_none_is_refused(tmp_path: Path, content: bytes) -> None:
     assert (tmp_path / "index.sqlite").read_bytes() == content
 
 
-def test_a_place_that_cannot_hold_a_file_is_told(tmp_path: Path) -> None:
+def test_a_place_that_cannot_hold_a_file_is_reported(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(rs.PlatformError, match="genqa: the index"):
         Index(tmp_path / "file" / "index.sqlite")
@@ -175,7 +175,7 @@ def test_a_place_that_cannot_hold_a_file_is_told(tmp_path: Path) -> None:
         Index(tmp_path)
 
 
-def test_a_file_that_may_not_be_written_is_told(index: Index) -> None:
+def test_a_file_that_may_not_be_written_is_reported(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
     index._base.execute("PRAGMA query_only = ON")  # pyright: ignore[reportPrivateUsage]
     with pytest.raises(rs.PlatformError, match="cannot be written: name another file"):

@@ -159,7 +159,7 @@ def why(path: Path) -> str:
     return str(refused.value)
 
 
-def test_text_in_an_encoding_that_is_not_told(tmp_path: Path) -> None:
+def test_text_in_an_undeclared_encoding(tmp_path: Path) -> None:
     assert why(write(tmp_path / "a.txt", "Café".encode("latin-1"))).startswith("it is not UTF-8 (byte 3): convert it")
 
 

@@ -176,7 +176,7 @@ def test_german_phrases_for_those_who_want_them(settings: dict[str, dict[str, An
 
 
 @pytest.mark.parametrize("content", [b"Dear diary, this is not an index at all.", b"\0" * 100])
-def test_a_broken_index_is_told_and_the_talk_goes_on(tmp_path: Path, content: bytes) -> None:
+def test_a_broken_index_is_reported_and_the_talk_goes_on(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "index.sqlite").write_bytes(content)
     with simulate(genqa, talk, settings={"genqa": {"index": str(tmp_path / "index.sqlite")}}) as sim:
         sim.say("What is the capital of Peru?")

@@ -106,7 +106,7 @@ def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
 
 
 @pytest.mark.model
-def test_progress_is_told_on_the_loop() -> None:
+def test_progress_is_reported_on_the_loop() -> None:
     async def main() -> None:
         heard: list[float] = []
 
@@ -145,7 +145,7 @@ def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
 
 @pytest.mark.model
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_a_model_that_dies_is_told_of_and_comes_back() -> None:
+def test_a_model_that_dies_is_reported_and_comes_back() -> None:
     async def main() -> None:
         backend = LlamaBackend(bundled_model(), context_tokens=512)
         with pytest.raises(PlatformError, match=r"process ended \(killed by signal 9, .*memory") as failure:

@@ -73,7 +73,9 @@ def test_a_second_caller_waits_for_the_first(monkeypatch: pytest.MonkeyPatch, tm
         ),
     ],
 )  # fmt: skip
-def test_how_it_failed_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, message: str) -> None:
+def test_the_cause_of_a_failure_is_reported(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, message: str
+) -> None:
     process = child(monkeypatch, tmp_path, program)
     with pytest.raises(PlatformError, match=f"cannot load the model 'model.gguf': .*{message}"):
         process.start()

@@ -319,7 +319,7 @@ def test_an_address_with_an_impossible_port(converse: Conversation) -> None:
         converse(hello, base_url="http://127.0.0.1:port/v1")
 
 
-def test_secrets_are_not_told(converse: Conversation) -> None:
+def test_secrets_are_not_revealed(converse: Conversation) -> None:
     refusal = refusing("401 Unauthorized", '{"error": {"message": "no such key: s3cret"}}')
     with pytest.raises(PlatformError, match=r"no such key: \*\*\*\): check wildtalk.api_key") as failure:
         converse(refusal, api_key=SecretStr("s3cret"))

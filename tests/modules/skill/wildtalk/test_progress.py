@@ -47,7 +47,7 @@ def test_above_a_prompt_it_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     assert screen.getvalue() == "Loading…\n"
 
 
-def test_above_a_prompt_what_is_done_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_above_a_prompt_a_finished_bar_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Terminal()
     monkeypatch.setattr(sys, "stderr", screen)
     with ProgressBar("Loading", delay=0.0) as bar:

@@ -83,7 +83,7 @@ def test_a_model_with_a_chat_template_is_given_the_turns_in_it(tiny: Path, tmp_p
     )
 
 
-def test_a_chat_template_that_refuses_the_conversation_is_told_of(tiny: Path, tmp_path: Path) -> None:
+def test_a_chat_template_that_refuses_the_conversation_is_reported(tiny: Path, tmp_path: Path) -> None:
     folder = tmp_path / "strict"
     folder.mkdir()
     for part in tiny.iterdir():
@@ -186,7 +186,7 @@ def test_packages_that_are_missing_are_named(monkeypatch: pytest.MonkeyPatch) ->
         asyncio.run(TransformersBackend("gpt2").load())
 
 
-def test_a_model_that_stalls_or_fails_is_told(tiny: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_that_stalls_or_fails_is_reported(tiny: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     async def story() -> None:
         backend = TransformersBackend(str(tiny), read_timeout=0.05)
         await backend.load()

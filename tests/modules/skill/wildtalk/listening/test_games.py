@@ -112,7 +112,7 @@ def test_play_offers_a_choice(talk: Any) -> None:
     assert "chain" in talk.say("the word game").lower()
 
 
-def test_a_story_about_something_unknown_is_announced_as_another_one(talk: Any) -> None:
+def test_without_a_story_about_the_subject_it_announces_another_story(talk: Any) -> None:
     assert "a unicorn" in talk.say("can you tell me a story with a unicorn").split(".")[0]
     assert talk.say("and then?") in [line.text for line in material().plain["after_show"].groups["say"]]
 
