@@ -135,7 +135,7 @@ async def respect(ctx: rs.RuleContext) -> None:
     weight=PRIORITY + 2,
 )
 async def forget(ctx: rs.RuleContext) -> None:
-    """Remove a person's faces from memory. This works without a camera if there is only one user, recognised before."""
+    """Remove a person's faces from memory. This works without a camera if the only user is a person in memory."""
     one, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
     person, users = one.node if one is not None else None, list(ctx[interloc.users].values())
     if person is None and len(users) == 1 and isinstance(users[0], interloc.Recognised):

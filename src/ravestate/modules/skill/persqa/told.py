@@ -84,7 +84,7 @@ class Told:
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
     """Return the free statements of an utterance, and all its statements.
 
-    In both, the name of the person named last stands for *he* or *she*, and the name of a known sister for *my sister*.
+    In both, the subject is a name where possible: of the person named last for *he*, of the known sister for *my sister*.
     """
     free: list[Told] = []
     heard: list[Told] = []

@@ -332,7 +332,7 @@ class _Hearing:
 
 
 def is_idle(fact: Fact, known: Facts) -> bool:
-    """Return whether a denial changes no known fact: *I'm not from Spain*, if the agent never thought so."""
+    """Return whether a denial changes no known fact: *I'm not from Spain*, if the agent does not think so."""
     return fact.gone and bool(fact.values) and not any(among(one, known.get(fact.topic, ())) for one in fact.values)
 
 
