@@ -26,7 +26,7 @@ GENERAL = 0.15
     writes=(verbaliser.intent, greeted),
     weight=1.1,  # this rule outranks a simultaneous goodbye
 )
-async def greet_who_comes(ctx: rs.RuleContext) -> None:
+async def greet_arrivals(ctx: rs.RuleContext) -> None:
     """Greet a user who comes, or whom a platform has recognised."""
     name = (ctx.payload(interloc.users.added) or ctx.payload(interloc.recognised)).item
     ctx[greeted] = ctx.now
@@ -35,7 +35,7 @@ async def greet_who_comes(ctx: rs.RuleContext) -> None:
 
 
 @module.rule(when=interloc.users.removed, reads=parted, writes=verbaliser.intent)
-async def bid_farewell_to_who_leaves(ctx: rs.RuleContext) -> rs.Resign | None:
+async def bid_farewell(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say goodbye to a user who leaves."""
     said = ctx[parted]
     if said is not None and ctx.now - said < JUST_NOW:
