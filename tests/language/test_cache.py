@@ -1,5 +1,6 @@
 """The cache of computed arrays: its size, and which files it keeps."""
 
+import errno
 import os
 from pathlib import Path
 
@@ -58,11 +59,46 @@ def test_a_map_reads_the_file_of_the_first_call() -> None:
     assert (first == again).all()
 
 
-def test_a_broken_map_is_made_anew(folder: Path) -> None:
+@pytest.mark.parametrize("damage", ["short", "header", "zip", "data"])
+def test_a_broken_map_is_made_anew(folder: Path, damage: str) -> None:
     mapped("map", lambda: np.arange(6))
-    [file] = folder.iterdir()
-    file.write_bytes(file.read_bytes()[:-8])
+    [file] = folder.glob("*.npy")
+    good = file.read_bytes()
+    bad = {
+        "short": good[:-8],
+        "header": good.replace(b"{", b"("),
+        "zip": b"PK" + good[2:],
+        "data": good[:-8] + bytes(8),
+    }
+    file.write_bytes(bad[damage])
     assert mapped("map", lambda: np.arange(6)).tolist() == list(range(6))
+    assert file.read_bytes() == good
+
+
+def test_a_broken_file_is_computed_again(folder: Path) -> None:
+    assert computed("key")
+    [file] = folder.iterdir()
+    file.write_bytes(file.read_bytes().replace(b"{", b"("))
+    assert computed("key")
+    assert not computed("key")
+
+
+def test_a_write_that_fails_leaves_no_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "no space left on device")
+
+    monkeypatch.setattr(np, "save", full)
+    assert mapped("map", lambda: np.arange(6)).tolist() == list(range(6))
+    assert list(folder.iterdir()) == []
+
+
+def test_a_file_that_another_process_removes_meanwhile_is_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def gone(_: Path) -> None:
+        raise FileNotFoundError
+
+    monkeypatch.setattr(cache, "_limit", gone)
+    mapped("map", lambda: np.arange(6))
+    assert isinstance(mapped("map", lambda: np.arange(6)), np.memmap)
 
 
 def test_a_map_that_cannot_be_written_is_made_once(folder: Path) -> None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import tempfile
+import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
-from zipfile import BadZipFile
 
 from ravestate.folders import user_folder
 
@@ -37,7 +38,7 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
             arrays = {name: found[name] for name in found.files}
         os.utime(file)
         return arrays
-    except (OSError, ValueError, EOFError, KeyError, BadZipFile):
+    except Exception:  # a damaged file may raise anything
         arrays = dict(compute())
     _write(file, lambda out: np.savez(out, allow_pickle=False, **arrays))
     return arrays
@@ -57,15 +58,31 @@ def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
     file = _file_of(key, ".npy")
     if file in _unwritten:
         return _unwritten[file]
+    check = file.with_suffix(".crc")
     try:
-        array = np.load(file, mmap_mode="r", allow_pickle=False)
-        os.utime(file)
-        return array
-    except (OSError, ValueError, EOFError):
-        array = compute()
-    if not _write(file, lambda out: np.save(out, array, allow_pickle=False)):
+        if check.read_bytes() == _sum(file):
+            array = np.load(file, mmap_mode="r", allow_pickle=False)
+            os.utime(file)
+            os.utime(check)
+            return array
+    except (OSError, ValueError):
+        pass
+    array = compute()
+    if not (
+        _write(file, lambda out: np.save(out, array, allow_pickle=False))
+        and _write(check, lambda out: out.write(_sum(file)))
+    ):
         _unwritten[file] = array
     return array
+
+
+def _sum(file: Path) -> bytes:
+    """Return a check sum over a file, which needs no memory for the file: 20 MB take 20 ms."""
+    found = 0
+    with file.open("rb") as parts:
+        while part := parts.read(1 << 20):
+            found = zlib.crc32(part, found)
+    return found.to_bytes(4, "big")
 
 
 def _file_of(key: object, ending: str) -> Path:
@@ -73,25 +90,31 @@ def _file_of(key: object, ending: str) -> Path:
     return user_folder("cache") / "vectors" / f"{digest}{ending}"
 
 
-def _write(file: Path, write: Callable[[IO[bytes]], None]) -> bool:
+def _write(file: Path, write: Callable[[IO[bytes]], object]) -> bool:
     """Write a file of the cache as a whole, or not at all; return whether that was possible."""
+    name = ""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=file.parent)
         with os.fdopen(handle, "wb") as out:
             write(out)
         os.replace(name, file)
-        _limit(file.parent)
     except OSError:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
         return False  # without a file, the next start computes the arrays again
+    with contextlib.suppress(OSError):  # another process may have removed the folder
+        _limit(file.parent)
     return True
 
 
 def _limit(folder: Path) -> None:
     """Remove the oldest files of the cache, down to its size."""
-    found = [
-        (about.st_mtime_ns, about.st_size, entry.path) for entry in os.scandir(folder) for about in (entry.stat(),)
-    ]
+    found: list[tuple[int, int, str]] = []
+    for entry in os.scandir(folder):
+        with contextlib.suppress(FileNotFoundError):  # another process has renamed or removed this file
+            about = entry.stat()
+            found.append((about.st_mtime_ns, about.st_size, entry.path))
     size = sum(one for _, one, _ in found)
     for _, one, path in sorted(found):
         if size <= BYTES:

@@ -1,4 +1,4 @@
-"""A lock, so that only one thread at a time imports a large library, and none before the console's prompt."""
+"""The order in which large libraries and models load: one at a time, and after the console's prompt."""
 
 from __future__ import annotations
 
@@ -9,12 +9,28 @@ LOADING = threading.RLock()
 
 Two threads that import parts of one library at the same time may deadlock. The interpreter then gives one thread a
 module that is only half loaded. This happens with numpy, which spaCy, onnxruntime and others import.
-
-The console holds the lock until it shows its prompt. If other threads loaded models meanwhile, that would take seconds.
 """
 
+LONGEST = 5.0
+"""The maximum time in seconds that models wait for a prompt."""
 
-def wait_for_prompt() -> None:
-    """Wait until the console shows its prompt, and until no thread holds `LOADING`. Rules that load much begin with this."""
-    with LOADING:
-        pass
+_shown = threading.Event()
+_shown.set()
+
+
+def expect_prompt() -> None:
+    """Note that the console is about to show its prompt. If models loaded meanwhile, the prompt would take seconds longer."""
+    _shown.clear()
+
+
+def note_prompt() -> None:
+    """Note that the prompt has appeared, or will not appear."""
+    _shown.set()
+
+
+def wait_for_prompt() -> bool:
+    """Wait until an expected prompt has appeared; return false if it has not after `LONGEST`.
+
+    Background rules that load much begin with this.
+    """
+    return _shown.wait(LONGEST)

@@ -3,7 +3,6 @@
 import asyncio
 import threading
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.language.loading import LOADING
+from ravestate.language import loading
 from ravestate.modules import conio, idle, interloc, rawio
 from ravestate.modules.platform.conio.console import Console
 from ravestate.modules.platform.conio.pipes import Pipes
@@ -106,14 +105,15 @@ def test_the_terminal_library_loads_off_the_loop(keys: Keys, monkeypatch: pytest
 def test_models_load_after_the_prompt_appears(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     free: list[bool] = []
 
-    def make(**_: Any) -> Console:  # in a thread, as the models load
-        free.append(can_load())
+    def make(**_: Any) -> Console:
+        free.append(may_load())
         return Console(keys)
 
+    monkeypatch.setattr(loading, "LONGEST", 0.0)
     monkeypatch.setattr(conio.rules, "Console", make)
-    with simulate(parrot, conio), ThreadPoolExecutor() as pool:
+    with simulate(parrot, conio):
         assert free == [False]
-        assert pool.submit(can_load).result(timeout=10)
+        assert may_load()
 
 
 def test_models_load_without_a_console(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -121,16 +121,26 @@ def test_models_load_without_a_console(monkeypatch: pytest.MonkeyPatch) -> None:
         raise PlatformError("there is no terminal")
 
     monkeypatch.setattr(conio.rules, "Console", fail)
-    with simulate(parrot, conio), ThreadPoolExecutor() as pool:
-        assert pool.submit(can_load).result(timeout=10)
+    with simulate(parrot, conio):
+        assert may_load()
 
 
-def can_load() -> bool:
-    """Return whether this thread could load a model now."""
-    took = LOADING.acquire(blocking=False)
-    if took:
-        LOADING.release()
-    return took
+def test_a_model_that_is_needed_before_the_prompt_loads_at_once(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+    free: list[bool] = []
+
+    def make(**_: Any) -> Console:  # in a thread of its own
+        free.append(loading.LOADING.acquire(timeout=10))
+        loading.LOADING.release()
+        return Console(keys)
+
+    monkeypatch.setattr(conio.rules, "Console", make)
+    with simulate(parrot, conio):
+        assert free == [True]
+
+
+def may_load() -> bool:
+    """Return whether no prompt is expected, so that models load."""
+    return loading.wait_for_prompt()
 
 
 def test_typing_counts_as_activity(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:

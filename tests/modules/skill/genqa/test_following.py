@@ -140,3 +140,14 @@ def thread_of(answerer: Answerer, question: str) -> Turn:
     _, turn = answer_in(answerer, parse(question), [], Settings(), 0.0)
     assert turn is not None
     return turn
+
+
+@pytest.mark.parametrize(
+    "question",
+    ["Which is longer, the Halcyon or the Petrel?", "How old was Ida Falk when she died?", "How deep is Lake Orm?"],
+)
+def test_an_answer_below_the_confidence_that_it_needs_is_no_turn(answerer: Answerer, question: str) -> None:
+    answer, turn = answer_in(answerer, parse(question), (), Settings(sure=1.0, unsure=1.0), 0.0)
+    assert answer.text
+    assert answer.confidence < 1.0
+    assert turn is None

@@ -5,11 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import sys
-from collections.abc import Callable
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.language.loading import LOADING
+from ravestate.language.loading import expect_prompt, note_prompt
 from ravestate.modules import interloc, rawio
 
 from .console import Console, history_file, is_terminal, prepare
@@ -29,14 +28,15 @@ USER = "conio"  # the key of the user at the console in ``interloc.users``
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Write each typed line to ``rawio.input``; end the agent after the last line."""
-    with contextlib.ExitStack() as first:
-        if LOADING.acquire(blocking=False):  # models load after the prompt appears
-            first.callback(LOADING.release)
-        await serve(ctx, first.close)
+    expect_prompt()  # models load after the prompt
+    try:
+        await serve(ctx)
+    finally:
+        note_prompt()
 
 
-async def serve(ctx: rs.RuleContext, shown: Callable[[], None]) -> None:
-    """Read lines until the end of input. Call `shown` once the prompt appears."""
+async def serve(ctx: rs.RuleContext) -> None:
+    """Read lines until the end of input."""
     await asyncio.to_thread(prepare)
     history = history_file() if ctx.settings.history else None
 
@@ -58,7 +58,7 @@ async def serve(ctx: rs.RuleContext, shown: Callable[[], None]) -> None:
         if is_terminal(sys.stdin, sys.stdout):
             console.utter("Ctrl-D ends the conversation.")
         ctx[interloc.users].add(USER, ctx.settings.name)
-        asyncio.get_running_loop().call_soon(shown)  # the prompt appears in the first step of the iteration
+        asyncio.get_running_loop().call_soon(note_prompt)  # the prompt appears in the first step of the iteration
         try:
             async for line in console:
                 if line.strip():

@@ -49,7 +49,7 @@ def answer_in(
         return answerer.answer(as_question(question))
 
     if (result := compared(heard, thread, ask) or aged(heard, thread, ask)) is not None:
-        return result, turn_of(heard, result, now)
+        return result, turn_of(heard, result, now) if result.confidence >= settings.unsure else None
     tried = readings(heard, thread, answerer.titled)
     if not tried:
         return Answer(heard.text, reason="it refers to a question that nobody has asked"), None
