@@ -5,7 +5,7 @@ import functools
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-LIMIT = 20
+LIMIT = 60
 """Seconds after which a test that waits in vain fails; no other test takes so long."""
 
 
