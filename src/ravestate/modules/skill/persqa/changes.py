@@ -92,9 +92,20 @@ def _is_object(reader: Reader, said: nlp.Statement, topic: str, value: str) -> b
     brief = any(entity.label == "TIME" for entity in reader.seen.entities)
     if any(phrase.text != said.object.text for phrase in others) or (brief and said.verb == "leave"):
         return False
+    if _has_more(reader, said):
+        return False
     things = (said.object.text, gerund(reader.span(said), reader.seen), gerund(said.verb, reader.seen))
     last = value.split()[-len(said.object.text.split()) :]  # "the choir", if the value is "local choir"
     return any(same(value, one) for one in things if one) or (last != [] and same(" ".join(last), said.object.text))
+
+
+def _has_more(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether a verb has a second object or a purpose: *I left Bosch a note*, *I stopped running to rest*."""
+    verb = reader.verb(said)
+    verbs = [verb, *reader.tree.ancestors(verb)] if verb else []
+    purposes = [word for word in reader.tree.children_of(verbs, "advcl", "xcomp") if word not in verbs]
+    infinitive = any(word.low == "to" for word in reader.tree.children_of(purposes, "aux"))
+    return infinitive or any(len(reader.tree.children(one, "dobj", "dative", "oprd")) > 1 for one in verbs)
 
 
 def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
