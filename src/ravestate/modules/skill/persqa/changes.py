@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from .reading import Reader
 
 _FIXED = re.compile(
-    r"\b(?:with (?:an? )?\w+$|actually|said|meant|mean|sp(?:elled|elt)|misspel\w+|wrong)\b", re.IGNORECASE
+    r"\b(?:with (?:\w+ )?[a-z](?:['’]?s)?(?=$|[,.;!]| (?:and|not|please)\b)|actually|said|meant|mean|sp(?:elled|elt)|"
+    r"misspel\w+|wrong)\b",
+    re.IGNORECASE,
 )
 """Words with which a user corrects the spelling or the sound of a value."""
 ALIKE = 0.6
@@ -135,7 +137,10 @@ def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, 
             continue
         nouns = "|".join(map(re.escape, TOPICS[topic].nouns))
         denied = re.search(rf"\bnot (?:an?|my) (?:{nouns})\b(?! of)", reader.tree.text, re.IGNORECASE)
-        plain = object.text == object.head and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
+        verb = reader.verb(said)
+        more = said.phrases or said.when or is_limited(reader, said) or (verb and reader.tree.children(verb, "advcl"))
+        alone = object.text == object.head and not more  # not "Rex is a cat at heart"
+        plain = alone and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
         if denied or plain:
             yield topic, new, name
 
@@ -189,8 +194,15 @@ def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis)
     for word in seen.tree.words:
         near = any(0 < _distance(word.low, value.lower()) <= 1 - ALIKE for value in latest)
         number = TOPICS[topic].kind == "number" and word.pos == "NUM" and number_in(word.low)
-        fits = (number or (near and word.pos in ("PROPN", "NOUN", "X"))) and objects in ([], [word.text])
-        if fits and (new := value_of(word.text, TOPICS[topic], seen)):
+        named = near and word.pos in ("PROPN", "NOUN", "X")
+        after = next((one.pos for one in seen.tree.words[word.index + 1 :] if one.pos != "DET"), "PUNCT")
+        whole = after == "PUNCT" if number else after not in ("NOUN", "PROPN", "NUM")  # not "6 times"
+        if (
+            (number or named)
+            and whole
+            and objects in ([], [word.text])
+            and (new := value_of(word.text, TOPICS[topic], seen))
+        ):
             return [Fact(topic, (new,))]
     return []
 
