@@ -30,6 +30,7 @@ _FIXED = re.compile(
     re.IGNORECASE,
 )
 """Words with which a user corrects the spelling or the sound of a value."""
+_PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b", re.IGNORECASE)
 ALIKE = 0.6
 """The least share of common letters of a value and the value for which it was mistaken: *Lora*, *Nora*."""
 
@@ -143,6 +144,13 @@ def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, 
         plain = alone and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
         if denied or plain:
             yield topic, new, name
+
+
+def is_partial(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether a negation denies only a part: *I'm not just a nurse*, *I don't row because it's cheap*."""
+    lasting = {"more", "longer", "anymore"} & reader.words
+    reason = "because" in reader.words and not lasting and said.verb != "be"
+    return said.negated and (reason or _PARTLY.search(reader.tree.text) is not None)
 
 
 def denied_by(reader: Reader, said: nlp.Statement, phrase: Phrase | None) -> bool:
