@@ -25,9 +25,12 @@ if TYPE_CHECKING:
     from .reading import Reader
 
 _FIXED = re.compile(
-    r"\b(?:with (?:an? )?\w+$|actually|said|meant|mean|sp(?:elled|elt)|misspel\w+|wrong)\b", re.IGNORECASE
+    r"\b(?:with (?:\w+ )?[a-z](?:['’]?s)?(?=$|[,.;!]| (?:and|not|please)\b)|actually|said|meant|mean|sp(?:elled|elt)|"
+    r"misspel\w+|wrong)\b",
+    re.IGNORECASE,
 )
 """Words with which a user corrects the spelling or the sound of a value."""
+_PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b", re.IGNORECASE)
 ALIKE = 0.6
 """The least share of common letters of a value and the value for which it was mistaken: *Lora*, *Nora*."""
 
@@ -92,9 +95,20 @@ def _is_object(reader: Reader, said: nlp.Statement, topic: str, value: str) -> b
     brief = any(entity.label == "TIME" for entity in reader.seen.entities)
     if any(phrase.text != said.object.text for phrase in others) or (brief and said.verb == "leave"):
         return False
+    if _has_more(reader, said):
+        return False
     things = (said.object.text, gerund(reader.span(said), reader.seen), gerund(said.verb, reader.seen))
     last = value.split()[-len(said.object.text.split()) :]  # "the choir", if the value is "local choir"
     return any(same(value, one) for one in things if one) or (last != [] and same(" ".join(last), said.object.text))
+
+
+def _has_more(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether a verb has a second object or a purpose: *I left Bosch a note*, *I stopped running to rest*."""
+    verb = reader.verb(said)
+    verbs = [verb, *reader.tree.ancestors(verb)] if verb else []
+    purposes = [word for word in reader.tree.children_of(verbs, "advcl", "xcomp") if word not in verbs]
+    infinitive = any(word.low == "to" for word in reader.tree.children_of(purposes, "aux"))
+    return infinitive or any(len(reader.tree.children(one, "dobj", "dative", "oprd")) > 1 for one in verbs)
 
 
 def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
@@ -124,9 +138,19 @@ def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, 
             continue
         nouns = "|".join(map(re.escape, TOPICS[topic].nouns))
         denied = re.search(rf"\bnot (?:an?|my) (?:{nouns})\b(?! of)", reader.tree.text, re.IGNORECASE)
-        plain = object.text == object.head and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
+        verb = reader.verb(said)
+        more = said.phrases or said.when or is_limited(reader, said) or (verb and reader.tree.children(verb, "advcl"))
+        alone = object.text == object.head and not more  # not "Rex is a cat at heart"
+        plain = alone and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
         if denied or plain:
             yield topic, new, name
+
+
+def is_partial(reader: Reader, said: nlp.Statement) -> bool:
+    """Return whether a negation denies only a part: *I'm not just a nurse*, *I don't row because it's cheap*."""
+    lasting = {"more", "longer", "anymore"} & reader.words
+    reason = "because" in reader.words and not lasting and said.verb != "be"
+    return said.negated and (reason or _PARTLY.search(reader.tree.text) is not None)
 
 
 def denied_by(reader: Reader, said: nlp.Statement, phrase: Phrase | None) -> bool:
@@ -178,8 +202,15 @@ def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis)
     for word in seen.tree.words:
         near = any(0 < _distance(word.low, value.lower()) <= 1 - ALIKE for value in latest)
         number = TOPICS[topic].kind == "number" and word.pos == "NUM" and number_in(word.low)
-        fits = (number or (near and word.pos in ("PROPN", "NOUN", "X"))) and objects in ([], [word.text])
-        if fits and (new := value_of(word.text, TOPICS[topic], seen)):
+        named = near and word.pos in ("PROPN", "NOUN", "X")
+        after = next((one.pos for one in seen.tree.words[word.index + 1 :] if one.pos != "DET"), "PUNCT")
+        whole = after == "PUNCT" if number else after not in ("NOUN", "PROPN", "NUM")  # not "6 times"
+        if (
+            (number or named)
+            and whole
+            and objects in ([], [word.text])
+            and (new := value_of(word.text, TOPICS[topic], seen))
+        ):
             return [Fact(topic, (new,))]
     return []
 

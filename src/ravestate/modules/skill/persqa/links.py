@@ -75,6 +75,7 @@ def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
         wanted = direct or free
     else:
         habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained and not free
+        habit = habit and "to" not in {word.low for word in reader.tree.children(verb, "aux")}  # "to make tea"
         habit = habit and not NOW & set(said.when.split()) and (direct or not (object.text or said.phrases))
         fleeting = said.verb in WORDS["states"] | WORDS["passing"]
         asked = reader.asked == "hobby" and "i" in reader.words and said.holds and direct and not fleeting

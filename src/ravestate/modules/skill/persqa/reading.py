@@ -11,7 +11,7 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
-from .changes import denied_beside, denied_by, ended_by, renamed_in, switched_in
+from .changes import denied_beside, denied_by, ended_by, is_partial, renamed_in, switched_in
 from .kinds import likeness
 from .links import Link, predicate_of, pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
@@ -49,8 +49,7 @@ class Reader:
     def __init__(
         self, seen: nlp.Analysis, asked: str = "", person: str = "", known: Facts | None = None, recent: str = ""
     ) -> None:
-        self.seen, self.known, self.recent = seen, known or {}, recent
-        self.tree = seen.tree
+        self.seen, self.tree, self.known, self.recent = seen, seen.tree, known or {}, recent
         self.words = {word.low for word in seen.tree.words}
         self.denies_all = bool(self.words & _NONE)
         self.asked = asked
@@ -175,7 +174,7 @@ class Reader:
             return False  # "I was about to move"
         if any(phrase.preposition == "in" and phrase.head in WORDS["fiction"] for phrase in said.phrases):
             return False
-        if self.denies_all or "not_meant" in self.seen.acts:
+        if self.denies_all or "not_meant" in self.seen.acts or is_partial(self, said):
             return False
         if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
             return False  # "when I live in Paris, I will eat cheese"
@@ -313,7 +312,8 @@ class Reader:
         """Yield the links of *I am ...*: an age, an occupation, studies, or a name."""
         object, text = said.object, said.object.text
         years = re.fullmatch(r"([\w -]+?)(?: (?:years?|yrs?)(?: (?:old|young|of age))?| old)?", text.lower())
-        if years and not object.preposition and (number := number_in(years[1])):  # not *for six years*
+        whole = not object.preposition and all(one.head != "year" for one in said.phrases)  # not *for six years*
+        if years and whole and (number := number_in(years[1])):
             yield Link("age", object, value=number)
         elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
             yield Link(found[0], object.owner)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import random
+import re
 from collections.abc import Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
@@ -320,7 +321,7 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
     said = _unrelated((one for one in user.talk.said if one.key not in free), values)
     if not gone and not meaning.free:
         return Response(say("strike_unknown", user.known), user)
-    words = (one for one in user.talk.words if not any(v in one.lower() for v in values))
+    words = (one for one in user.talk.words if not any(_has_words(one, v) for v in values))
     talk = replace(user.talk.striking(gone), said=said, words=tuple(words))
     user = replace(user, facts=left, talk=talk, told=told)
 
@@ -334,10 +335,23 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 def _unrelated(said: Iterable[Told], values: Sequence[str]) -> tuple[Told, ...]:
     """Leave out the statements about some values, and return the rest.
 
-    A statement is about a value if it contains the last word of the value: *chess* of *playing chess*.
+    A statement is about a value if it contains the value. If no statement contains the whole value, its last word
+    counts: *chess* of *playing chess*.
     """
-    lasts = [value.lower().split()[-1] for value in values if value]
-    return tuple(one for one in said if not any(last in one.text.lower() for last in lasts))
+    said = tuple(said)
+    for value in values:
+        whole = [one for one in said if _has_words(one.text, value)]
+        last = value.split()[-1] if value.strip() else ""
+        about = whole or [one for one in said if _has_words(one.text, last)]
+        said = tuple(one for one in said if one not in about)
+    return said
+
+
+def _has_words(text: str, words: str) -> bool:
+    """Return whether a text contains some words, not merely parts of its own words: *art*, but not *party*."""
+    return (
+        bool(words.strip()) and re.search(rf"(?<!\w){re.escape(words.strip())}(?!\w)", text, re.IGNORECASE) is not None
+    )
 
 
 def _wants_out(user: Acquaintance, now: float) -> Response:

@@ -221,7 +221,10 @@ class _Hearing:
         if topic == NAME and self.reader.words & {"he", "she", "they"}:
             return None  # "he's called Jonathan"
         felt = seen.feelings and len(self.text.split()) > 2
-        facts = (not felt and answer(self.text, topic, seen)) or (
+        empty = (
+            all(word.pos in ("ADV", "PART", "CCONJ", "PUNCT") for word in seen.tree.words) and topic != NAME
+        )  # "and"
+        facts = (not felt and not empty and answer(self.text, topic, seen)) or (
             yesno.no and correction(self.text, topic, (), seen)
         )  # "no, from Bremen"
         loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
@@ -260,7 +263,11 @@ class _Hearing:
     def identity(self) -> Meaning | None:
         """Return the meaning if the user says who they are, or who they are not."""
         denied = self.seen.act("deny_identity")
-        if denied and self.known.get(NAME) and (denied.score > 0.6 or not self.corrected()):
+        kin = any(
+            said.negated and said.verb == "be" and said.subject.person == "I" and said.object.owner
+            for said in self.seen.statements
+        )  # "I'm not Ben's mother"
+        if denied and not kin and self.known.get(NAME) and (denied.score > 0.6 or not self.corrected()):
             return Meaning("mistaken")
         other = any(
             said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
