@@ -173,6 +173,8 @@ class Page:
     @contextlib.contextmanager
     def _at_home(self) -> Iterator[None]:
         """Work in the page's folder, and import from it."""
+        for file in self.folder.glob("*.py"):  # another test may have imported another file with this name
+            sys.modules.pop(file.stem, None)
         before, path, known = Path.cwd(), list(sys.path), set(sys.modules)
         os.chdir(self.folder)
         sys.path.insert(0, str(self.folder))
