@@ -9,16 +9,12 @@ from typing import TYPE_CHECKING
 
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
-from .topics import NAME, TOPICS, WORDS
-from .values import value_of
+from .introduced import introduced_in
+from .topics import NAME, WORDS
 
 if TYPE_CHECKING:
     from .reading import Reader
 
-_HERE = re.compile(
-    r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
-    re.IGNORECASE,
-)
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 _OWN = frozenset(["my", "our"])
 
@@ -43,9 +39,8 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
             if phrase.names and mine and not is_former(phrase.text) and (topic := reader.relative(phrase.head)):
                 whole.append((topic, reader.fitting(topic, phrase.names)))
     words = reader.tree.words
-    if here := _HERE.search(reader.tree.text):
-        sure = any(word.text == here[1] and word.pos == "PROPN" for word in words)
-        yield NAME, reader.fitting(NAME, [here[1]], sure=sure)
+    if name := introduced_in(reader):
+        yield NAME, (name,)
     beside: dict[str, str] = {}
     for before, word in itertools.pairwise(words):
         own = (before.low, word.low) == ("my", "name")  # "my name's Tom"
@@ -72,12 +67,6 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
             yield topic, values
     for topic, values in whole:
         yield topic, tuple(value for value in values if beside.get(value, topic) == topic)
-
-
-def remaining_name(reader: Reader) -> str:
-    """Return the name in an utterance that only says who speaks: *it's me, Marlene*; empty if there is none."""
-    runs = (value_of(_run(reader, word), TOPICS[NAME], reader.seen, sure=False) for word in reader.tree.words)
-    return next(filter(None, runs), "")
 
 
 def is_former(words: str) -> bool:
