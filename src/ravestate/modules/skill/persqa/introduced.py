@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ravestate.language.lexicon import loaded_lexicon
 
 from .answers import spelled_out
-from .kinds import is_remark
+from .kinds import is_remark, likeness
 from .topics import NAME, TOPICS
 from .values import value_of
 
@@ -29,35 +29,45 @@ _BESIDE = r"(?: from \w.*)?"
 _FRAMES = [
     re.compile(frame, re.IGNORECASE)
     for frame in (
-        rf"{_OPENERS}(?P<frame>(?:it|this|that) is(?: me)?|i am) {_NAME}{_CLOSERS}{_BESIDE}",
+        rf"{_OPENERS}(?P<frame>(?:it is|its|this is)(?: me)?|i am) {_NAME}{_CLOSERS}{_BESIDE}",
         rf"{_OPENERS}{_NAME} (?:again )?(?P<frame>here)(?: again)?{_BESIDE}",
     )
 ]
-_ME = re.compile(rf"{_OPENERS}(?:it|this) is(?: only| just)? me{_CLOSERS}", re.IGNORECASE)
-_POINTING = re.compile(r"(?:it|this|that) is$", re.IGNORECASE)
+_ME = re.compile(rf"{_OPENERS}(?:it is|its|this is)(?: only| just)? me{_CLOSERS}", re.IGNORECASE)
+_POINTING = re.compile(r"it|this", re.IGNORECASE)
 
 
 def introduced_in(reader: Reader) -> str:
     """Return the name in an introduction; empty if the user does not introduce themselves."""
     text = spelled_out(reader.tree.text)
     pieces = [(piece.strip(), after) for piece, after in _pieces(text)]
-    before = ""
+    before, said = "", False
+    verbs = {word.low for word in reader.tree.words if word.pos in ("VERB", "AUX")}
     for piece, mark in pieces:
         if "?" in mark and not before:
             continue
         found = next(filter(None, (frame.fullmatch(piece) for frame in _FRAMES)), None)
         pointed = found and _POINTING.match(found["frame"])
-        if found and not (pointed and _means_another(reader)) and (name := given_name(found["name"], reader.seen)):
+        another = pointed and (_means_another(reader) or said)  # "my dog isn't Rex, it's Max"
+        if found and not another and (name := given_name(found["name"], reader.seen)):
             return name
         if _ME.fullmatch(before) and (name := given_name(piece, reader.seen)):
             return name
         before = piece
+        said = said or bool(verbs & set(re.findall(r"\w+", piece.lower())))
     return ""
 
 
 def given_name(words: str, seen: nlp.Analysis) -> str:
     """Return words as the name of a person; empty if they are none: *Ilka*, but not *tired*."""
-    sure = all(map(_is_foreign, words.split())) and not is_remark(words)
+    first, *others = words.split() or [""]
+    if not first or any(word.islower() and not _is_foreign(word) for word in others):
+        return ""  # "Hamburg calling"
+    tags = {word.pos for word in seen.tree.words if word.text in words.split()}
+    persons = {entity.label for entity in seen.entities if first in entity.text} <= {"PERSON", "ORG"}
+    sure = _is_foreign(first) and not is_remark(words)
+    if "NUM" in tags or not (sure or (persons and likeness(words, NAME) > 0)):
+        return ""
     return value_of(words, TOPICS[NAME], seen, sure=sure) or ""
 
 

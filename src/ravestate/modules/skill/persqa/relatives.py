@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from ravestate.modules.meta.nlp.tree import Tree, Word
@@ -52,16 +52,17 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
             one.low for one in itertools.takewhile(lambda one: one.low in WORDS["naming"], words[word.index + 1 :])
         ]
         first = words[word.index + 1 + len(passed) :][:1]
-        if me and reader.words & {"mistake", "mistakenly", "wrongly"}:
-            continue
+        if me and (reader.mistaken or (first and first[0].pos in ("ADJ", "ADV") and first[0].text.islower())):
+            continue  # "call me crazy"
         if not first or unsaid & {word.lemma, before.lemma} or reader.denies_all:
             continue
         named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
         if {one.pos for one in first} == {"PROPN"}:  # "my sister Rosa; a dog, Rex, and a cat, Misty"
             named = named or (not passed and before.low in _OWN)
-            named = named or (passed == [","] and (word.tag == "NNS" or before.low in ("a", "an", *_OWN)))
+            named = named or (passed in ([","], [":"]) and (word.tag == "NNS" or before.low in ("a", "an", *_OWN)))
         if named and not is_former(f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"):
-            runs = (_run(reader, one) for one in (*first, *_joined(reader.tree, first[0])))
+            listed = _listed(words[first[0].index :]) if word.tag == "NNS" else _joined(reader.tree, first[0])
+            runs = (_run(reader, one) for one in dict.fromkeys((*first, *listed)))
             values = reader.fitting(topic, runs)
             beside |= dict.fromkeys(values, topic)
             yield topic, values
@@ -90,6 +91,19 @@ def _is_anothers(reader: Reader, before: Word, word: Word) -> bool:
         return False
     having = [said for said in reader.seen.statements if said.object.head == word.lemma]
     return any(said.subject.person == "other" and said.subject.text.lower() != "it" for said in having)
+
+
+def _listed(words: Sequence[Word]) -> Iterator[Word]:
+    """Yield the first words of the names in a list: *Ana, Lidia and Paz*."""
+    for before, word in itertools.pairwise(words):
+        if word.low in (",", "and", "&"):
+            continue
+        if not (word.pos in _NOMINAL or word.text.istitle()) or (
+            before.low not in (",", "and", "&") and before.pos != "PROPN"
+        ):
+            return
+        if before.low in (",", "and", "&"):
+            yield word
 
 
 def _joined(tree: Tree, word: Word) -> Iterator[Word]:
