@@ -81,7 +81,8 @@ def _framed(reader: Reader, phrase: Phrase, clause: str) -> Iterator[str]:
     if written not in clause:
         return
     proper = phrase.names and not phrase.head
-    for kind in dict.fromkeys([kind_of(written), *(_PROPER if proper else ())]):
+    kind = kind_of(written)
+    for kind in dict.fromkeys((*_PROPER, *(["school"] if kind == "school" else [])) if proper else (kind,)):
         if stand_in := _STAND_INS.get(kind):
             article = re.match(r"an? ", written) if kind == "job" else None
             yield clause.replace(written, (article[0] if article else "") + stand_in, 1)
