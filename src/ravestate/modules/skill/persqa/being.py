@@ -1,4 +1,4 @@
-"""What users say that they are: an age, an occupation, studies, or a name."""
+"""Statements of the form *I am ...*: an age, an occupation, studies, or a name."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The topic that the words around a value tell, for sentences that the table of topics does not list.
 
-The value is replaced by a stand-in of its kind, so that only the words around it are compared with the examples in
-``frames.yaml``: *I came into the world in Sousse* becomes *I came into the world in Rome*, which resembles
-*I entered this world in Rome*.
+A stand-in of the same kind replaces the value, so only the words around it are compared with the examples in
+``frames.yaml``. *I came into the world in Sousse* becomes *I came into the world in Rome*. This resembles *I entered this
+world in Rome*.
 """
 
 from __future__ import annotations
