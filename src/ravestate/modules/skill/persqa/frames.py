@@ -80,9 +80,9 @@ def _framed(reader: Reader, phrase: Phrase, clause: str) -> Iterator[str]:
     written = reader.written(phrase)
     if written not in clause:
         return
-    proper = phrase.names and not phrase.head
-    kind = kind_of(written)
-    for kind in dict.fromkeys((*_PROPER, *(["school"] if kind == "school" else [])) if proper else (kind,)):
+    own = kind_of(written)
+    proper = bool(phrase.names) and not phrase.head
+    for kind in (*_PROPER, *(["school"] if own == "school" else [])) if proper else (own,):
         if stand_in := _STAND_INS.get(kind):
             article = re.match(r"an? ", written) if kind == "job" else None
             yield clause.replace(written, (article[0] if article else "") + stand_in, 1)
