@@ -39,7 +39,7 @@ POLL = 30_000  # the milliseconds for which the server holds a request for event
 ANSWER = 20.0  # the seconds to wait for an answer to a request
 PAGE = 100  # the number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
-JOINS = 12  # the number of refusals, within about six minutes, after which the agent does not try to join a room again
+JOINS = 12  # the number of refusals after which the agent stops trying to join a room: about six minutes
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -167,7 +167,7 @@ class Inlet:
         self._room.receive(messages, ("since", answer.next_batch))
 
     async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
-        """Return the events that the server left out of an answer, because there are too many.
+        """Return the events that the server left out of an answer, because there were too many.
 
         Raises:
             OSError: The server does not send them now. Keep the position, so that the same answer comes again.

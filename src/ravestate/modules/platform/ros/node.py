@@ -297,7 +297,7 @@ class Node:
             raise PlatformError(f"{self.title}: {reason}") from None
 
     async def close(self) -> None:
-        """End all channels and the link, in order."""
+        """Send the last messages, then end the link and all channels."""
         for task in self._tasks:
             task.cancel()
         with contextlib.suppress(TimeoutError):

@@ -24,8 +24,8 @@ HEARD = 0.5
 FAINT = 0.1
 """The share of a word's greatest level below which the end of the word counts as a pause after it."""
 DRIFT = 0.06
-"""The echo's reference advances with the microphone's sound. If it is this far (seconds) from the play-out, it
-jumps."""
+"""How far (seconds) the echo's reference may drift from the play-out before it jumps there. The reference is the
+loudspeaker's sound for the echo canceller. It advances with the microphone's sound."""
 LEAD = 4.0
 """The seconds of sound in the loudspeaker's queue above which the mouth synthesises no more text."""
 KEPT = 30.0

@@ -52,7 +52,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
-        return rs.Resign("this user has no line: their platform brings one in rawio.sound")
+        return rs.Resign("the user's platform has no line in rawio.sound now")
     if line is not None and ctx.payload(rawio.sound.changed) is None:
         return rs.Resign("a line came at once, and another run of this rule opens it")
 

@@ -24,8 +24,8 @@ UNFINISHED = 0.3
 are."""
 
 ANOTHER = 0.03
-"""Candidates for the last word after which a sentence goes on, such as *my*, count together. From this probability on,
-the turn may not be over."""
+"""The turn may not be over if the last word may be one after which a sentence goes on, such as *my*. This is the least
+probability of all such candidates together."""
 UNCLEAR = 0.3
 """If no candidate has this probability, the last word is unclear, for example because it breaks off."""
 
