@@ -23,8 +23,8 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the signals that are without a spike. Once the attempt has given up its last spike, `lacks` has the signals
-    that were without a spike before. `complete` is the time at which the attempt took its last missing spike (seconds);
+    `lacks` has the signals that are without a spike. When the attempt gives up its last spike, `lacks` stays as it was
+    before this loss. `complete` is the time at which the attempt took its last missing spike (seconds);
     None while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
     """
 
@@ -76,7 +76,7 @@ class Attempt:
     def lose(self, record: t.GaveUp) -> None:
         """Note a spike that the activation gave up.
 
-        If the activation gives up all its spikes in one instant, `lacks` has the signals from before the first loss.
+        If the activation gives up all its spikes in one instant, `lacks` stays as it was before the first of these losses.
         """
         if not self.gave_up or self.gave_up[-1].time != record.time:
             self._before = self._missing

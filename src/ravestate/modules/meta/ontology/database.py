@@ -58,7 +58,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
 
 
 def survives(path: Path, *, whole_log: bool = True) -> bool:
-    """Return whether a separate process can open and read the whole file without a crash; exceptions do not count."""
+    """Return whether a separate process can read the whole file without a crash. An exception counts as no crash."""
     command = [sys.executable, "-P", __file__, str(path), "whole" if whole_log else "part"]
     try:
         return subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode >= 0

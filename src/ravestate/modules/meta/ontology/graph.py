@@ -15,8 +15,8 @@ from .types import Types
 T = TypeVar("T")
 
 AGENT = "Agent"
-"""The type of people and robots. Forgetting a node does not remove a related person or robot if memory has more than
-their name."""
+"""The type of people and robots. Forgetting a node does not remove a related person or robot if memory knows more
+about them than their name."""
 
 
 class Graph:
@@ -102,7 +102,7 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        A person or robot also stays if memory has more than their name.
+        A person or robot also stays if memory knows more about them than their name.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
@@ -110,7 +110,7 @@ class Graph:
                 f"MATCH (a:`{node.type}` {{`id`: $a}})-[r:`{relation}`]->(b:`{other.type}` {{`id`: $b}}) DELETE r",
                 {"a": node.id, "b": other.id},
             )
-            if forget and not self._is_wanted(other, ()) and not self._has_own_life(other, node):
+            if forget and not self._is_wanted(other, ()) and not self._is_known_otherwise(other, node):
                 self.forget(other)
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> list[Node]:
@@ -195,7 +195,7 @@ class Graph:
         reached = [start]
         for one in reached:  # the list grows during the loop
             for _, _, other in self._ends(one, back=False):
-                if other.id not in going and not self._has_own_life(other, start):
+                if other.id not in going and not self._is_known_otherwise(other, start):
                     going[other.id] = other
                     reached.append(other)
         while staying := [one for one in going if one != start.id and self._is_wanted(going[one], going)]:
@@ -207,7 +207,7 @@ class Graph:
         """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
 
         A node needs the targets of its relations, and in turn their targets. A target stays if a node that stays is
-        related to it. A person or robot also stays if memory has more than their name.
+        related to it. A person or robot also stays if memory knows more about them than their name.
 
         Returns:
             The removed nodes, `node` first; an empty list if memory does not have `node`.
@@ -220,7 +220,7 @@ class Graph:
             self._store.purge()
         return going
 
-    def _has_own_life(self, other: Node, start: Node) -> bool:
+    def _is_known_otherwise(self, other: Node, start: Node) -> bool:
         """Return whether `other` is a person or robot with more in memory than a name and a relation to `start`."""
         if AGENT not in self._types or not self._types.is_a(other.type, AGENT):
             return False
@@ -229,7 +229,7 @@ class Graph:
         )
 
     def _is_wanted(self, node: Node, going: Container[object]) -> bool:
-        """Return whether a node that is not in `going` has a relation to `node`."""
+        """Return whether a node that stays, so that it is not in `going`, has a relation to `node`."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 
     def _must_declare(self, node: Node) -> None:

@@ -242,13 +242,13 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
             if await _is_new_face(ctx, key, user):
                 ctx.emit(named, user)
                 return Visitor(key, user, known=True, since=now, seen=now, linked=True)
-        if before is not None and (person is None or person.id != before):  # another person sits down
+        if before is not None and (person is None or person.id != before):  # another person has taken this user's place
             users.remove(key)
             node = person or ontology.Node("Person")
             known = person is not None
             return Visitor(key, node, known, since=now, seen=now, linked=True, faces=known, moving=True)
         if person is not None and before is None and item not in (None, name):
-            key = None  # according to the platform, its user is somebody else
+            key = None  # the platform says that its user is somebody else
     node = person or ontology.Node("Person")
     if key is None:
         key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *here) if k.startswith(KEY)), default=0)}"

@@ -32,7 +32,7 @@ class Visitor:
         vectors: Their best vectors of this visit, each with its quality, best first.
         linked: Whether they are a user whom a platform has added.
         faces: Whether memory has their face, or the agent has asked them. Otherwise the agent may ask.
-        mistaken: The ids of other people with a similar face, whom the agent must not take them for.
+        mistaken: The ids of other people in memory. The agent must not mistake this visitor for them.
         moving: Whether they take the place of a platform's user. The agent removes that user for a moment.
     """
 
@@ -90,7 +90,7 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said the question. Its next words end the question, because a yes may answer them.
+        said: Whether the agent has said the question. The agent's next words end it: a later yes may answer those words.
     """
 
     key: str
