@@ -53,7 +53,7 @@ export class Board {
   /** The command that the server refused, until its form takes it back. */
   refused: Refused | null = $state.raw(null);
   ending = $state("");
-  /** Counts frames: a view of the trace depends on it. */
+  /** The number of frames so far. Views of the trace depend on it, so each frame updates them. */
   version = $state(0);
   rule: string | null = $state(null);
   spike: number | null = $state(null);
@@ -259,7 +259,7 @@ export class Board {
     }
   }
 
-  /** Ask again. */
+  /** Ask the last question again. */
   again(): void {
     this.#ask();
   }

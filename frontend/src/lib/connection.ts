@@ -129,7 +129,7 @@ export class Connection {
       return;
     }
     const frame = parse(data);
-    if (frame === null) return; // a later version may send it
+    if (frame === null) return; // a later version of the server may send frames that this page does not know
     if (frame.type === "welcome") {
       this.#backoff.reset();
       this.#become("open");
