@@ -98,13 +98,15 @@ class Ear:
         self._pause = round(pause * IN_RATE / CHUNK)
         self._canceller = canceller
         self._leak = Leak()
-        self._frames = bytearray()
-        self._far = bytearray()
-        self._clean = bytearray()
-        self._before: deque[bytes] = deque(maxlen=BEFORE)
-        self._lately: deque[bool] = deque(maxlen=ONSET)
-        self._in_a_row = self._silent = self._spoken = self._articulate = self._at_limit = 0
-        self._sure = False
+        self._frames = bytearray()  # microphone sound that fills no frame of the canceller yet
+        self._far = bytearray()  # the loudspeaker's sound of the same time
+        self._clean = bytearray()  # sound without echo that fills no chunk yet
+        self._before: deque[bytes] = deque(maxlen=BEFORE)  # the last chunks before a turn
+        self._lately: deque[bool] = deque(maxlen=ONSET)  # whether the last chunks are articulate
+        self._in_a_row = self._silent = 0  # the numbers of successive chunks of speech and of silence
+        self._spoken = self._articulate = 0  # the numbers of all chunks and of articulate chunks since the onset
+        self._at_limit = 0  # the number of clipped samples in this second of speech
+        self._sure = False  # whether the event ``articulate`` has come since the onset
 
     def feed(self, block: bytes, now: float, far: bytes = b"", *, agent_speaks: bool = False) -> Iterator[Event]:
         """Take a block of sound; yield the events in it.

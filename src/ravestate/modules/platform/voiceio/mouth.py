@@ -82,7 +82,7 @@ class Speech:
 
 @dataclass(slots=True)
 class _Queued:
-    """A sentence in the loudspeaker's queue; its sound begins at `start` on the line's scale of played seconds."""
+    """A sentence in the loudspeaker's queue. Its sound begins when the line has played `start` seconds."""
 
     start: float
     spoken: Spoken
@@ -113,8 +113,9 @@ class Mouth:
         self._end = 0.0
         self._held_at: float | None = None
         self._released = asyncio.Event()
-        self._track: list[tuple[float, bytes]] = []
-        self._at = self._before = 0.0
+        self._track: list[tuple[float, bytes]] = []  # start (played seconds) and PCM of each sound, for `reference`
+        self._at = 0.0  # the position of the reference (played seconds)
+        self._before = 0.0  # the position of the line at the last call of `reference`
 
     @property
     def held(self) -> bool:
@@ -228,7 +229,7 @@ class Mouth:
     # ------------------------------------------------------------------------------- the echo's reference
 
     def reference(self, size: int) -> bytes:
-        """Return the sound (PCM at `IN_RATE`) that the loudspeaker played in the last `size` bytes of microphone sound."""
+        """Return the sound (PCM at `IN_RATE`) that played while the microphone recorded its last `size` bytes."""
         now, length = self.line.played, size / 2 / IN_RATE
         advances, self._before = now > self._before + 1e-6, now
         if not advances:

@@ -154,7 +154,7 @@ def is_demand(text: str, language: str = "en") -> bool:
 
 
 def is_echo(text: str, spoken: str) -> bool:
-    """Return whether at least three recognised words are a part of the agent's own words.
+    """Return whether at least three words were recognised, and most of them are the agent's own words in a row.
 
     Example:
         >>> is_echo("lived in a museum", "Once there was a robot. It lived in a museum.")

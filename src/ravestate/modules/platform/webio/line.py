@@ -153,8 +153,8 @@ class PageLine:
         since = 0.0
         if self._moved is not None:
             since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
-        here = min(self._sent, self._reported + int(since * rawio.OUT_RATE))
-        self._most = max(self._most, self._earlier + here)
+        of_stream = min(self._sent, self._reported + int(since * rawio.OUT_RATE))
+        self._most = max(self._most, self._earlier + of_stream)
         return self._most / rawio.OUT_RATE
 
     async def drained(self) -> None:
