@@ -67,12 +67,12 @@ class EmbeddedStore:
             raise PlatformError("ontology needs ladybug: pip install 'ravestate[ontology]'") from error
         self._path = path
         self._files = MemoryFiles(path)
-        self._log_limit = LOG_LIMIT
-        self._log_good = 0
-        self._stuck = ""
-        self._within = False
-        self._purge_due = False
-        self._prepared: Types | None = None
+        self._log_limit = LOG_LIMIT  # the size of the log (bytes) above which the store shortens it
+        self._log_good = 0  # the size of the log (bytes) after the last acknowledged write
+        self._stuck = ""  # the reason why the last write failed; empty while writes succeed
+        self._within = False  # whether a transaction is open
+        self._purge_due = False  # whether a purge follows the open transaction
+        self._prepared: Types | None = None  # the types whose tables exist
         try:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
@@ -305,6 +305,7 @@ class EmbeddedStore:
         self._execute("CHECKPOINT")
 
     def _check_space(self, needed: int) -> None:
+        """Refuse a write of `needed` bytes if the disk would be too full after it."""
         try:
             free = shutil.disk_usage(self._path.parent).free
         except OSError:
@@ -314,6 +315,7 @@ class EmbeddedStore:
             raise PlatformError(why_not_written(self._path, why))
 
     def _be_writable(self, size: int) -> None:
+        """Prepare a write of `size` bytes of text. After a failed write, open the file again if the disk has room."""
         self._check_space(4 * size)
         if not self._stuck:
             self._files.make_private(".wal")
@@ -326,6 +328,7 @@ class EmbeddedStore:
         self._open()
 
     def _get_stuck(self, said: str) -> None:
+        """Stop all writes after a failed write, and cut its incomplete record off the log."""
         self._stuck = reason(said)
         with contextlib.suppress(OSError):
             os.truncate(self._files.log, self._log_good)  # an incomplete record would make the log look damaged
