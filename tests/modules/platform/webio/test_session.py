@@ -119,7 +119,7 @@ async def test_a_visitor_who_speaks_after_the_farewell_learns_that_nobody_hears_
         assert {
             "type": "error",
             "code": "over",
-            "text": "the conversation is ending: nothing more is heard",
+            "text": "the conversation is ending, so it takes no more words",
             "id": "a",
         } in frames
         assert [frame["text"] for frame in frames if frame["type"] == "message"] == ["Bye!"]

@@ -159,9 +159,9 @@ class Inlet:
             room = self._client.rooms.get(id)
             if room is not None and (since is not None or self._invited(events)):
                 messages += self._read(room, events)
-        nobody = Person(self._client.user_id)
+        agent = Person(self._client.user_id)
         for id in rooms.leave:
-            messages.append(Incoming(key=f"left {answer.next_batch} {id}", chat=id, id="", kind="left", person=nobody))
+            messages.append(Incoming(key=f"left {answer.next_batch} {id}", chat=id, id="", kind="left", person=agent))
         for id, invitation in rooms.invite.items():
             self._invite(id, invitation.invite_state)
         self._room.receive(messages, ("since", answer.next_batch))
@@ -204,11 +204,11 @@ class Inlet:
 
     def _invite(self, room: str, state: Iterable[Any]) -> None:
         me = self._client.user_id
-        hosts = [e.sender for e in state if isinstance(e, InviteMemberEvent) and e.state_key == me]
-        if self._settings.allows(room, *hosts):
+        inviters = [e.sender for e in state if isinstance(e, InviteMemberEvent) and e.state_key == me]
+        if self._settings.allows(room, *inviters):
             self._accept(room)
         else:
-            self._room.warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
+            self._room.warn(room, f"is not joined: {', '.join(inviters)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
         """Join a room in a task. The server reports an invitation only once, so keep it until the agent has joined."""

@@ -108,6 +108,7 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
 
 
 def _nowhere() -> Place:
+    """Raise an error: a node on the bus must not look for a bridge's program."""
     raise PlatformError("the bus has no program")
 
 
@@ -244,6 +245,7 @@ async def send_gesture(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 async def _careful(ctx: rs.RuleContext, act: Any) -> None:
+    """Await an act of the robot; log a failure."""
     try:
         await act
     except PlatformError as error:

@@ -161,7 +161,7 @@ class Connection:
     def _take(self, frame: frames.ClientFrame, session: Session) -> None:
         if isinstance(frame, frames.Say):
             if not session.hear(frame.id, frame.text):
-                raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
+                raise ProtocolError("over", "the conversation is ending, so it takes no more words", frame.id)
         elif isinstance(frame, frames.Ping):
             self._reply(frames.Pong())
         elif isinstance(frame, frames.Microphone | frames.Played | frames.Hush):
