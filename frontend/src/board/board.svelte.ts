@@ -48,16 +48,23 @@ export class Board {
   missed = $state(0);
   /** How many past records are still to come. */
   behind = $state(0);
+  /** Whether the trace has all records from the start of the context on. */
   whole = $state(true);
+  /** The latest error, for the user. */
   trouble = $state("");
   /** The command that the server refused, until its form takes it back. */
   refused: Refused | null = $state.raw(null);
+  /** Why the conversation has ended. */
   ending = $state("");
   /** The number of frames so far. Views of the trace depend on it, so each frame updates them. */
   version = $state(0);
+  /** The chosen rule. */
   rule: string | null = $state(null);
+  /** The chosen spike; null for the newest cause. */
   spike: number | null = $state(null);
+  /** The answer to the question why the chosen rule did not fire. */
   why: Answer | null = $state.raw(null);
+  /** Whether this question waits for its answer. */
   asking = $state(false);
   explained: Explained | null = $state.raw(null);
   diagram: Drawing | null = $state.raw(null);
@@ -102,8 +109,8 @@ export class Board {
   #before: Address = {}; // the address before a recording
   #address: Address;
   #link: Link;
-  #now = 0;
-  #at = 0;
+  #now = 0; // the context's time in the last frame (seconds)
+  #at = 0; // the time at which this frame came (milliseconds)
 
   /**
    * @param address the first conversation or recording

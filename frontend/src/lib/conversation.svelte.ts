@@ -48,10 +48,10 @@ export class Conversation {
 
   #kept: Kept = recall();
   #outbox: Say[];
-  #last = 0;
-  #recalled = 0;
-  #anew = false;
-  #epoch = 0;
+  #last = 0; // the number of the last message that the window has
+  #recalled = 0; // the number of the last message from before a reload
+  #anew = false; // whether the next message begins a conversation that replaces a lost one
+  #epoch = 0; // the number of conversations so far, for unique keys of lines
   #listens = false; // whether the server takes `writing`
   #told = Number.NEGATIVE_INFINITY; // the time of the last `writing`
   #connection: Connection;
