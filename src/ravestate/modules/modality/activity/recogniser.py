@@ -169,7 +169,8 @@ class Recogniser:
     def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
         """Learn an activity from the features of a demonstration, and the features of its mirror image.
 
-        Demonstrations may use the left or the right hand: the recogniser takes the side that is nearer to the other demonstrations.
+        Demonstrations may use the left or the right hand. The recogniser takes the side that is nearer to the other
+        demonstrations.
         """
         np, group = self._np, self._taught.setdefault(name, [])
         both = [(side - self.starter.centre) / self.starter.size for side in sides]
@@ -238,24 +239,24 @@ class Recogniser:
         The cost is twice the negative log likelihood per feature.
         """
         np = self._np
-        there = ~np.isnan(features)
-        key = there.tobytes()
+        visible = ~np.isnan(features)
+        key = visible.tobytes()
         if key not in self._inverses:
             if len(self._inverses) >= REMEMBERED:
                 self._inverses.clear()
-            self._inverses[key] = np.linalg.inv(self.starter.correlation[np.ix_(there, there)])
-        deviations = self._deviations[:, there]
-        away = np.nan_to_num((features[there] - self._means[:, there]) / deviations)
-        count = int(there.sum())
+            self._inverses[key] = np.linalg.inv(self.starter.correlation[np.ix_(visible, visible)])
+        deviations = self._deviations[:, visible]
+        away = np.nan_to_num((features[visible] - self._means[:, visible]) / deviations)
+        count = int(visible.sum())
         distance = np.einsum("ci,ij,cj->c", away, self._inverses[key], away) / count
         return distance, distance + 2 * np.log(deviations).sum(axis=1) / count - self._favour, count
 
 
 def _mean(group: NDArray[Any]) -> NDArray[Any]:
     np = numpy()
-    there = ~np.isnan(group)
-    total = np.where(there, group, 0.0).sum(axis=0)
-    return np.where(there.any(axis=0), total / np.maximum(there.sum(axis=0), 1), np.nan)
+    visible = ~np.isnan(group)
+    total = np.where(visible, group, 0.0).sum(axis=0)
+    return np.where(visible.any(axis=0), total / np.maximum(visible.sum(axis=0), 1), np.nan)
 
 
 def numpy() -> Any:

@@ -90,7 +90,7 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said the question. The agent's next words end it: a later yes may answer those words.
+        said: Whether the agent has said the question. The agent's next words end it: a yes may then answer those.
     """
 
     key: str

@@ -22,7 +22,7 @@ BEFORE = 12
 ONSET = 2
 """The number of successive chunks of speech that make an onset. A click is shorter."""
 STAY = 0.7
-"""While the user speaks, the threshold of speech is multiplied by this factor, so that soft chunks continue the speech."""
+"""The factor that lowers the threshold of speech while the user speaks, so that soft chunks continue the speech."""
 ARTICULATE = 3
 """The number of articulate chunks since the onset that prove speech, rather than a hum or a cough."""
 LONG = 16

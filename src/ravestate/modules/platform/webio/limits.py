@@ -20,7 +20,7 @@ from websockets.exceptions import InvalidState
 TIMEOUT = 10.0  # the seconds that a client has to send its request, and then again to read the answer
 
 LOWEST_RATE = 8 * 1024
-"""The lowest rate at which a client may send a request (bytes per second). The client may fall behind by `TIMEOUT` seconds."""
+"""The least rate at which a client may send a request (bytes per second). A client may fall behind by `TIMEOUT` seconds."""
 
 STALL_TIMEOUT = 20.0  # the seconds for which a client of a WebSocket may leave data unread
 
