@@ -355,7 +355,9 @@ def test_rules_that_wait_only_for_each_other_are_unreachable() -> None:
     found = faults(m)
     assert len(found) == 2
     assert re.match(
-        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; only m:second may raise that", found[0]
+        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; "
+        r"no input leads to the rules that may raise it \(m:second\)",
+        found[0],
     )
     assert found[0].endswith("if code outside the rules raises the signal, declare it with input=True")
 

@@ -61,7 +61,7 @@ def test_a_rule_that_waits_for_a_rule_with_its_slot(scene: Scene) -> None:
     scene.rule("again", said, writes=scene.out)
     text = scene.findings()["unreachable", "m:again"]
     assert "waits for an effect of rules that write m:out before it" in text
-    assert "add .detached() to that signal, or detached=True to the rule that causes it" in text
+    assert "add .detached() to that signal, or detached=True to the rule that raises it" in text
 
 
 @pytest.mark.parametrize("way", ["constraint", "rule"])

@@ -270,7 +270,7 @@ def test_the_error_names_a_plain_function_that_blocks_time(monkeypatch: pytest.M
         sim.emit(go)
     assert str(caught.value) == (
         "clock:hang kept virtual time waiting for over 0.001 real seconds: a plain function takes real time; to wait in "
-        "virtual time write async def and await ctx.sleep(seconds)"
+        "virtual time, write async def and await ctx.sleep(seconds)"
     )
     release.set()
 

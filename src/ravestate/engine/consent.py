@@ -130,7 +130,7 @@ class Consent:
         for member in (*living, None):
             if member is None:
                 if outside:
-                    break  # this activation takes the spike first, so the stand-by is no rival
+                    break  # an activation waits for the spike and takes it first, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_inert(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)

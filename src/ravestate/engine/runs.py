@@ -239,7 +239,8 @@ def _roots(run: Activation) -> list[Group]:
 
 
 def _handles_error(run: Activation) -> bool:
-    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure raises no further one."""
+    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure does not raise
+    ``core:error`` again."""
     return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
 
 
@@ -249,5 +250,5 @@ def _endless(rules: Sequence[RulePlan]) -> str:
     whom = "each other" if len(rules) > 1 else "itself"
     return (
         f"an endless loop: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
-        ".min_age(seconds) behind a signal of the loop, so that time passes"
+        ".min_age(seconds) after a signal of the loop, so that time passes"
     )

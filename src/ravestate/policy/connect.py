@@ -61,7 +61,7 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_unrivalled(rules: Iterable[RulePlan]) -> None:
-    """Mark the clauses that go before all other writers of their slots. With a cooldown, the order may change."""
+    """Mark the clauses that always go before all other writers of their slots. A cooldown may change the order."""
     best: dict[int, Clause] = {}
     changing: set[int] = set()
     for rule in rules:

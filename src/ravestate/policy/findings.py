@@ -121,7 +121,7 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
                 rule.name,
                 f"rule {rule.name} waits for an effect of rules that write {slots} before it, and a causal group allows "
                 "one write of a slot (L19): add .detached() to that signal, or detached=True to the rule that "
-                "causes it",
+                "raises it",
             )
 
 
