@@ -1,4 +1,4 @@
-"""Standing: which of two clauses goes first, now and in time."""
+"""Standing: which of two clauses goes first, now and later."""
 
 from __future__ import annotations
 

@@ -145,7 +145,7 @@ def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> N
     with play(m) as sim:
         sim.emit(i)
         sim.advance(20.0)
-        assert moments(sim, out) == [(2.0, "general")]  # without x no z, whatever `two` still finds
+        assert moments(sim, out) == [(2.0, "general")]  # without x there is no z, whatever `two` still raises
 
 
 def test_alternatives_keep_a_rival_viable(play: Any) -> None:
@@ -274,7 +274,7 @@ def test_a_rival_that_lost_patience_gives_its_spikes_up(play: Any) -> None:
         assert given_up(sim, "fused") == [(1.0, "speech", "eliminated")]
         sim.emit(point)
         assert written(sim, out) == []
-        sim.emit(speech)  # it stands by as ever
+        sim.emit(speech)  # `fused` still stands by
         assert moments(sim, out) == [(2.0, "fused")]
 
 
@@ -429,7 +429,7 @@ def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_an_effect_of_the_group(pl
         assert pressed(sim) == []
 
 
-def test_a_rival_elsewhere_lets_go_when_the_group_cannot_cause_it(play: Any) -> None:
+def test_a_rival_elsewhere_is_none_once_the_group_cannot_cause_its_signal(play: Any) -> None:
     m, i, j, out = mixed(after=3.0, only_if=no)
     with play(m) as sim:
         sim.emit(j)
@@ -565,7 +565,7 @@ def test_a_derivation_may_be_deeper_than_the_interpreter_nests_calls(
     play: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(limit: int) -> None:
-        raise AssertionError(f"the recursion limit is the interpreter's: {limit}")
+        raise AssertionError(f"the engine must not change the recursion limit: {limit}")
 
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)

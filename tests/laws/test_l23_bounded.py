@@ -115,7 +115,7 @@ def test_a_wiped_signal_leaves_nothing_behind(play: Any) -> None:
         for _ in range(50):
             sim.emit(a)
         sim.advance(1_000.0)
-        assert len(sim.snapshot()["spikes"]) == 50  # for ever is for ever
+        assert len(sim.snapshot()["spikes"]) == 50  # with max_age=None, spikes never grow too old
         sim.wipe(a)
         assert at_rest(sim)
         assert written(sim, out) == []

@@ -40,7 +40,7 @@ def bench() -> Bench:
     return Bench()
 
 
-def test_it_follows_its_loop_from_zero(bench: Bench) -> None:
+def test_a_clock_follows_its_loop_from_zero(bench: Bench) -> None:
     assert bench.clock.now() == 0.0
     bench.sleeper("a", 2.0)
     bench.sleeper("b", 1.0)
@@ -187,7 +187,7 @@ def test_a_paused_context_ends_in_order() -> None:
     assert ended == [1.0]
 
 
-def test_observers_come_and_go_while_it_runs() -> None:
+def test_observers_come_and_go_while_a_context_runs() -> None:
     m, asked, _ = story()
     first: list[Any] = []
     second: list[Any] = []

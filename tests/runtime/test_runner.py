@@ -204,7 +204,7 @@ async def test_sys_exit_does_not_end_the_process(where: str) -> None:
         assert await talk.ask(context) == "fallback"
 
 
-def test_a_keyboard_interrupt_ends_what_runs() -> None:
+def test_a_keyboard_interrupt_ends_the_context_and_its_task() -> None:
     talk = Talk()
     ended: list[bool] = []
     talk.rule(raising(KeyboardInterrupt(), "at once"), name="interrupts")

@@ -11,7 +11,7 @@ from ravestate.testing.platforms import check_answer, check_order, check_restart
 
 
 class Memory:
-    """The users of a platform in memory. It answers one message twice."""
+    """The users of a platform in memory, which answers the message `doubled` twice."""
 
     def __init__(self, doubled: str = "") -> None:
         self._doubled = doubled
