@@ -29,7 +29,7 @@ def at_rest(engine: Engine) -> bool:
 
 
 def burst(signal: str, count: int, first: int = 0) -> list[Event]:
-    """Return events that emit a signal."""
+    """Return `count` events that emit a signal; the payloads are the numbers from `first` on."""
     return [Emit(signal, n) for n in range(first, first + count)]
 
 

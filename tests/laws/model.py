@@ -257,7 +257,7 @@ class Model:
         closing = mine.base * fast - theirs.base * their_fast
         if closing <= 0 or theirs.base * their_far <= mine.base * far:
             return inf
-        # Counted from the last run: a moment of the plan must not depend on the moment at which it is computed.
+        # The time is counted from the last run, so that it does not depend on the moment of this call.
         began = max(self.ran[c.rule.index] for c, speed in ((mine, fast), (theirs, their_fast)) if speed)
         far = (began - self.ran[mine.rule.index]) * fast if fast else far
         their_far = (began - self.ran[theirs.rule.index]) * their_fast if their_fast else their_far
@@ -271,9 +271,8 @@ class Model:
 
     def refusals(self, act: Act, without: Iterable[Act] = (), commit: bool = True) -> set[str]:
         """Return why groups refuse consent (L15): a slot is ``taken``, or a rival becomes ready, ``surely`` or
-        ``perhaps``. A rival that becomes ready only perhaps is pressed, or gives up (L16). With `without`, ignore the work of
-        these activations,
-                and press no rival.
+        ``perhaps``. A rival that becomes ready only perhaps is pressed, or gives up (L16). With `without`, ignore the work
+        of these activations, and press no rival.
         """
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))
@@ -305,7 +304,7 @@ class Model:
         return reasons
 
     def judge_rival(self, rival: Any, group: Group, derivation: Derivation, reasons: set[str], *, commit: bool) -> bool:
-        """Add the reasons that a rival gives a group to refuse; return whether an activation of it gave up."""
+        """Add a rival's reasons for a group to refuse; return whether one of the rival's activations gave up."""
         sure: list[Act] = []
         ended = False
         for member in [*(a for a in self.acts if a.clause is rival and a.state < RUNS), None]:
@@ -313,7 +312,7 @@ class Model:
                 if member not in self.acts or member in derivation.still:
                     continue
                 if any(set(member.firm()) <= set(older.firm()) for older in sure):
-                    continue  # an older activation, still to run, holds all that this one holds
+                    continue  # an older activation that will run holds all spikes of this one
             strength = derivation.rival(rival, member, group)
             if strength == SURE:
                 reasons.add("surely")
@@ -367,7 +366,7 @@ class Model:
         return bool(stuck)
 
     def start(self, act: Act) -> None:
-        """Start a run with consent (L17)."""
+        """Start a run: it takes its slots in its groups (L17)."""
         rule = act.rule
         act.state = RUNS
         act.parents = act.firm()
@@ -514,7 +513,7 @@ class Model:
         if not need.detached and (
             rule.index in spike.refused
             or spike.group.root().consumed(rule.slots)
-            or any(one.rule == rule.index for one in spike.line())
+            or any(one.rule == rule.index for one in spike.ancestry())
         ):
             return False
         return self.passes(need, spike.payload)
@@ -701,7 +700,7 @@ class Model:
 
     def on_wipe(self, event: Any) -> None:
         wiper = self.run_of(event)
-        doomed = [s for s in self.known() if any(one.signal.name == event.signal for one in s.line())]
+        doomed = [s for s in self.known() if any(one.signal.name == event.signal for one in s.ancestry())]
         for spike in doomed:
             for act in sorted(self.acts, key=lambda act: (act.clause.index, act.id)):
                 if act.state == RUNS and act is not wiper and act.rule.interruptible and spike in act.held.values():
@@ -757,7 +756,7 @@ class Model:
         else:
             self.give_up(run, run.parents)
         self.out.append(Ended(run.number, rule.name, outcome, fired))
-        heard = [one.signal.name for spike in run.held.values() for one in spike.line()]
+        heard = [one.signal.name for spike in run.held.values() for one in spike.ancestry()]
         self.end(run)
         if event.kind == "retired":
             self.retired.add(rule.index)

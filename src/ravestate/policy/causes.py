@@ -234,7 +234,8 @@ class Causes:
 
         A slot that several rules write is contested. If only one rule writes a slot, a chain that writes the slot twice
         passes this rule twice. Within one group, a shorter chain then reaches the same end: the chain without the part
-        between the two passes. So this slot is contested only if the rule is on a cycle with a clause that joins groups.
+        between the two passes. So this slot is contested only if its rule is on a cycle with a clause that joins
+        groups.
         """
         if self._contested is None:
             self._contested = self._find_contested()

@@ -201,9 +201,9 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """Needs for one signal in clauses that have two needs. A first spike gets no activation.
+    """The needs for one signal, from clauses with two needs, that the engine treats alike.
 
-    All needs that the engine would treat alike share one record.
+    A first spike gets no activation.
 
     Attributes:
         needs: The needs, in declaration order.
