@@ -11,7 +11,7 @@ the parts in this order:
 2. *Match.* `Matching.birth` creates the spike and offers it to activations, which take it by `Holdings.acquire`. Then
    `Holdings.update` finds out whether the activation is ready. A simple clause needs no such check, because one spike
    makes it ready (`Clause.simple`). `Holdings.complete` queues the ready activation. `Halves`, `Benches` and
-   `ConflictSets` create an activation only once it may run; most others are never created.
+   `ConflictSets` create an activation only when it may run, so most activations are never created.
 3. *Start.* `Engine.effects` runs the loop in `Parts.effects`, until a run must start or stop, or nothing is left to do.
    Activations that need no consent start first (`Agenda.start_free`). The caller performs these effects, reports the
    runs that have ended, and calls `Engine.effects` again.

@@ -22,7 +22,7 @@ from ravestate.engine.line import Line
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
-from ravestate.engine.stalemate import loose, stalemate
+from ravestate.engine.stalemate import no_longer_stuck, stalemate
 from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
 
@@ -230,7 +230,7 @@ class Agenda:
             if order != state.order(best):
                 heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
                 continue
-            freed = loose(best, stuck)
+            freed = no_longer_stuck(best, stuck)
             if not found.issuperset(freed):  # something has changed since these were found, so search them again
                 for other in freed:
                     stuck.discard(other)

@@ -54,7 +54,7 @@ class Benches:
             else:
                 self._lead(bench, partner)
 
-    def rise(self, spike: Spike) -> None:
+    def unbench(self, spike: Spike) -> None:
         """Create a spike's activations with its counterparts, because these pairs are about to lose a spike (L12)."""
         state = self.state
         for half in state.halves_of(spike) if state.benches else ():

@@ -201,7 +201,7 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """The needs for one signal, from clauses with two needs, that the engine treats alike.
+    """Needs for one signal that the engine treats alike; each is one of its clause's two needs.
 
     A first spike gets no activation.
 
