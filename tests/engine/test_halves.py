@@ -116,7 +116,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     assert activations(engine) == 1
     engine.receive(Emit("m:topic7", None, classifier.run), 0.0)
     assert activations(engine) == 2
-    # The classifier may yet raise the topic of a rule that was declared before.
+    # The classifier may yet raise the topic of a rule that was declared earlier, so this rule waits.
     assert not runs(engine, end=False)
     [run] = runs(engine, Finish(classifier.run, "done"))
     assert run.rule.name == "m:about7"
@@ -124,7 +124,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     assert not engine.state.halves
 
 
-def test_a_rival_in_a_half_is_kept_waiting_for_with_patience() -> None:
+def test_a_rule_waits_with_patience_for_a_rival_in_a_half() -> None:
     m = rs.Module("m")
     speech, point, out = m.signal("speech"), m.signal("point"), m.slot("out", "")
     declared(m, "fused", when=speech & point, writes=out)

@@ -40,7 +40,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         assert pressed(sim) == []
 
 
-def test_a_rival_that_ripens_is_waited_for_though_it_lies_in_another_group(play: Any) -> None:
+def test_a_rule_waits_for_a_rival_that_ripens_in_another_group(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "specific", i.min_age(3.0) & j, out)
@@ -211,7 +211,7 @@ def fusion(**options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], r
     return m, point, speech, out
 
 
-def test_an_input_is_waited_for_with_a_patience_of_one_second(play: Any) -> None:
+def test_a_rule_waits_one_second_for_an_input(play: Any) -> None:
     m, _, speech, out = fusion()
     with play(m) as sim:
         sim.advance(2.0)

@@ -61,7 +61,9 @@ def test_a_rule_that_waits_for_a_rule_with_its_slot_is_unreachable(scene: Scene)
     scene.rule("again", said, writes=scene.out)
     text = scene.findings()["unreachable", "m:again"]
     assert "waits for an effect of rules that write m:out before it" in text
-    assert "add .detached() to that signal, or detached=True to the rule that raises it" in text
+    assert (
+        "add .detached() to the signal that it waits for, or detached=True to the rule that raises this signal" in text
+    )
 
 
 @pytest.mark.parametrize("way", ["constraint", "rule"])
@@ -77,7 +79,7 @@ def test_a_rule_that_can_never_win_is_reported(scene: Scene) -> None:
     scene.rule("second", scene.heard, writes=scene.out)
     text = scene.findings()["never-wins", "m:second"]
     assert "rule m:second runs only when m:first resigns" in text
-    assert "give it one more signal, a greater weight, or give the other rule a cooldown" in text
+    assert "give it one more signal or a greater weight, or give the other rule a cooldown" in text
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ async def test_a_context_that_has_not_started_refuses_waiting() -> None:
 
 
 @on_loop
-async def test_after_its_end_a_context_can_be_read_and_no_more() -> None:
+async def test_a_context_that_has_ended_can_only_be_read() -> None:
     async with rs.Context(policy) as context:
         context.put(heard, "x")
         await context.quiet()
@@ -718,7 +718,7 @@ def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning_later(
         assert sim.fired == ["m:long"] and not caplog.records
 
 
-def test_shutdown_has_five_seconds_and_no_more() -> None:
+def test_rules_for_shutdown_have_five_seconds() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown)
