@@ -70,7 +70,7 @@ ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) a
 
 # With RAVESTATE_PURE=1, nothing is compiled, and the engine runs as pure Python.
 .PHONY: native
-native: $(DONE)/build ## compile the engine, unless it is compiled; without a C compiler it runs as pure Python
+native: $(DONE)/build ## compile the engine, unless it is compiled already; without a C compiler it runs as pure Python
 	@[ -n "$${RAVESTATE_PURE:-}" ] || $(BIN)/python tools/native.py --try
 
 .PHONY: bench
