@@ -103,14 +103,14 @@ export class Board {
   view = new View();
   follows = $state(true);
   trace = new Trace();
-  #asked: number | null = null; // the spike of the last "why not"
-  #sent: { command: ClientFrame; typed: string } | null = null; // the last command
-  #lent = false; // whether closing the rule returns to the newest cause
-  #before: Address = {}; // the address before a recording
+  #asked: number | null = null; // The spike of the last "why not".
+  #sent: { command: ClientFrame; typed: string } | null = null; // The last command.
+  #lent = false; // Whether closing the rule returns to the newest cause.
+  #before: Address = {}; // The address before a recording.
   #address: Address;
   #link: Link;
-  #now = 0; // the context's time in the last frame (seconds)
-  #at = 0; // the time at which this frame came (milliseconds)
+  #now = 0; // The context's time in the last frame (seconds).
+  #at = 0; // The time at which this frame came (milliseconds).
 
   /**
    * @param address the first conversation or recording

@@ -40,14 +40,14 @@ export class Voice {
   trouble = $state("");
 
   #devices: Devices | null = null;
-  #attempt = 0; // the number of attempts to open the devices; an older attempt is out of date
-  #pressed: number | null = null; // the time of the press that lasts (milliseconds)
-  #began = false; // whether this press has turned the voice on
+  #attempt = 0; // The number of attempts to open the devices; an older attempt is out of date.
+  #pressed: number | null = null; // The time of the press that lasts (milliseconds).
+  #began = false; // Whether this press has turned the voice on.
   #connected = false;
-  #stream = -1; // the number of the agent's stream of sound; -1 without one
-  #hushed = false; // whether the visitor has stopped this stream
-  #told = Number.NEGATIVE_INFINITY; // the time of the last `played`
-  #fading: ReturnType<typeof setTimeout> | undefined; // the end of the caption
+  #stream = -1; // The number of the agent's stream of sound; -1 without one.
+  #hushed = false; // Whether the visitor has stopped this stream.
+  #told = Number.NEGATIVE_INFINITY; // The time of the last `played`.
+  #fading: ReturnType<typeof setTimeout> | undefined; // The end of the caption.
 
   constructor(private readonly options: Options) {}
 
