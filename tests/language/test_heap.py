@@ -3,25 +3,41 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from typing import Any
 
 import pytest
 
+from ravestate.language import heap
 from ravestate.language.heap import give_back, note_load
 
 
-def test_the_c_library_returns_the_memory_once_for_each_load(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[int] = []
+def test_the_c_library_returns_the_memory_after_a_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    returned = threading.Event()
 
     class Library:
         def __init__(self, _: Any) -> None:
-            self.malloc_trim = asked.append
+            pass
+
+        def malloc_trim(self, kept: int) -> None:
+            assert kept == 0
+            returned.set()
 
     monkeypatch.setattr(ctypes, "CDLL", Library)
+    monkeypatch.setattr(heap, "SETTLED", 0.0)
     note_load()
-    give_back()
-    give_back()
-    assert asked == [0]
+    assert returned.wait(60)
+
+
+def test_another_load_puts_the_return_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(heap, "SETTLED", 3600.0)
+    note_load()
+    [first] = heap._pending
+    note_load()
+    [second] = heap._pending
+    assert first.finished.is_set()  # it was cancelled
+    assert second.is_alive() and second.daemon
+    second.cancel()
 
 
 @pytest.mark.parametrize("error", [OSError, TypeError, AttributeError])
@@ -30,5 +46,4 @@ def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: py
         raise error
 
     monkeypatch.setattr(ctypes, "CDLL", refuse)
-    note_load()
     give_back()

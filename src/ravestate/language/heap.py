@@ -7,11 +7,15 @@ import ctypes
 import os
 import threading
 
+SETTLED = 1.0
+"""The seconds after the last load after which freed memory goes back to the system."""
+
 _ARENA_MAX = -8
 """The number of the option M_ARENA_MAX in glibc's malloc.h."""
 
-_loaded = threading.Event()
-"""Set if something large was loaded after the last `give_back`."""
+_lock = threading.Lock()
+_pending: list[threading.Timer] = []
+"""The timer of the next return of memory; at most one."""
 
 
 def keep_few_heaps() -> None:
@@ -26,20 +30,21 @@ def keep_few_heaps() -> None:
 
 
 def note_load() -> None:
-    """Note that a model, examples or a second database was loaded, which leaves tens of megabytes in the heap."""
-    _loaded.set()
+    """Note that a model, examples or a second database was loaded, which leaves tens of megabytes in the heap.
+
+    If nothing else is loaded for `SETTLED` seconds, a thread returns them to the system. Between two loads, the process
+    would soon take the same memory again.
+    """
+    timer = threading.Timer(SETTLED, give_back)
+    timer.daemon = True  # it keeps no process alive
+    with _lock:
+        for earlier in _pending:
+            earlier.cancel()
+        _pending[:] = [timer]
+        timer.start()
 
 
 def give_back() -> None:
-    """Return freed memory from the C library to the system; if the library is not glibc, do nothing.
-
-    If nothing was loaded after the last call, do nothing: the process would soon take the same memory again.
-    """
-    if not _loaded.is_set():
-        return
-    _loaded.clear()
-    try:
-        trim = ctypes.CDLL(None).malloc_trim
-    except (AttributeError, OSError, TypeError):
-        return
-    trim(0)
+    """Return freed memory from the C library to the system; if the library is not glibc, do nothing."""
+    with contextlib.suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).malloc_trim(0)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from ravestate.errors import PlatformError
-from ravestate.language.heap import give_back, note_load
+from ravestate.language.heap import note_load
 from ravestate.language.loading import LOADING
 
 from .database import META, NAME, NODE, RELATION, connect, copy_database, survives
@@ -310,8 +310,7 @@ class EmbeddedStore:
                 self._files.remove_rewrite()
             raise
         finally:
-            note_load()
-            give_back()  # two open databases have needed tens of megabytes more than one
+            note_load()  # two open databases have needed tens of megabytes more than one
 
     def tidy(self) -> None:
         """Move the log's content into the file. Until then, ladybug holds a few megabytes for each written table."""

@@ -106,8 +106,11 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
-async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing."""
+def heed(ctx: rs.RuleContext) -> None:
+    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing.
+
+    The rule runs in a thread, because it waits for the normal form and the encoder.
+    """
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)
