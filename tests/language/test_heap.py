@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from ravestate.language import heap
-from ravestate.language.heap import give_back, note_load
+from ravestate.language.heap import give_back, keep_few_heaps, note_load
 
 
 def test_the_c_library_returns_the_memory_after_a_load(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -40,6 +40,27 @@ def test_another_load_puts_the_return_off(monkeypatch: pytest.MonkeyPatch) -> No
     second.cancel()
 
 
+def test_the_users_environment_takes_precedence(monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen: list[tuple[int, int]] = []
+
+    class Library:
+        def __init__(self, _: Any) -> None:
+            pass
+
+        def mallopt(self, option: int, value: int) -> None:
+            chosen.append((option, value))
+
+    monkeypatch.setattr(ctypes, "CDLL", Library)
+    for name in ("MALLOC_ARENA_MAX", "MALLOC_MMAP_THRESHOLD_"):
+        monkeypatch.delenv(name, raising=False)
+    keep_few_heaps()
+    assert chosen == [(-8, 2), (-3, 2**19)]
+    chosen.clear()
+    monkeypatch.setenv("MALLOC_MMAP_THRESHOLD_", "1000000")
+    keep_few_heaps()
+    assert chosen == [(-8, 2)]
+
+
 @pytest.mark.parametrize("error", [OSError, TypeError, AttributeError])
 def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(_: Any) -> None:
@@ -47,3 +68,4 @@ def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: py
 
     monkeypatch.setattr(ctypes, "CDLL", refuse)
     give_back()
+    keep_few_heaps()

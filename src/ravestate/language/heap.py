@@ -10,8 +10,11 @@ import threading
 SETTLED = 1.0
 """The seconds after the last load after which freed memory goes back to the system."""
 
-_ARENA_MAX = -8
-"""The number of the option M_ARENA_MAX in glibc's malloc.h."""
+_OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
+"""Options of glibc: the number in malloc.h, the environment variable and the value.
+
+They are the maximum number of heaps, and the size in bytes from which a block is outside of them.
+"""
 
 _lock = threading.Lock()
 _pending: list[threading.Timer] = []
@@ -19,14 +22,17 @@ _pending: list[threading.Timer] = []
 
 
 def keep_few_heaps() -> None:
-    """Let the threads of the process share two heaps; if the C library is not glibc, do nothing.
+    """Let the threads of the process share two heaps, and keep large blocks out of them.
 
     By default glibc makes up to eight heaps per core. Each keeps tens of megabytes that a model has used in its thread.
-    The environment variable ``MALLOC_ARENA_MAX`` takes precedence.
+    Glibc also puts ever larger blocks into the heaps, and between the small ones, freed blocks cannot go back to the
+    system. The environment variables ``MALLOC_ARENA_MAX`` and ``MALLOC_MMAP_THRESHOLD_`` take precedence. If the C
+    library is not glibc, do nothing.
     """
-    if "MALLOC_ARENA_MAX" not in os.environ:
-        with contextlib.suppress(AttributeError, OSError, TypeError):
-            ctypes.CDLL(None).mallopt(_ARENA_MAX, 2)
+    for option, name, value in _OPTIONS:
+        if name not in os.environ:
+            with contextlib.suppress(AttributeError, OSError, TypeError):
+                ctypes.CDLL(None).mallopt(option, value)
 
 
 def note_load() -> None:
