@@ -164,12 +164,7 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
 
 
 class _Shared:
-    """A normal form that one thread computes; the rules that ask for it at the same time wait for that thread.
-
-    Other texts do not wait: nothing that they compute is shared except caches, which are safe to use in several threads.
-    """
-
-    __slots__ = ("_given", "_lock", "_normal")
+    """A normal form that one thread computes. Rules that ask for it meanwhile wait; other texts need not, as they share only caches."""
 
     def __init__(self, *given: Any) -> None:
         self._given = given
