@@ -11,7 +11,6 @@ import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
 from ravestate.language.acts import acts
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.nlp.analysis import Analysis
@@ -52,7 +51,6 @@ def load(ctx: rs.RuleContext) -> None:
         with contextlib.suppress(PlatformError):  # the first question raises the error again
             try:
                 router_of(told).load()
-                give_back()
             except ModelMissing as error:
                 warn_once(ctx.log, error)
 
