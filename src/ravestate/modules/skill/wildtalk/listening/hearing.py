@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from ravestate.language.acts import is_playful
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
@@ -18,7 +19,7 @@ from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
 from .asked import Asked, asked_in
-from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
+from .asking import FEW_WORDS, SHORT, asking_sentence, is_cry, is_news, kind_of
 from .bank import CLOSE, Found
 from .echo import Told, told_in
 from .following import follow_up_in, rest_of
@@ -33,7 +34,7 @@ SURE, MEANT = 0.85, 0.7
 """The least confidence that a moment or an act needs to decide the answer."""
 EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
-CHANGING = frozenset(("no_questions", "another"))
+CHANGING = frozenset(("no_questions",))
 """Moments that change the talk. No entry of the bank takes their place."""
 BARE = 2
 """The maximum number of words of an answer that only says yes or no. Without its question, it resembles nothing."""
@@ -54,9 +55,14 @@ BRIEFLY = 5
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
 _LEAVING = re.compile(
-    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
+    r"(?:^|[,.!?]|\b(?:bye|and|so|ok|well|then)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios|farewell)(?:,? (?!to\b)\w+){0,3}"
+    r"(?: and thanks?\b[\w ]*)?\W*$|^(?:(?:ok|well|so|then|right|now|alright)\W+)*(?:good)?bye\b(?! to\b)"
+    r"|(?:^|[,.!] *|\b(?:and|so|then) )(?:see|talk to|speak to|catch) (?:you|ya|u) (?:soon|later|tomorrow|then|around|next \w+|on \w+day)\b[\w ]*\W*$"
+    r"|(?:^|[,.!] *|\band )have an? (?:very )?(?:nice|good|great|lovely|wonderful|pleasant) (?:day|evening|night|weekend|afternoon|week|one|time|rest"
+    r" of)\b[^.?]*$",
+    re.IGNORECASE,
 )
-"""A farewell at the end of an utterance: *I have to go now, bye!*"""
+"""A farewell at the end of an utterance: *I have to go now, bye!*, *have a nice day*."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user's offer to tell something."""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
@@ -105,6 +111,16 @@ class Hearing:
     """The follow-up of the last entry for any other statement."""
     sad: bool = False
     """Whether the utterance has a sad feeling."""
+
+    def leave_out(self, moment: str, area: str) -> None:
+        """Remove the answers of a moment or an entry of the bank, and those of an area of life."""
+        self.near = [one for one in self.near if one.moment.name != moment]
+        self.meanings = [one for one in self.meanings if one.name != moment]
+        self.follow_up = self.rest = None
+        if not self.near or self.near[0].fit < ALIKE:
+            self.tags -= {"alike"}
+        if self.asked is not None and self.asked.area is not None and self.asked.area.name == area:
+            self.asked = replace(self.asked, area=None)
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
@@ -185,6 +201,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
+        "news": is_news(seen.sentences[-1]) if seen.sentences else False,
+        "cry": is_cry(seen.text),
+        "teased": "insult" in seen.acts and is_playful(seen.text),
         "leaving": not asking and bool(_LEAVING.search(seen.text)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
