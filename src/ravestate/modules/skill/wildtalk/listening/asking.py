@@ -10,6 +10,8 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 
+from .turns import is_cry, is_news
+
 FEW_WORDS = 3
 """The maximum number of words of a short sentence. Short sentences resemble many others."""
 SHORT = 4
@@ -20,28 +22,6 @@ _ASKING = word_set(
 """Closed-class words that begin a question."""
 _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
 """The end of a statement that astonishes: *he ate it all, can you believe it?*"""
-_NEWS = re.compile(
-    r"\b(?:did|do) you (?:also |even )?know that\b|\bdid you (?:also |even )?know,? (?!that\b|who|what|where|when|why|how|which|whose|whether|if\b"
-    r"|him\b|them\b|about|of\b|any|someb|me\b|it\b)[\w']+ .*\w",
-    re.IGNORECASE,
-)
-"""News in the form of a question: *did you know that snails sleep for years?*"""
-_CRY = re.compile(
-    r"\bwhy\b.*\b(?:always|never|every time|only (?:me|i)|nobody ever|everything|everybody|have to)\b", re.IGNORECASE
-)
-"""A complaint in the form of a question, if it ends with an exclamation mark or is in capitals."""
-
-
-def is_news(text: str) -> bool:
-    """Return whether a text tells news in the form of a question."""
-    return _NEWS.search(text) is not None
-
-
-def is_cry(text: str) -> bool:
-    """Return whether a text is a complaint in the form of a question: *why does it always hit me!*"""
-    letters = [one for one in text if one.isalpha()]
-    loud = text.rstrip().endswith("!") or (len(letters) > 9 and sum(map(str.isupper, letters)) > len(letters) / 2)
-    return _CRY.search(text) is not None and loud
 
 
 def asking_sentence(seen: Analysis) -> str:

@@ -73,7 +73,9 @@ class Turn:
         if kind == "holder":
             return self._say(kind, "start", Game(kind, self._chance.choice(list(self._shows["animal"]["known"]))))
         if wish.thing:
-            return self._say(kind, "without", Game(kind), Thing=wish.thing[:1].upper() + wish.thing[1:])
+            return self._say(
+                kind, "without", Game(kind), thing=wish.thing, Thing=wish.thing[:1].upper() + wish.thing[1:]
+            )
         return self._say(kind, "start", Game(kind))
 
     def stop(self) -> Played:

@@ -19,7 +19,7 @@ from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
 from .asked import Asked, asked_in
-from .asking import FEW_WORDS, SHORT, asking_sentence, is_cry, is_news, kind_of
+from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
 from .echo import Told, told_in
 from .following import follow_up_in, rest_of
@@ -29,6 +29,7 @@ from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
+from .turns import is_cry, is_leaving, is_news
 
 SURE, MEANT = 0.85, 0.7
 """The least confidence that a moment or an act needs to decide the answer."""
@@ -54,15 +55,6 @@ BRIEFLY = 5
 """The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-_LEAVING = re.compile(
-    r"(?:^|[,.!?]|\b(?:bye|and|so|ok|well|then)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios|farewell)(?:,? (?!to\b)\w+){0,3}"
-    r"(?: and thanks?\b[\w ]*)?\W*$|^(?:(?:ok|well|so|then|right|now|alright)\W+)*(?:good)?bye\b(?! to\b)"
-    r"|(?:^|[,.!] *|\b(?:and|so|then) )(?:see|talk to|speak to|catch) (?:you|ya|u) (?:soon|later|tomorrow|then|around|next \w+|on \w+day)\b[\w ]*\W*$"
-    r"|(?:^|[,.!] *|\band )have an? (?:very )?(?:nice|good|great|lovely|wonderful|pleasant) (?:day|evening|night|weekend|afternoon|week|one|time|rest"
-    r" of)\b[^.?]*$",
-    re.IGNORECASE,
-)
-"""A farewell at the end of an utterance: *I have to go now, bye!*, *have a nice day*."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user's offer to tell something."""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
@@ -204,7 +196,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "news": is_news(seen.sentences[-1]) if seen.sentences else False,
         "cry": is_cry(seen.text),
         "teased": "insult" in seen.acts and is_playful(seen.text),
-        "leaving": not asking and bool(_LEAVING.search(seen.text)),
+        "leaving": not asking and is_leaving(seen.text),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,

@@ -14,7 +14,6 @@ from ravestate.language.normal import plain
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
-from .asking import is_cry, is_news
 from .following import is_answer
 from .games import Played, Turn
 from .grave import is_crisis
@@ -26,6 +25,7 @@ from .repair import may_repair, repair_in
 from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
+from .turns import is_cry, is_leaving, is_news
 from .wishes import Wish, wish_in
 
 SHOWS = ("joke", "song", "story", "play")
@@ -142,7 +142,7 @@ class Listener:
             after = after.toned("").having_said(text, text)
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
         said = self._mended(heard, state, chance) or self._say(hearing, state, chance)
-        game = None if state.game is None else state.game.beside(said.text)
+        game = None if state.game is None or is_leaving(heard.text) else state.game.beside(said.text)
         ground = state.ground if hearing.told is None else hearing.told.echo
         return replace(said, state=replace(said.state, before=heard.text, ground=ground, game=game))
 

@@ -19,7 +19,7 @@ LONGEST = 9
 _LEAD = re.compile(r"^(?:(?:no|nope|wait|oh|but|well|huh|um|uh|eh|hey|sorry|hm+|and|ok|okay|again) )+")
 _MEANT = re.compile(
     r"^i (?:(?P<firm>meant|was (?:asking|talking|speaking)(?: you)?|am (?:asking|talking)|asked(?: you)? (?=about|for|if|whether))"
-    r"|mean|said|asked(?: you)?|wanted to know)(?: (?:about|for|of|that|whether|if))* (?P<what>(?!to\b|it\b|so\b|that\b|this\b|not\b"
+    r"|mean|said|asked(?: you)?|talked|spoke|wanted to know)(?: (?:about|for|of|that|whether|if))* (?P<what>(?!to\b|it\b|so\b|that\b|this\b|not\b"
     r"|something\b|yes\b|no\b|nothing\b).+)$"
 )
 """What the user meant, in the plain form of a sentence."""
@@ -45,6 +45,7 @@ _REPEATED = re.compile(
 )
 _CLAUSES = re.compile(r"[,;] (?=(?:i|that|what) )", re.IGNORECASE)
 _ALARMS = ("what", "huh", "no", "wait", "sorry", "um")
+_TURNED = {"my": "your", "our": "your", "your": "my", "me": "you", "us": "you", "you": "me", "i": "you", "am": "are"}
 _WHY = re.compile(r"^(?:but )?(?:why|how come|what for|why so)$")
 _CLAUSE = re.compile(
     r"^(?:what|who|where|when|why|how|which|can|should|do|does|is|are|will|would)\b|^(?:i|we|he|she|they|you|it) \w+ \w+"
@@ -109,7 +110,11 @@ def _meant(what: str, rest: Sequence[str], own: str, state: State) -> Repair:
     last = what.split()[-1].removesuffix("s")
     parts = [one for one in re.split(r"(?<=[.!?;])\s+|,? (?:and|but) (?=i\b)", before) if last in one.lower()]
     again = parts[-1] if parts and not before.rstrip().endswith("?") else before
-    return Repair("meant", " ".join((again, *others)) if parts or _asks(before) else " ".join(others), what)
+    return Repair(
+        "meant",
+        " ".join((again, *others)) if parts or _asks(before) else " ".join(others),
+        " ".join(_TURNED.get(word, word) for word in what.split()),
+    )
 
 
 def _asks(text: str) -> bool:

@@ -24,7 +24,7 @@ _HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
 _GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
 """The user says that they think of an animal, which the agent will guess."""
 _WANTS = re.compile(
-    r"\b(?:tell|give|sing|hum|read|play|do|make up|invent|share|know|have|got|hear|want|wants|needs?|could use|fancy|promised|offered|"
+    r"\b(?:tell|give|sing|hum|read|play|do|make up|invent|share|know|have|got|hear|want|wants|needs?|could use|fancy|promised|offered|asked for|"
     r"let'?s|let us|(?:how|what) about|time for|any|another|more|please|i'd|would (?:like|love|rather|prefer|be))\b"
 )
 _OFFERS = re.compile(
