@@ -9,18 +9,19 @@ from typing import cast
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
+from ravestate.language.chat import Backend, Message, Role
 from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
+from ravestate.language.openai import OpenAIBackend
 from ravestate.modules import interloc, nlp, rawio
 
-from .backend import Backend, Message, PendingBackend, Role
 from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend, State
 from .llama import LlamaBackend, checked_model
 from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
-from .openai import OpenAIBackend
+from .pending import PendingBackend
 from .progress import ProgressBar
 from .small_talk import (
     claims,
