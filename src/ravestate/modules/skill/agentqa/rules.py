@@ -15,6 +15,7 @@ from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .itself import recall, settle
@@ -99,7 +100,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
-    if {"choose", "permit"} & seen.asks.keys() and " or " not in found.example:
+    leave = "permit" in seen.asks and seen.question is not QuestionWord.OBJECT  # "what can I call you" asks for a name
+    if (leave or "choose" in seen.asks) and " or " not in found.example:
         return rs.Resign("the user names options to choose from, or asks for leave")
     own = _YOU.isdisjoint(found.question.split()) and not _OWN.isdisjoint(seen.asks)
     if own and found.score < STRAY:
