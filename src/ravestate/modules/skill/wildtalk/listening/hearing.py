@@ -29,7 +29,7 @@ from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
-from .turns import is_cry, is_leaving, is_news
+from .turns import is_cry, is_leaving, is_news, is_reproach
 
 SURE, MEANT = 0.85, 0.7
 """The least confidence that a moment or an act needs to decide the answer."""
@@ -195,6 +195,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "short": size <= SHORT,
         "news": is_news(seen.sentences[-1]) if seen.sentences else False,
         "cry": is_cry(seen.text),
+        "reproach": is_reproach(seen.text),
         "teased": "insult" in seen.acts and is_playful(seen.text),
         "leaving": not asking and is_leaving(seen.text),
         "verb": verb and seen.question is None,

@@ -26,7 +26,7 @@ from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
 from .turns import is_cry, is_leaving, is_news
-from .wishes import Wish, wish_in
+from .wishes import Wish, kinds_in, wish_in
 
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
@@ -182,6 +182,10 @@ class Listener:
         if repair is None:
             return None
         hearing = Hearing(set())
+        named = kinds_in(self._phrases.shows, repair.thing)[:1]
+        if named:  # "I meant the riddle"
+            text, after = Turn(self._phrases.shows, heard.text, heard.seen, state, chance).start(Wish(named[0]))
+            return Answer(text, after.having_said(text, text))
         if repair.again:
             meant = Heard(repair.again, analyse(repair.again, pipeline("")), heard.user)
             wish = self.wish(meant, state)

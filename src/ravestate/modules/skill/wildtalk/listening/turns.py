@@ -24,6 +24,18 @@ _LEAVING = re.compile(
 )
 """A farewell at the end of an utterance: *I have to go now, bye!*, *have a nice day*."""
 
+_REPROACH = re.compile(
+    r"\b(?:i am|i'm|im|i feel|i felt|i was|me feel)(?: \w+){0,3} (?:dumb|stupid|idiot|idiotic|useless|worthless|failure|loser|pathetic"
+    r"|hopeless|fool|foolish|clumsy|rubbish)\b",
+    re.IGNORECASE,
+)
+"""Harsh words of the user about themselves."""
+
+
+def is_reproach(text: str) -> bool:
+    """Return whether a text has harsh words of the user about themselves: *I am so stupid*."""
+    return _REPROACH.search(text) is not None
+
 
 def is_news(text: str) -> bool:
     """Return whether a text tells news in the form of a question."""

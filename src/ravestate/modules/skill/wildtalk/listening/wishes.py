@@ -25,7 +25,7 @@ _GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|
 """The user says that they think of an animal, which the agent will guess."""
 _WANTS = re.compile(
     r"\b(?:tell|give|sing|hum|read|play|do|make up|invent|share|know|have|got|hear|want|wants|needs?|could use|fancy|promised|offered|asked for|make me|"
-    r"let'?s|let us|(?:how|what) about|time for|any|another|more|please|i'd|would (?:like|love|rather|prefer|be))\b"
+    r"(?:then|instead)(?=\W*$)|let'?s|let us|(?:how|what) about|time for|any|another|more|please|i'd|would (?:like|love|rather|prefer|be))\b"
 )
 _OFFERS = re.compile(
     r"\b(?:i|we|he|she|they)(?:'ve|'m)? (?:(?:just|always|once|also|really|never|don't) )?(?:have|had|got|know|knew|read|"
@@ -33,7 +33,7 @@ _OFFERS = re.compile(
     r"|\bi (?:\w+ )?(?:want|need|have|would like|will|'ll) to (?:tell|ask|sing|read|write|play you)\b"
     r"|\b(?:tell|ask|show|sing|read) you\b|\b(?:do|would) you (?:like|want) to hear\b|\bto hear (?:my|mine)\b|\bask you\b"
     r"|\b(?:is|was|'s|are|were|been)(?: \w+)? an? (?:\w+ )?{noun}|\b(?:the|that|this|those|my|your|his|her|their|our|same"
-    r"|no) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
+    r"|no|what a) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
 )  # fmt: skip
 """The user tells or offers something of their own, or means a particular one: *I know a joke*, *was that a joke?*."""
 _ANOTHER = re.compile(
