@@ -29,14 +29,14 @@ from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
-from .turns import is_cry, is_leaving, is_news, is_reproach
+from .turns import is_leaving, turns_in
 
 SURE, MEANT = 0.85, 0.7
 """The least confidence that a moment or an act needs to decide the answer."""
 EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
-CHANGING = frozenset(("no_questions",))
-"""Moments that change the talk. No entry of the bank takes their place."""
+CHANGING = "no_questions"
+"""The moment that changes the talk. No entry of the bank takes its place."""
 BARE = 2
 """The maximum number of words of an answer that only says yes or no. Without its question, it resembles nothing."""
 FINER = 0.1
@@ -108,7 +108,6 @@ class Hearing:
         """Remove the answers of a moment or an entry of the bank, and those of an area of life."""
         self.near = [one for one in self.near if one.moment.name != moment]
         self.meanings = [one for one in self.meanings if one.name != moment]
-        self.follow_up = self.rest = None
         if not self.near or self.near[0].fit < ALIKE:
             self.tags -= {"alike"}
         if self.asked is not None and self.asked.area is not None and self.asked.area.name == area:
@@ -169,7 +168,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
     grounded = found.moment == "just_why" and "ground" in roles.values
-    bound = score >= SURE and (found.moment in CHANGING or grounded)
+    bound = score >= SURE and (found.moment == CHANGING or grounded)
     bare = kind != "" and size <= BARE
     alike = (
         nearest.fit >= ALIKE
@@ -193,9 +192,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
-        "news": is_news(seen.sentences[-1]) if seen.sentences else False,
-        "cry": is_cry(seen.text),
-        "reproach": is_reproach(seen.text),
         "teased": "insult" in seen.acts and is_playful(seen.text),
         "leaving": not asking and is_leaving(seen.text),
         "verb": verb and seen.question is None,
@@ -218,7 +214,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "addressed": found.told is not None and found.told.subject == "yours",
         "settled": len(found.moves) == 1,
         "broken": _is_broken(seen, size),
-        **dict.fromkeys(found.moves, True),
+        **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
     }  # fmt: skip
     if asking:
         tags |= _question_tags(found, phrases, seen, asking, low)
@@ -281,8 +277,8 @@ def _ranked(
         score = (
             score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
         )  # no light talk in a sad tone
-    if moment is not None and state.tone == "glad" and moment.tone == "sad":
-        score = score if score >= CLOUDED else 0.0  # "tears of joy"
+    if moment is not None and state.tone == "glad" and moment.tone == "sad" and score < CLOUDED:
+        score = 0.0  # "tears of joy"
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
         score = 0.0  # "I must tell you, I am afraid"
     if moment is not None and score >= SURE:

@@ -189,7 +189,7 @@ class Listener:
         if repair.again:
             meant = Heard(repair.again, analyse(repair.again, pipeline("")), heard.user)
             wish = self.wish(meant, state)
-            hearing = hear(self._phrases, meant, replace(state, pending=None))
+            hearing = hear(self._phrases, meant, replace(state, pending=None, moment="", thread=""))
             hearing.leave_out(state.moment, "" if state.asked is None else state.asked[1])
             said = self._first(hearing, state, chance, firm=True)
             if wish is not None:

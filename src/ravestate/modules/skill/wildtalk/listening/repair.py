@@ -37,6 +37,7 @@ _PUZZLED = re.compile(
     r"|^(?:what|who)(?: on earth)? are you (?:talking|on|going on)(?: about)?$|^what (?:do|did|are) you (?:mean|meaning|trying to say)\b"
     r"|^what is that supposed to mean$|^(?:do|did|does|made|make|go|going|know|knows|have|has|are|is|was|tell|told|say|said|for|with|about"
     r"|get|take|see|another) (?:\w+ ){0,3}(?:what|who|whom|where|which)$|^(?:which|what) (?P<noun>\w+)$"
+    r"|^(?P<echoed>\w+)(?: \w+){0,2} (?:what|who|whom|where|which)$"
 )
 _REPEATED = re.compile(
     r"^you (?:have |just )*already (?:said|told|asked)\b|^(?:you|that is what you) (?:just |have |already )*(?:said|told me|asked|asked me|say)(?: me)? (?:that|this|so|it)?(?: \w+)?"
@@ -135,6 +136,8 @@ def _mark(text: str, state: State) -> str:
         return "meant"
     puzzled = _PUZZLED.search(text)
     if puzzled is None:
+        return ""
+    if puzzled["echoed"] and puzzled["echoed"] not in plain(state.said[-1]).split():
         return ""
     noun = puzzled["noun"]
     return (

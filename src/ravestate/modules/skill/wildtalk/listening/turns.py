@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 _NEWS = re.compile(
     r"\b(?:did|do) you (?:also |even )?know that\b|\bdid you (?:also |even )?know,? (?!that\b|who|what|where|when|why|how|which|whose|whether|if\b"
@@ -17,7 +18,7 @@ _CRY = re.compile(
 _LEAVING = re.compile(
     r"(?:^|[,.!?]|\b(?:bye|and|so|ok|well|then)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios|farewell)(?:,? (?!to\b)\w+){0,3}"
     r"(?: and thanks?\b[\w ]*)?\W*$|^(?:(?:ok|well|so|then|right|now|alright)\W+)*(?:good)?bye\b(?! to\b)"
-    r"|(?:^|[,.!] *|\b(?:and|so|then) )(?:see|talk to|speak to|catch) (?:you|ya|u) (?:soon|later|tomorrow|then|around|next \w+|on \w+day)\b[\w ]*\W*$"
+    r"|(?:^|[,.!] *|\b(?:and|so|then) )(?:see|talk to|speak to|catch) (?:you|ya|u) (?:soon|later|tomorrow|then|around|next \w+|on \w+day)\b[\w ,]*\W*$"
     r"|(?:^|[,.!] *|\band )have an? (?:very )?(?:nice|good|great|lovely|wonderful|pleasant) (?:day|evening|night|weekend|afternoon|week|one|time|rest"
     r" of)\b[^.?]*$",
     re.IGNORECASE,
@@ -32,9 +33,14 @@ _REPROACH = re.compile(
 """Harsh words of the user about themselves."""
 
 
-def is_reproach(text: str) -> bool:
-    """Return whether a text has harsh words of the user about themselves: *I am so stupid*."""
-    return _REPROACH.search(text) is not None
+def turns_in(text: str, sentences: Sequence[str]) -> list[str]:
+    """Return ``news``, ``cry`` and ``reproach`` if an utterance with these sentences is such a turn."""
+    found = {
+        "news": bool(sentences) and is_news(sentences[-1]),
+        "cry": is_cry(text),
+        "reproach": bool(_REPROACH.search(text)),
+    }
+    return [name for name, holds in found.items() if holds]
 
 
 def is_news(text: str) -> bool:

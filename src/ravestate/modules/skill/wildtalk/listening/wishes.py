@@ -59,7 +59,7 @@ _VAGUE = frozenset(
     ("it", "one", "me", "that", "this", "them", "those", "us", "you", "something", "anything", "time", "please")
 )
 _PLAYED = re.compile(
-    r"\bplay (?:an? )?(?:(?:game|round|match) of )?(?:some )?([a-z][a-z -]*?)(?: (?:with|against|together|now|please|then|instead|too"
+    r"\bplay (?:an? )?(?:(?:game|round|match) of )?(?:some )?([a-z][a-z -]*?)(?: (?:with|against|together|now|please|then|instead|maybe|perhaps|too"
     r"|today|tonight)\b.*)?[?.! ]*$",
     re.IGNORECASE,
 )
