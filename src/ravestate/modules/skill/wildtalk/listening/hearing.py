@@ -169,10 +169,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     called = _called_in(seen, statement)
     grounded = found.moment == "just_why" and "ground" in roles.values
     bound = score >= SURE and (found.moment == CHANGING or grounded)
-    bare = kind != "" and size <= BARE
     alike = (
         nearest.fit >= ALIKE
-        and not (bound or bare)
+        and not (bound or (kind and size <= BARE))
         and (
             bool(nearest.moment.follows)
             or nearest.score >= EXACT

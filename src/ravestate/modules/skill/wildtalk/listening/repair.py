@@ -22,7 +22,7 @@ _MEANT = re.compile(
     r"|mean|said|asked(?: you)?|talked|spoke|wanted to know)(?: (?:about|for|of|that|whether|if))* (?P<what>(?!to\b|it\b|so\b|that\b|this\b|not\b"
     r"|something\b|yes\b|no\b|nothing\b).+)$"
 )
-"""What the user meant, in the plain form of a sentence."""
+"""A sentence that says what the user meant, in the plain form."""
 _TOLD_TO = re.compile(r"\b(?:with|to) (?:my|a|the|him|her|them|somebody|some)\b|\b(?:yesterday|last|ago|today)\b")
 """Words of a report: *I was talking about it with my mother*."""
 _REJECTS = re.compile(
@@ -60,9 +60,9 @@ class Repair:
     kind: str
     """``meant``: the user says what they meant; ``puzzled``: they don't understand the answer; ``repeated``; ``why``."""
     again: str = ""
-    """What to answer now; empty if the user only complains."""
+    """The words to answer now; empty if the user only complains."""
     thing: str = ""
-    """What the user meant: *the night bus*."""
+    """The thing that the user meant: *the night bus*."""
 
 
 def repair_in(seen: Analysis, state: State) -> Repair | None:

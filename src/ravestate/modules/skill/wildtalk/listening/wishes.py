@@ -63,7 +63,7 @@ _PLAYED = re.compile(
     r"|today|tonight)\b.*)?[?.! ]*$",
     re.IGNORECASE,
 )
-"""What the user wants to play: *can we play draughts together?*"""
+"""The game that the user wants to play: *can we play draughts together?*"""
 _ANY = frozenset(
     [
         "game",
