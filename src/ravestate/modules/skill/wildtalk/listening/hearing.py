@@ -27,6 +27,7 @@ from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
+from .taking_up import weightiest
 from .tongue import is_nonsense, is_number, tongue_of
 
 SURE, MEANT = 0.85, 0.7
@@ -126,7 +127,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
-    found.told = None if asking or request else told_in(seen, phrases.living)
+    found.told = None if asking or request else weightiest(told_in(seen, phrases.living), phrases.told)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
@@ -214,7 +215,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _statement_tags(phrases, seen, statement, roles)
     found.tags |= {tag for tag, holds in tags.items() if holds}
     found.roles = roles.having(
-        called=called, told=found.told.echo if found.told else "", **(found.asked.values if found.asked else {})
+        called=called, told=found.told.core if found.told else "", **(found.asked.values if found.asked else {})
     )
 
 

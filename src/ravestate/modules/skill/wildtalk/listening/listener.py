@@ -192,6 +192,7 @@ class Listener:
             after = replace(
                 after,
                 being=roles.being or state.being,
+                earlier=_earlier(roles.being, state),
                 moment=(source.asked or ("",))[0] if moment is None else moment.name,
             )
             after = self._threaded(after)
@@ -281,7 +282,10 @@ class Listener:
         mood = (
             "sad" if state.tone == "sad" or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
         )
-        for groups, moment in replies(told, kinds, mood, state, chance):
+        earlier = state.earlier if state.earlier != hearing.roles.being else None
+        if earlier is not None:
+            hearing.roles = hearing.roles.having(earlier=earlier.text)
+        for groups, moment in replies(told, kinds, mood, state, chance, earlier):
             yield _Source(groups, moment)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -307,6 +311,15 @@ class Listener:
             yield _Source([[stances.groups["as_before"][STANCES.index(before)]]])
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
+
+
+def _earlier(being: Being | None, state: State) -> Being | None:
+    """Return the person to whom the listener may lead back: the one before the last being; nobody in a sad talk."""
+    last = state.being
+    changes = being is not None and last is not None and last.text != being.text
+    if changes and last is not None and not (last.plural or last.kind == "pet" or state.tone == "sad"):
+        return last
+    return state.earlier
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:
