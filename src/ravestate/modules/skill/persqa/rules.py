@@ -17,9 +17,9 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
 from .acquaintance import Acquaintance, Noted
 from .kinds import load as load_examples
-from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
+from .names import Settings, aside, facts, forgotten, module, noted, reply, talk, told, who
 from .recollection import recollect
-from .response import respond_to
+from .response import respond_to, tells_more
 from .talk import TRIES, Talk
 from .topics import NAME, due
 from .understanding import understand
@@ -28,6 +28,9 @@ from .wording import asking, memorable, stating
 HELLO = 3.0
 """Seconds from the user's first hello to the agent's question for their name. If the user goes on
 talking, the agent does not ask."""
+
+ASIDE = 0.2
+"""The weight of a reply that leaves out most of the user's words: so low that small talk outranks it."""
 
 T = TypeVar("T")
 
@@ -60,8 +63,8 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
-    if now.moved:
-        return rs.Resign("the user has just shown a feeling, or joked")
+    if now.moved or (now.busy and now.asked_before):
+        return rs.Resign("the user has just shown a feeling, or joked, or a talk is going on")
     wanted = settings.topics if now.turns >= settings.turns else [one for one in settings.topics if one == NAME]
     topic = due(wanted, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
     if not topic:
@@ -94,8 +97,8 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     now = ctx[talk]
     if ctx[who] is not None or NAME not in settings.topics or NAME in now.closed or now.tries.get(NAME):
         return rs.Resign("the user is known, or was asked")
-    if now.quiet or ctx.now - now.spoke < HELLO - 0.1:
-        return rs.Resign("the user went on talking")
+    if now.quiet or now.moved or ctx.now - now.spoke < HELLO - 0.1:
+        return rs.Resign("the user went on talking, or shows a feeling")
     ctx[talk] = now.asking(NAME, ctx.now)
     ctx[verbaliser.intent] = asking(NAME, acquaintance_of(ctx).known)
     return None
@@ -105,7 +108,7 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed,
     reads=ontology.memory,
     writes=(talk, who, facts, told),
-    emits=(reply, noted, forgotten),
+    emits=(reply, aside, noted, forgotten),
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Learn what the user tells about themselves, and emit a reply if there is one.
@@ -139,7 +142,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         if response.forgotten:
             ctx.emit(forgotten)
     if response.answer is not None and meaning.aloud:
-        ctx.emit(reply, response.answer)
+        ctx.emit(aside if tells_more(response.answer, meaning, seen) else reply, response.answer)
 
 
 async def _is_open(memory: ontology.Memory) -> bool:
@@ -172,6 +175,12 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)
+
+
+@module.rule(when=aside, writes=verbaliser.intent, weight=ASIDE)
+async def respond_aside(ctx: rs.RuleContext) -> None:
+    """Say a reply that leaves out most of the user's words, unless another rule answers them."""
+    ctx[verbaliser.intent] = ctx.payload(aside)
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)

@@ -17,7 +17,7 @@ from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
-from .asked import Asked, asked_in
+from .asked import Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
 from .echo import Told, told_in
@@ -96,6 +96,8 @@ class Hearing:
     asking: str = ""
     """The sentence that asks something."""
     asked: Asked | None = None
+    options: tuple[str, str] | None = None
+    """The options that the user names."""
     told: Told | None = None
     """The statement that the agent can take up."""
     near: list[Found] = field(default_factory=list[Found])
@@ -128,6 +130,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
     found.told = None if asking or request else weightiest(told_in(seen, phrases.living), phrases.told)
+    found.options = options_between(seen.tree)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)

@@ -53,6 +53,11 @@ class Answer:
     text: str
     state: State
 
+    def opened(self, words: str, before: str) -> Answer:
+        """Return the answer with words before it. `before`: the user's whole utterance."""
+        text = f"{words} {self.text}"
+        return Answer(text, replace(self.state, said=(*self.state.said[:-1], text), before=before))
+
 
 @dataclass(frozen=True, slots=True)
 class _Source:
@@ -134,7 +139,7 @@ class Listener:
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
         said = self._say(hearing, replace(state, game=None), chance)
         ground = state.ground if hearing.told is None else hearing.told.echo
-        return replace(said, state=replace(said.state, before=heard.text, ground=ground))
+        return replace(said, state=replace(said.state, before=heard.text, ground=ground, options=hearing.options or state.options))
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""

@@ -95,6 +95,8 @@ class State:
     game: Game | None = None
     shown: tuple[str, ...] = ()
     """The jokes, songs, stories and riddles of this talk."""
+    options: tuple[str, str] | None = None
+    """The options that the user named last."""
     show: str = ""
     """The kind of the latest performance."""
     asked: tuple[str, str] | None = None
