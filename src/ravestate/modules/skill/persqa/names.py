@@ -58,9 +58,6 @@ talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""
 
-aside = module.signal("aside", payload=Intent)
-"""As `reply`, but the user has told more than a fact about themselves: any small talk takes precedence."""
-
 noted = module.signal("noted", payload=Noted)
 """Memory has looked up the user, or has saved what they told."""
 

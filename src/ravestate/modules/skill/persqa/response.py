@@ -103,7 +103,10 @@ def respond_to(
 
 
 def tells_more(answer: Intent, meaning: Meaning, seen: nlp.Analysis) -> bool:
-    """Return whether a stock reply to a fact would leave out the rest of the utterance: *my son Jim has run away*."""
+    """Return whether a stock reply to a fact would leave out the rest of the utterance: *my son Jim has run away*.
+
+    Small talk answers such an utterance as a whole.
+    """
     if answer.name == f"learned_{NAME}":
         return seen.introduction is not None
     told = [fact.topic for fact in meaning.facts]

@@ -17,7 +17,7 @@ from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 
 from .acquaintance import Acquaintance, Noted
 from .kinds import load as load_examples
-from .names import Settings, aside, facts, forgotten, module, noted, reply, talk, told, who
+from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
 from .recollection import recollect
 from .response import respond_to, tells_more
 from .talk import TRIES, Talk
@@ -28,9 +28,6 @@ from .wording import asking, memorable, stating
 HELLO = 3.0
 """Seconds from the user's first hello to the agent's question for their name. If the user goes on
 talking, the agent does not ask."""
-
-ASIDE = 0.2
-"""The weight of a reply that leaves out most of the user's words: so low that small talk outranks it."""
 
 T = TypeVar("T")
 
@@ -108,7 +105,7 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed,
     reads=ontology.memory,
     writes=(talk, who, facts, told),
-    emits=(reply, aside, noted, forgotten),
+    emits=(reply, noted, forgotten),
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Learn what the user tells about themselves, and emit a reply if there is one.
@@ -141,8 +138,8 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(noted, Noted(base, response.user, before.name))
         if response.forgotten:
             ctx.emit(forgotten)
-    if response.answer is not None and meaning.aloud:
-        ctx.emit(aside if tells_more(response.answer, meaning, seen) else reply, response.answer)
+    if response.answer is not None and meaning.aloud and not tells_more(response.answer, meaning, seen):
+        ctx.emit(reply, response.answer)
 
 
 async def _is_open(memory: ontology.Memory) -> bool:
@@ -175,12 +172,6 @@ async def acknowledge(ctx: rs.RuleContext) -> None:
 async def respond(ctx: rs.RuleContext) -> None:
     """Say the reply."""
     ctx[verbaliser.intent] = ctx.payload(reply)
-
-
-@module.rule(when=aside, writes=verbaliser.intent, weight=ASIDE)
-async def respond_aside(ctx: rs.RuleContext) -> None:
-    """Say a reply that leaves out most of the user's words, unless another rule answers them."""
-    ctx[verbaliser.intent] = ctx.payload(aside)
 
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)

@@ -18,6 +18,7 @@ from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, ma
 from ravestate.modules.skill.wildtalk.listening.moment import roles_in
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
 from ravestate.modules.skill.wildtalk.listening.state import Pending
+from ravestate.modules.skill.wildtalk.listening.taking_up import LATELY
 
 from .conftest import listener_with, seen
 
@@ -30,6 +31,16 @@ PLAIN = [
     "hm",
     "it was warm",
 ]
+ODD = [
+    "the clerk stamped a form",
+    "a man with a ladder stood there",
+    "he carried a bucket",
+    "then he whistled",
+    "the lamp swung",
+    "she pointed at a wall",
+    "they lifted the lid",
+]
+"""Statements of no kind."""
 CLAIMS = re.compile(
     r"\b(yesterday|last (?:week|night|year)) I\b|\bI (?:ate|drank|slept|drove|walked|went|visited)\b|\bmy (?:wife|husband|mother)\b"
 )
@@ -64,13 +75,12 @@ def test_the_same_utterance_again_and_again_gets_other_answers(text: str, talk: 
     [
         ("my cousin hid a kite behind the shed", "siblings"),
         ("the clerk stamped a form for my neighbour", "neighbours"),
-        ("he practises two hours every day", "playing"),
+        ("he practises two hours every day", "trying"),
     ],
 )
 def test_it_takes_up_a_statement_that_nothing_else_suits(text: str, kind: str, begin: Callable[[int], Any]) -> None:
     said = {begin(seed).say(text) for seed in range(6)}
-    assert said <= {line.text for name in (kind, "any") for line in lines_of(material().told[name])}
-    assert len(said) >= 2
+    assert said <= {line.text for line in lines_of(material().told[kind])}
 
 
 @pytest.mark.parametrize("seed", range(2))
