@@ -19,8 +19,8 @@ from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
 from .clause import Clause
-from .introduction import Introduction, introduction_in
 from .inquiry import question_of
+from .introduction import Introduction, introduction_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
 from .statement import Statement, Triple

@@ -16,7 +16,8 @@ _NAMED = re.compile(
     re.IGNORECASE,
 )
 _POLITE = re.compile(
-    r"\W*(?:hi|hello|hey|good (?:morning|evening|day|afternoon)|(?:nice|pleased|glad) to meet you|there|you too)\W*", re.IGNORECASE
+    r"\W*(?:hi|hello|hey|good (?:morning|evening|day|afternoon)|(?:nice|pleased|glad) to meet you|there|you too)\W*",
+    re.IGNORECASE,
 )
 """A part that is only polite."""
 _SURELY = re.compile(r"\b(?:my name|call me|called)\b", re.IGNORECASE)

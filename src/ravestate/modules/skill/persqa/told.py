@@ -322,5 +322,7 @@ def _is_general(reader: Reader, subject: str) -> bool:
 def _returned(text: str) -> str:
     """Return the user's words as the agent says them: *your* for *my*."""
     text = re.sub(r"\b(i|we) was\b", r"\1 were", text, flags=re.IGNORECASE)
-    text = re.sub(r"^(?:An?|The|This|That|It|There|He|She|They|His|Her|Its|Their)\b", lambda found: found[0].lower(), text)
+    text = re.sub(
+        r"^(?:An?|The|This|That|It|There|He|She|They|His|Her|Its|Their)\b", lambda found: found[0].lower(), text
+    )
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())

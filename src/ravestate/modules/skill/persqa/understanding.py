@@ -318,7 +318,9 @@ class _Hearing:
         found = _WHOSE.search(self.text)
         if found is None or self.seen.question is None:
             return ""
-        fit = [topic for topic in self.known if TOPICS[topic].kind == "people" and topic not in _OTHERS[found[1].lower()]]
+        fit = [
+            topic for topic in self.known if TOPICS[topic].kind == "people" and topic not in _OTHERS[found[1].lower()]
+        ]
         return self.talk.person if self.talk.person in fit else next(reversed(fit), "")
 
     def of_another(self) -> bool:

@@ -58,7 +58,9 @@ _BARE = word_set("not what something anything so else whatever")
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
 """The relations of a noun that a question is about, the likeliest first."""
 _PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
-_WHICH = re.compile(r"\b(?:which|what) (?:one|of (?:them|the two|both))\b|\bwhich (?:would|should|do|is)\b", re.IGNORECASE)
+_WHICH = re.compile(
+    r"\b(?:which|what) (?:one|of (?:them|the two|both))\b|\bwhich (?:would|should|do|is)\b", re.IGNORECASE
+)
 """A question for one of the options that the user named before."""
 WEIGHTS = {
     "dobj": 1.3,
@@ -124,7 +126,10 @@ def asked_in(
     if options and (not kind or kind in OPEN):
         kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
     if asking and not options and state.options and (kind == "choose" or _WHICH.search(asking)):
-        kind, options = "choose", (*state.options, False)  # "I can't choose between tea and milk. Which would you take?"
+        kind, options = (
+            "choose",
+            (*state.options, False),
+        )  # "I can't choose between tea and milk. Which would you take?"
     compared = any(word.tag in ("JJR", "RBR") and word.low not in _LIKED for word in words)
     if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
         kind = "fact"  # "which is heavier, gold or lead?"
@@ -214,7 +219,9 @@ def options_between(tree: Tree) -> tuple[str, str] | None:
         for one in tree.children(word, "pobj") if word.low == "between" else ():
             for other in tree.children(one, "conj"):
                 inside = {part.index for part in tree.subtree(other)}
-                first = [part for part in tree.subtree(one) if part.index not in inside and part.dep not in ("cc", "punct")]
+                first = [
+                    part for part in tree.subtree(one) if part.index not in inside and part.dep not in ("cc", "punct")
+                ]
                 return turned(tree, first), turned(tree, tree.subtree(other))
     found = options_in(tree, tree.words)
     return found[:2] if found else None

@@ -54,7 +54,7 @@ _BARE = word_set("be have do can will would want know like mean")
 """Verbs that say nothing without the words after them."""
 _WISHING = word_set("want plan hope intend wish like")
 """Verbs that make a plan of the verb that they govern."""
-_MOVING = word_set("go come move fly travel leave arrive visit meet start")
+_MOVING = word_set("go come move fly travel drive leave arrive visit meet start")
 """Verbs whose progressive form tells a plan: *we are flying to Rome*."""
 _LINKING = word_set("be feel seem look sound become get")
 _PARTICLES = word_set("up out off down over away back forward")
@@ -243,13 +243,14 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         chain = chain[:1]
     verbs = ["wish"] * (verb.lemma == "like" and not helpers.isdisjoint(("would", "'d")))
     verbs += [word.lemma.lower() for word in chain]
+    inner = {word.index for clause in tree.children(verb, "ccomp") for word in tree.subtree(clause)}
     return Told(
         echo(tree, words),
         tuple(states + verbs),
         _person(tree, subject, living),
         tense,
         core=_core(tree, verb, subjects, words),
-        nouns=_nouns(words),
+        nouns=_nouns([word for word in words if word.index not in inner]),
     )
 
 

@@ -139,7 +139,9 @@ class Listener:
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
         said = self._say(hearing, replace(state, game=None), chance)
         ground = state.ground if hearing.told is None else hearing.told.echo
-        return replace(said, state=replace(said.state, before=heard.text, ground=ground, options=hearing.options or state.options))
+        return replace(
+            said, state=replace(said.state, before=heard.text, ground=ground, options=hearing.options or state.options)
+        )
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
@@ -284,9 +286,8 @@ class Listener:
         told, kinds = hearing.told, self._phrases.told
         if told is None:
             return
-        mood = (
-            "sad" if state.tone == "sad" or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
-        )
+        grieving = state.tone == "sad" and (state.turns > LASTING or bool(hearing.tags & {"sorry"}))
+        mood = "sad" if grieving or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
         earlier = state.earlier if state.earlier != hearing.roles.being else None
         if earlier is not None:
             hearing.roles = hearing.roles.having(earlier=earlier.text)
