@@ -108,7 +108,7 @@ def tells_more(answer: Intent, meaning: Meaning, seen: nlp.Analysis) -> bool:
     Small talk answers such an utterance as a whole.
     """
     if answer.name == f"learned_{NAME}":
-        return seen.introduction is not None
+        return seen.introduction is not None and (len(meaning.facts) == 1 or len(seen.sentences) > 1)
     told = [fact.topic for fact in meaning.facts]
     if not answer.name.startswith("learned") or meaning.topic in told:
         return False
@@ -343,6 +343,8 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, None, memory)
+        if memory is not None and not after.talk.trouble:
+            await memory.purge()  # the user has asked for this, so the confirmation waits
         return Response(say("forget_failed" if after.talk.trouble else "strike", after.known), after)
 
     return Response(None, user, write)
