@@ -20,6 +20,7 @@ from ravestate.language.sentences import sentences as sentences_of
 from .answer import YesNo, yesno_of
 from .clause import Clause
 from .inquiry import question_of
+from .introduction import Introduction, introduction_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
 from .reading import Reading
@@ -96,6 +97,11 @@ class Analysis:
         sure = {name for name, match in self.asks.items() if match.score >= ADVISED}
         ours = any(said.subject_person in ("I", "you") or said.request for said in self.statements)
         return bool(sure & ADVICE) or ("choose" in sure and ours)
+
+    @property
+    def introduction(self) -> Introduction | None:
+        """The user's name with the other words, if the user says their name beside something else."""
+        return introduction_in(self.sentences, [one.text for one in self.entities if one.label == "PERSON"])
 
     @property
     def acted(self) -> tuple[str, ...]:

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from ravestate.errors import PlatformError, RavestateError
-from ravestate.modules import ontology
+from ravestate.modules import nlp, ontology
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
 from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .told import Told
-from .topics import NAME, TOPICS, Fact, in_order
+from .topics import NAME, TOPICS, WORDS, Fact, in_order
 from .understanding import EVERYTHING, Meaning, is_idle
 from .wording import among, clauses, joined, learned, memorable, same, say, stating, without
 
@@ -57,6 +57,7 @@ def respond_to(
         "said": (*talk.said, *meaning.said)[-LONGEST:],
         "words": talk.words if meaning.kind == "asked_words" else (*talk.words, *meaning.words)[-LONGEST:],
         "moved": meaning.moved,
+        "busy": meaning.busy,
     }
     heard = replace(user, talk=talk.listening(now, leave=meaning.leave, person=meaning.person, **noted))
     question = heard.talk.question
@@ -99,6 +100,21 @@ def respond_to(
             return Response(say("forget_not", heard.known), _closing(heard))
         case "forget_yes":
             return Response(None, heard, lambda memory: _forget(heard, memory))
+
+
+def tells_more(answer: Intent, meaning: Meaning, seen: nlp.Analysis) -> bool:
+    """Return whether a stock reply to a fact would leave out the rest of the utterance: *my son Jim has run away*.
+
+    Small talk answers such an utterance as a whole.
+    """
+    if answer.name == f"learned_{NAME}":
+        return seen.introduction is not None and (len(meaning.facts) == 1 or len(seen.sentences) > 1)
+    told = [fact.topic for fact in meaning.facts]
+    if not answer.name.startswith("learned") or meaning.topic in told:
+        return False
+    people = any(TOPICS[topic].kind == "people" for topic in told)
+    rest = [one for one in seen.statements if one.verb not in WORDS["stating"]]
+    return (people and bool(rest)) or (answer.name == "learned" and len(seen.statements) > 1)
 
 
 def _with(user: Acquaintance, **changes: Any) -> Acquaintance:

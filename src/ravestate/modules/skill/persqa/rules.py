@@ -19,7 +19,7 @@ from .acquaintance import Acquaintance, Noted
 from .kinds import load as load_examples
 from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
 from .recollection import recollect
-from .response import respond_to
+from .response import respond_to, tells_more
 from .talk import TRIES, Talk
 from .topics import NAME, due
 from .understanding import understand
@@ -60,8 +60,8 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[talk] = replace(now, reminded=True, question=None).mentioning(topic, values)
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
-    if now.moved:
-        return rs.Resign("the user has just shown a feeling, or joked")
+    if now.moved or (now.busy and now.asked_before):
+        return rs.Resign("the user has just shown a feeling, or joked, or a talk is going on")
     wanted = settings.topics if now.turns >= settings.turns else [one for one in settings.topics if one == NAME]
     topic = due(wanted, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
     if not topic:
@@ -94,8 +94,8 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     now = ctx[talk]
     if ctx[who] is not None or NAME not in settings.topics or NAME in now.closed or now.tries.get(NAME):
         return rs.Resign("the user is known, or was asked")
-    if now.quiet or ctx.now - now.spoke < HELLO - 0.1:
-        return rs.Resign("the user went on talking")
+    if now.quiet or now.moved or ctx.now - now.spoke < HELLO - 0.1:
+        return rs.Resign("the user went on talking, or shows a feeling")
     ctx[talk] = now.asking(NAME, ctx.now)
     ctx[verbaliser.intent] = asking(NAME, acquaintance_of(ctx).known)
     return None
@@ -138,7 +138,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(noted, Noted(base, response.user, before.name))
         if response.forgotten:
             ctx.emit(forgotten)
-    if response.answer is not None and meaning.aloud:
+    if response.answer is not None and meaning.aloud and not tells_more(response.answer, meaning, seen):
         ctx.emit(reply, response.answer)
 
 

@@ -101,6 +101,13 @@ class Talk:
     turns: int = 0
     moved: bool = False
     """Whether the user's last utterance shows a feeling or is a joke."""
+    busy: bool = False
+    """Whether the user's last utterance asks or tells something that is no fact about them: a talk is going on."""
+
+    @property
+    def asked_before(self) -> bool:
+        """Whether the agent has asked for something in this conversation."""
+        return bool(self.tries)
 
     def asking(self, topic: str, now: float) -> Talk:
         """Ask about `topic`."""

@@ -11,7 +11,7 @@ from ravestate.errors import PlatformError
 from ravestate.language.encoder import Encoder
 from ravestate.language.normal import plain
 from ravestate.modules import nlp
-from ravestate.modules.meta.nlp.tree import SUBJECTS
+from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
 from .answers import spelled_out
 from .changes import ended_by, is_brief, renamed_in
@@ -133,7 +133,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
 
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return the statements that answer the user's question: *what does Jonas play*, *who is getting married?*."""
-    told, kind = list({one.text: one for one in told}.values()), reader.seen.question
+    told, kind = list({one.text: one for one in told if one.text}.values()), reader.seen.question
     for said in reader.seen.statements:
         about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
         if said.question and said.verb in _REMINDING and about and about.person == "other":
@@ -281,13 +281,13 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
 
 def _retold(reader: Reader, said: nlp.Statement) -> str:
     """Return the clause of a statement as the agent says it to the user: *your sister lives in Rome*."""
-    tree, top = reader.tree, reader.verb(said)
+    tree, top = reader.tree, _verb(reader, said)
     if top is None:
         return ""
     while top.dep == "xcomp":
         top = tree.head(top)
     relative = top.dep == "relcl"  # "the girl who lives next door"
-    parts = [child for child in tree.children(top) if child.dep not in _ASIDE]
+    parts = [child for child in tree.children(top) if child.dep not in _ASIDE and not _is_before(tree, child, top)]
     parts = [
         child for child in parts if not (relative and child.dep.startswith("nsubj") and child.tag in ("WP", "WDT"))
     ]
@@ -300,6 +300,20 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     return _returned(text)
 
 
+def _verb(reader: Reader, said: nlp.Statement) -> Word | None:
+    """Return the verb of a statement: of several with the same lemma, the one with the statement's subject."""
+    tree, words = reader.tree, said.subject.text.lower().split()
+    for word in tree.words if words else ():
+        if word.lemma == said.verb and words[-1] in {part.low for part in tree.children(word, *SUBJECTS)}:
+            return word
+    return reader.verb(said)
+
+
+def _is_before(tree: Tree, clause: Word, top: Word) -> bool:
+    """Return whether a clause is a sentence of its own before another: *her name is Ida*, she plays the harp."""
+    return clause.dep == "ccomp" and clause.index < top.index and bool(tree.children(clause, *SUBJECTS))
+
+
 def _is_general(reader: Reader, subject: str) -> bool:
     """Return whether a subject stands for a whole kind: *why do babies cry*."""
     low = [word.low for word in reader.tree.words if word.tag == "NNS" and word.dep in SUBJECTS]
@@ -309,5 +323,7 @@ def _is_general(reader: Reader, subject: str) -> bool:
 def _returned(text: str) -> str:
     """Return the user's words as the agent says them: *your* for *my*."""
     text = re.sub(r"\b(i|we) was\b", r"\1 were", text, flags=re.IGNORECASE)
-    text = re.sub(r"^(?:An?|The|This|That|It|There|He|She|They)\b", lambda found: found[0].lower(), text)
+    text = re.sub(
+        r"^(?:An?|The|This|That|It|There|He|She|They|His|Her|Its|Their)\b", lambda found: found[0].lower(), text
+    )
     return " ".join(_SAID_BACK.get(word.lower(), word) for word in text.split())

@@ -20,12 +20,15 @@ from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
-from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
+from .topics import NAME, NOUNS, TOPICS, WORDS, Fact, is_topic, touched_by
 from .values import value_of
 from .wording import Facts, among
 
 EVERYTHING = "everything"
 """The value of `Meaning.topic` that stands for all topics."""
+
+BRIEF = 4
+"""The maximum number of words of an utterance after which the agent may ask about something else."""
 
 Kind = Literal[
     "nothing",  # nothing that concerns persqa
@@ -72,6 +75,8 @@ class Meaning:
     """The sentences of the utterance. If the kind is ``asked_words``: the sentence that answers the question."""
     moved: bool = False
     """Whether the user shows a feeling, or jokes."""
+    busy: bool = False
+    """Whether the user asks, or tells at some length, something that is no fact about them."""
 
 
 def understand(
@@ -85,7 +90,9 @@ def understand(
     said = told_in(hearing.reader, talk.said)[1]
     words = tuple(one for one in seen.sentences if not one.rstrip().endswith("?")) if seen.question is None else ()
     meaning = hearing.meaning()
-    return replace(meaning, touched=touched, person=person, said=tuple(said), words=words, moved=hearing.moved)
+    noted = {"touched": touched, "person": person, "said": tuple(said), "words": words, "moved": hearing.moved}
+    busy = not meaning.facts and (seen.question is not None or len(seen.text.split()) > BRIEF)
+    return replace(meaning, busy=busy, **noted)
 
 
 class _Hearing:
@@ -282,7 +289,9 @@ class _Hearing:
             return Meaning("asked", (Fact(EVERYTHING),))
         wished = any(said.plan for said in self.seen.statements)  # "do you want to know my name"
         offered = wished and self.seen.question == nlp.QuestionWord.YES_NO  # "do you want to be my friend"
-        if not offered and (asked := self.reader.asks()):
+        if topic := self.pointed():
+            return Meaning("asked", (Fact(topic),))
+        if not offered and not self.of_another() and (asked := self.reader.asks()):
             return Meaning("asked", (asked,))
         for said in () if wished else self.seen.statements:
             if said.question and said.verb in ("be", *WORDS["knowing"]):
@@ -295,6 +304,25 @@ class _Hearing:
         if "ask_name" in self.acts and not wished:
             return Meaning("asked", (Fact(NAME),))
         return None
+
+    def pointed(self) -> str:
+        """Return the topic of *and my job?* and of *what was his name?*: of the one whom the pronoun may mean."""
+        if found := _ELLIPSIS.match(self.text):
+            topic = NOUNS.get(found[1].lower(), "")
+            return topic if self.known.get(topic) else ""
+        found = _WHOSE.search(self.text)
+        if found is None or self.seen.question is None:
+            return ""
+        fit = [
+            topic for topic in self.known if TOPICS[topic].kind == "people" and topic not in _OTHERS[found[1].lower()]
+        ]
+        return self.talk.person if self.talk.person in fit else next(reversed(fit), "")
+
+    def of_another(self) -> bool:
+        """Return whether the user asks for a fact about somebody else: *what is my aunt's job?*."""
+        phrases = [phrase for said in self.seen.statements if said.question for phrase in (said.subject, said.object)]
+        owners = [phrase.owner for phrase in phrases if phrase.owner is not None and not self.reader.noun(phrase.owner)]
+        return any(owner.person == "other" and owner.head for owner in owners)
 
     def wish_to_forget(self) -> Meaning | None:
         """Return the user's wish that the agent forget something; None if there is no such wish."""
@@ -338,6 +366,11 @@ def is_idle(fact: Fact, known: Facts) -> bool:
     return fact.gone and bool(fact.values) and not any(among(one, known.get(fact.topic, ())) for one in fact.values)
 
 
+_ELLIPSIS = re.compile(r"\W*(?:(?:and|so|but|ok|what about|how about)\W+)*my (\w+)\W*\?\W*$", re.IGNORECASE)
+_WHOSE = re.compile(r"\b(his|her|its) name\b", re.IGNORECASE)
+_FEMALE, _MALE = ("mother", "sister", "wife", "daughter"), ("father", "brother", "husband", "son")
+_OTHERS = {"his": _FEMALE, "her": _MALE, "its": (*_FEMALE, *_MALE, "friend", "partner", "child")}
+"""A pronoun → topics of people whom it cannot mean."""
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
 _DENIED = (

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import random
 import threading
 from dataclasses import replace
 from functools import cache
 
 import ravestate as rs
 from ravestate.modules import interloc, nlp
+from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
 
 from .facts import facts_matcher
 from .gate import Gate, persona_matcher
-from .listening import Heard, Listener, Overheard, State
+from .listening import Answer, Heard, Listener, Overheard, State
 from .listening.asking import SHORT
 from .listening.grave import is_crisis
 from .listening.state import Pending
@@ -105,9 +107,18 @@ async def is_known(seen: nlp.Analysis) -> bool:
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
     """Return the answer of the listening skill, and remember it."""
     state = up_to_date(ctx, heard.text)
-    answer = await asyncio.to_thread(listener().answer, heard, state, ctx.random)
+    answer = await asyncio.to_thread(_answer, heard, state, ctx.random)
     ctx[listening] = answer.state
     return answer.text
+
+
+def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
+    """Return the listener's answer. If the user says their name beside something else, the answer is to both."""
+    told = None if heard.seen is None else heard.seen.introduction
+    if told is None or any(told.name in said for said in state.said):
+        return listener().answer(heard, state, chance)
+    rest = Heard(told.rest, analyse(told.rest, pipeline(""), (), (told.name,)), told.name)
+    return listener().answer(rest, state, chance).opened(f"Hello {told.name}.", heard.text)
 
 
 def is_open(state: State) -> bool:

@@ -4,12 +4,13 @@ import pytest
 
 from ravestate.modules.skill.wildtalk.listening.echo import Told, question_of, told_in
 from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.taking_up import weightiest
 
 from .conftest import seen
 
 
 def told(text: str) -> Told | None:
-    return told_in(seen(text), material().living)
+    return weightiest(told_in(seen(text), material().living), material().told)
 
 
 @pytest.mark.parametrize(

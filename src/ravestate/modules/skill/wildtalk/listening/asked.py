@@ -60,6 +60,10 @@ _EMPTY = word_set("do have get go make")
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
 """The relations of a noun that a question is about, the likeliest first."""
 _PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
+_WHICH = re.compile(
+    r"\b(?:which|what) (?:one|of (?:them|the two|both))\b|\bwhich (?:would|should|do|is)\b", re.IGNORECASE
+)
+"""A question for one of the options that the user named before."""
 WEIGHTS = {
     "dobj": 1.3,
     "attr": 1.3,
@@ -116,13 +120,18 @@ def asked_in(
         request: Whether the utterance is an order.
     """
     words = words_of(seen.tree, asking)
-    options = _options(seen.tree, words)
+    options = options_in(seen.tree, words)
     least = SURE if asking else ORDERED if request else UNASKED
     found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
     best = max(found, key=lambda one: one.score, default=None)
     kind = "" if best is None else best.name
     if options and (not kind or kind in OPEN):
         kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
+    if asking and not options and state.options and (kind == "choose" or _WHICH.search(asking)):
+        kind, options = (
+            "choose",
+            (*state.options, False),
+        )  # "I can't choose between tea and milk. Which would you take?"
     compared = any(word.tag in ("JJR", "RBR") and word.low not in _LIKED for word in words)
     if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
         kind = "fact"  # "which is heavier, gold or lead?"
@@ -209,7 +218,21 @@ def _left(tree: Tree, part: Word, noun: Word) -> bool:
     return part.index < noun.index and part.dep in _PART and noun.index in (part.head, tree.head(part).head)
 
 
-def _options(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
+def options_between(tree: Tree) -> tuple[str, str] | None:
+    """Return the options of a statement: *between soup and salad*, *soup or salad*."""
+    for word in tree.words:
+        for one in tree.children(word, "pobj") if word.low == "between" else ():
+            for other in tree.children(one, "conj"):
+                inside = {part.index for part in tree.subtree(other)}
+                first = [
+                    part for part in tree.subtree(one) if part.index not in inside and part.dep not in ("cc", "punct")
+                ]
+                return turned(tree, first), turned(tree, tree.subtree(other))
+    found = options_in(tree, tree.words)
+    return found[:2] if found else None
+
+
+def options_in(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
     """Return the options of *soup or salad* and *text her or wait*, and whether they are acts."""
     at = next((place for place, word in enumerate(words) if word.low == "or"), 0)
     after = words[at + 1 :]

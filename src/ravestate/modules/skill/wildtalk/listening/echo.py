@@ -15,7 +15,9 @@ from ravestate.modules.meta.nlp.question_word import QUESTION_WORDS
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
 LONGEST, SHORTEST = 15, 2
-"""The maximum and the minimum number of words of an echo."""
+"""The maximum and the minimum number of words of a statement that can be taken up."""
+CORE = 7
+"""The maximum number of words of an echo."""
 
 _TURNED = {
     **dict.fromkeys(("i", "we", "me", "us"), "you"),
@@ -32,7 +34,7 @@ _ADDRESSING = _YOU | word_set("your yours yourself")
 _BE = {"i": {"am": "are", "'m": "'re", "was": "were"}, "you": {"are": "am", "'re": "'m", "were": "was"}}
 """Subject → its form of *be* → the form after the subject is turned."""
 _LEADING = word_set(
-    "and but so or well ok okay anyway also then now yes no yeah nope oh ooh ah um uh hm wow haha lol please because"
+    "and but so or well ok okay anyway also then now yes no yeah nope oh ooh ah um uh hm wow haha lol please"
     " actually honestly"
 )
 """Words at the beginning that join a sentence to the talk, and say nothing themselves."""
@@ -46,6 +48,20 @@ _IMAGINING = word_set("could should would might may maybe perhaps")
 """Words of a statement about something that may never happen."""
 _HELPING = word_set("have need get start begin stop keep let help seem forget")
 """Verbs that say less than the verb that they govern."""
+_BESIDE = ("npadvmod", "compound", "poss")
+_WHERE = word_set("in on at by near behind under over between since during from")
+_BARE = word_set("be have do can will would want know like mean")
+"""Verbs that say nothing without the words after them."""
+_WISHING = word_set("want plan hope intend wish like")
+"""Verbs that make a plan of the verb that they govern."""
+_MOVING = word_set("go come move fly travel drive leave arrive visit meet start")
+"""Verbs whose progressive form tells a plan: *we are flying to Rome*."""
+_LINKING = word_set("be feel seem look sound become get")
+_PARTICLES = word_set("up out off down over away back forward")
+_USUALLY = word_set("always usually often every sometimes never")
+"""Words of a habit."""
+_INNER = ("relcl", "advcl", "acl", "appos", "conj", "cc", "prep", "punct", "ccomp")
+"""Relations of words that the core of a statement does without."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
 """Verbs that only wrap a question: *how old do you think he is*."""
 
@@ -61,20 +77,23 @@ class Told:
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
-    """``past``, ``now``, ``plan``, ``might`` for what is only imagined, ``once`` for *used to*, or ``not`` if denied."""
+    """``past``, ``now``, ``plan``, ``might`` for what is only imagined, ``once`` for a habit of the past, or ``not`` if denied."""
+    core: str = ""
+    """The same as `echo` in at most `CORE` words; empty if it would be a fragment."""
+    nouns: tuple[str, ...] = ()
+    """The lemmas of its nouns."""
 
 
-def told_in(seen: Analysis, living: frozenset[str]) -> Told | None:
-    """Return the last statement of an utterance that can be echoed; None if there is none.
+def told_in(seen: Analysis, living: frozenset[str]) -> list[Told]:
+    """Return the statements of an utterance that can be taken up, the last sentence first.
 
     Args:
         seen: The analysis of the utterance.
         living: The lemmas of nouns for living beings.
     """
     told = [words_of(seen.tree, one) for one in reversed(seen.sentences) if not one.rstrip().endswith("?")]
-    clauses = (_clause(seen.tree, words, living) for words in told)
-    fragments = (_fragment(seen.tree, words) for words in told)
-    return next(filter(None, clauses), None) or next(filter(None, fragments), None)
+    clauses = [clause for words in told for clause in _clauses(seen.tree, words, living)]
+    return clauses or list(filter(None, (_fragment(seen.tree, words) for words in told)))
 
 
 def question_of(tree: Tree, sentence: str) -> str:
@@ -161,11 +180,9 @@ def _trimmed(words: Sequence[Word]) -> list[Word]:
     return found
 
 
-def _clause(tree: Tree, words: Sequence[Word], living: frozenset[str]) -> Told | None:
-    found = [one for verb in words if (one := _told(tree, verb, living, {word.index for word in words})) is not None]
-    return max(
-        found, key=lambda one: (" " in one.echo.partition(" ")[2], one.subject != "thing", len(one.echo)), default=None
-    )
+def _clauses(tree: Tree, words: Sequence[Word], living: frozenset[str]) -> list[Told]:
+    inside = {word.index for word in words}
+    return [one for verb in words if (one := _told(tree, verb, living, inside)) is not None]
 
 
 def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> Told | None:
@@ -188,8 +205,10 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
     else:
         return None
     subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
-    if words[0].tag in ("MD", "VB") or _is_slip(tree, subject, verb):
+    if words[0].tag in ("MD", "VB") or _is_slip(tree, subject, verb) or _is_cut(tree, verb):
         return None
+    if subject.low in _YOU and any(word.tag == "MD" for word in tree.children(verb)):
+        return None  # "you can talk there": anybody can
     if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):
         return None
     chain = list(_chain(tree, verb))
@@ -200,22 +219,81 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         "not"
         if denied
         else "once"
-        if verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB"
+        if (verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB")
+        or (verb.tag == "VBD" and _USUALLY & {word.low for word in words})
         else "might"
         if _IMAGINING & {word.low for word in tree.children(verb)}
         else "plan"
-        if plan or helpers & {"will", "'ll", "shall"}
+        if plan
+        or (verb.lemma in _MOVING and verb.tag == "VBG" and not helpers & {"was", "were", "been"})
+        or helpers & {"will", "'ll", "shall"}
+        or (verb.lemma in _WISHING and verb.tag != "VBD" and len(chain) > 1)
         else "past"
         if verb.tag in ("VBD", "VBN") or helpers & {"did", "had", "was", "were"}
         else "now"
     )
-    states = [word.lemma.lower() for word in tree.children(verb, "acomp")]
+    linked = tree.children(verb, "acomp", "attr", *(("advmod",) if verb.lemma in _LINKING else ()))
+    states = [word.lemma.lower() for word in (*linked, *tree.children_of(linked, "amod"))]
+    particles = [word.low for word in tree.children(verb, "prt", "advmod") if word.low in _PARTICLES]
+    states += [*(f"{verb.lemma.lower()} {word}" for word in particles), *particles]
     states += ["name"] * bool(tree.children(verb, "oprd"))
-    if plan or tense == "once" or verb.lemma in _HELPING:
+    if plan or (tense == "once" and verb.lemma == "use") or verb.lemma in _HELPING:
         chain = chain[1:] or chain
+    elif verb.lemma not in _WISHING:
+        chain = chain[:1]
     verbs = ["wish"] * (verb.lemma == "like" and not helpers.isdisjoint(("would", "'d")))
     verbs += [word.lemma.lower() for word in chain]
-    return Told(echo(tree, words), tuple(states + verbs), _person(tree, subject, living), tense)
+    inner = {word.index for clause in tree.children(verb, "ccomp") for word in tree.subtree(clause)}
+    return Told(
+        echo(tree, words),
+        tuple(states + verbs),
+        _person(tree, subject, living),
+        tense,
+        core=_core(tree, verb, subjects, words),
+        nouns=_nouns([word for word in words if word.index not in inner]),
+    )
+
+
+def _is_cut(tree: Tree, verb: Word) -> bool:
+    """Return whether a clause lacks the words that its verb needs, as in *every sock he had*."""
+    after = [word for word in tree.children(verb) if word.index > verb.index and word.pos != "PUNCT"]
+    return verb.lemma in _BARE and not after
+
+
+def _core(tree: Tree, verb: Word, subjects: Sequence[Word], words: Sequence[Word]) -> str:
+    """Return the words of a clause, or only its subject, verb and object, if there are at most `CORE` of them."""
+    if tree.children(verb, "mark"):
+        return ""  # "because it was late"
+    if len(words) > CORE:
+        main = tree.children(verb, "aux", "auxpass", "neg", "prt")
+        rest = tree.children(verb, "dobj", "attr", "acomp", "oprd", "xcomp")
+        rest = rest[:1] if rest else tree.children(verb, "prep", "advmod")[:1]
+        kept = {verb.index, *(word.index for part in (*main, *rest) for word in _lean(tree, part))}
+        kept |= {word.index for subject in subjects for word in tree.subtree(subject)}
+        words = [word for word in words if word.index in kept]
+        if not rest:
+            return ""
+    return echo(tree, words) if SHORTEST < len(words) <= CORE else ""
+
+
+def _lean(tree: Tree, word: Word) -> Iterator[Word]:
+    """Yield a word with its dependents, but without further clauses and phrases."""
+    yield word
+    for child in tree.children(word):
+        if child.dep not in _INNER:
+            yield from _lean(tree, child)
+
+
+def _nouns(words: Sequence[Word]) -> tuple[str, ...]:
+    """Return the lemmas of nouns, without those that only say when or where if there are others."""
+    kept = [word for word in words if word.pos in ("NOUN", "PROPN") and word.dep not in _BESIDE]
+    last = ""
+    told: list[Word] = []
+    for word in words:
+        last = word.low if word.pos == "ADP" else last
+        if word in kept and not (word.dep == "pobj" and last in _WHERE):
+            told.append(word)
+    return tuple(word.lemma.lower() for word in told or kept)
 
 
 def _is_slip(tree: Tree, subject: Word, verb: Word) -> bool:
@@ -262,4 +340,5 @@ def _fragment(tree: Tree, words: Sequence[Word]) -> Told | None:
         return None
     if not nominal or not SHORTEST <= len(kept) <= LONGEST or any(word.pos in ("VERB", "AUX") for word in kept):
         return None
-    return Told(echo(tree, kept), subject="piece")
+    text = echo(tree, kept)
+    return Told(text, subject="piece", core=text if len(kept) <= CORE else "", nouns=_nouns(kept))

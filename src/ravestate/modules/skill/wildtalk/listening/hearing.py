@@ -18,7 +18,7 @@ from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
-from .asked import Asked, asked_in
+from .asked import Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
 from .echo import Told, told_in
@@ -28,6 +28,7 @@ from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
+from .taking_up import weightiest
 from .tongue import is_nonsense, is_number, tongue_of
 from .turns import is_leaving, turns_in
 
@@ -93,6 +94,8 @@ class Hearing:
     asking: str = ""
     """The sentence that asks something."""
     asked: Asked | None = None
+    options: tuple[str, str] | None = None
+    """The options that the user names."""
     told: Told | None = None
     """The statement that the agent can take up."""
     near: list[Found] = field(default_factory=list[Found])
@@ -133,7 +136,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
-    found.told = None if asking or request else told_in(seen, phrases.living)
+    found.told = None if asking or request else weightiest(told_in(seen, phrases.living), phrases.told)
+    found.options = options_between(seen.tree)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
@@ -221,7 +225,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _statement_tags(phrases, seen, statement, roles)
     found.tags |= {tag for tag, holds in tags.items() if holds}
     found.roles = roles.having(
-        called=called, told=found.told.echo if found.told else "", **(found.asked.values if found.asked else {})
+        called=called, told=found.told.core if found.told else "", **(found.asked.values if found.asked else {})
     )
 
 

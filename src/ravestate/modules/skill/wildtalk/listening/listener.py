@@ -50,6 +50,11 @@ class Answer:
     text: str
     state: State
 
+    def opened(self, words: str, before: str) -> Answer:
+        """Return the answer with words before it. `before`: the user's whole utterance."""
+        text = f"{words} {self.text}"
+        return Answer(text, replace(self.state, said=(*self.state.said[:-1], text), before=before))
+
 
 @dataclass(frozen=True, slots=True)
 class _Source:
@@ -144,7 +149,8 @@ class Listener:
         said = self._mended(heard, state, chance) or self._say(hearing, state, chance)
         game = None if state.game is None or is_leaving(heard.text) else state.game.beside(said.text)
         ground = state.ground if hearing.told is None else hearing.told.echo
-        return replace(said, state=replace(said.state, before=heard.text, ground=ground, game=game))
+        now = replace(said.state, before=heard.text, ground=ground, game=game, options=hearing.options or state.options)
+        return replace(said, state=now)
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
@@ -221,6 +227,7 @@ class Listener:
             after = replace(
                 after,
                 being=roles.being or state.being,
+                earlier=_earlier(roles.being, state),
                 moment=(source.asked or ("",))[0] if moment is None else moment.name,
             )
             after = self._threaded(after)
@@ -307,10 +314,12 @@ class Listener:
         told, kinds = hearing.told, self._phrases.told
         if told is None:
             return
-        mood = (
-            "sad" if state.tone == "sad" or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
-        )
-        for groups, moment in replies(told, kinds, mood, state, chance):
+        grieving = state.tone == "sad" and (state.turns > LASTING or bool(hearing.tags & {"sorry"}))
+        mood = "sad" if grieving or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
+        earlier = state.earlier if state.earlier != hearing.roles.being else None
+        if earlier is not None:
+            hearing.roles = hearing.roles.having(earlier=earlier.text)
+        for groups, moment in replies(told, kinds, mood, state, chance, earlier):
             yield _Source(groups, moment)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
@@ -336,6 +345,15 @@ class Listener:
             yield _Source([[stances.groups["as_before"][STANCES.index(before)]]])
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
+
+
+def _earlier(being: Being | None, state: State) -> Being | None:
+    """Return the person to whom the listener may lead back: the one before the last being; nobody in a sad talk."""
+    last = state.being
+    changes = being is not None and last is not None and last.text != being.text
+    if changes and last is not None and not (last.plural or last.kind == "pet" or state.tone == "sad"):
+        return last
+    return state.earlier
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:

@@ -20,7 +20,7 @@ from .state import LASTING
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
 """The files of situations in a talk. Each situation names the moves for which it may answer."""
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "weight", "tone", "lasts", "heads", "moves", "least", "after"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,6 @@ def _moments(name: str) -> dict[str, Moment]:
     found: dict[str, Moment] = {}
     for key, value in _read(name).items():
         groups = {group: _lines(lines, key) for group, lines in value.items() if group not in _NOT_GROUPS}
-        words = frozenset((*value.get("nouns", ()), *value.get("verbs", ())))
         lasts = int(value.get("lasts", LASTING))
         found[key] = Moment(
             key,
@@ -97,7 +96,9 @@ def _moments(name: str) -> dict[str, Moment]:
             value.get("tone", ""),
             lasts,
             tuple(value.get("examples", ())),
-            words,
+            frozenset(value.get("nouns", ())),
+            frozenset(value.get("verbs", ())),
+            float(value.get("weight", 0.0)),
             frozenset(value.get("moves", ())),
             value.get("after", ""),
             float(value.get("least", 0.0)),

@@ -39,8 +39,11 @@ class Moment:
     lasts: int = LASTING
     """The number of turns for which its tone lasts."""
     examples: tuple[str, ...] = ()
-    words: frozenset[str] = frozenset()
-    """The nouns or verbs that are typical of the situation."""
+    nouns: frozenset[str] = frozenset()
+    verbs: frozenset[str] = frozenset()
+    """The nouns and the verbs that are typical of the situation."""
+    weight: float = 0.0
+    """The importance of a statement of this kind (told.yaml); 0 for the importance of its tense."""
     moves: frozenset[str] = frozenset()
     """The moves of a listener (language/moves.py) for which its phrases fit."""
     after: str = ""
@@ -51,6 +54,11 @@ class Moment:
     """The name of a list in heads.yaml. The utterance must have a word of this list."""
     follows: tuple[Moment, ...] = ()
     """The follow-ups: what the user may say directly after one of its phrases."""
+
+    @property
+    def words(self) -> frozenset[str]:
+        """The nouns and the verbs."""
+        return self.nouns | self.verbs
 
     def lines(self, *groups: str) -> list[Sequence[Line]]:
         """Return the groups with these names, without the names that it lacks."""

@@ -185,8 +185,8 @@ def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool)
     plural = any(word.tag in ("NNS", "NNPS") and word.lemma.lower() == phrase.head for word in tree.words)
     if phrase.names and (kind == "pet" or phrase.owner is None):
         return Being(phrase.name, kind, gender)
+    words = [_TURNED.get(word.lower(), word) for word in phrase.text.removesuffix("'s").split()]
     noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
-    words = [_TURNED.get(word.lower(), word) for word in phrase.text.split()]
     owned = phrase.owner is not None and len(words) <= 3
     text = (
         " ".join(words)

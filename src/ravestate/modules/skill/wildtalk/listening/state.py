@@ -91,6 +91,8 @@ class State:
     """The number of answers since an entry of the bank gave one."""
     pending: Pending | None = None
     being: Being | None = None
+    earlier: Being | None = None
+    """The person who was mentioned before `being`."""
     tone: str = ""
     turns: int = 0
     """The number of turns for which the tone still lasts."""
@@ -99,6 +101,8 @@ class State:
     game: Game | None = None
     shown: tuple[str, ...] = ()
     """The jokes, songs, stories and riddles of this talk."""
+    options: tuple[str, str] | None = None
+    """The options that the user named last."""
     show: str = ""
     """The kind of the latest performance."""
     asked: tuple[str, str] | None = None
