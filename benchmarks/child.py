@@ -37,7 +37,7 @@ class Child:
             stderr=self._errors,
             text=True,
             cwd=ROOT,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""},  # users keep compiled sources
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""},  # keep bytecode, as users do
         )
 
     @classmethod

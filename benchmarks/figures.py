@@ -32,10 +32,10 @@ class Figure:
     """One line of the table.
 
     Attributes:
-        question: The name under which the command line knows it.
+        question: The question's name on the command line.
         what: The measured quantity.
         unit: "s", "B", "core" (share of one core) or "" (a count).
-        ours: Ours, in that unit.
+        ours: Our figure, in that unit.
         against: The peer, the floor, or another case of ours, for comparison.
         theirs: The compared figure, in the same unit.
         ratio: Ours divided by theirs, taken in each repetition.

@@ -1,4 +1,5 @@
-"""Figures as a picture: bars of ours and of each peer, on a logarithmic axis, as SVG that follows light and dark mode."""
+"""Figures as a picture: a bar for Ravestate and for each peer, on a logarithmic axis. The SVG follows light and dark
+mode."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from ravestate.draw.style import NODE_COLOURS, PAPER, TEXT
 __all__ = ["plot"]
 
 FEWEST = 3
-"""The number of peers from which a measured quantity gets a panel; the table has the others."""
+"""A measured quantity with at least this many peers gets a panel; the others are only in the table."""
 
 WIDE, LEFT, RIGHT, ROW, HEAD = 760.0, 190.0, 80.0, 20.0, 34.0
 """Pixels: width, room for the names, room for the values, height of a bar's row, height of a panel's title."""

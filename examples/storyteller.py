@@ -1,7 +1,7 @@
 """A storyteller that listeners can interrupt.
 
 `until` ends a running rule, here at any input. The runtime cancels the function where it waits. The function may clean
-up (here it closes the book), and its words so far stand. The interrupting words are an ordinary input, with their own
+up (here it closes the book). The sentences told so far remain told. The interrupting words are an ordinary input, with their own
 answer.
 
     python examples/storyteller.py         listen on the console, and interrupt

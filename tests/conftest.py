@@ -94,3 +94,11 @@ def small_heap() -> None:
     """
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture
+def chat_server() -> Any:
+    """The class of a server on loopback that speaks OpenAI's protocol as a test wants it."""
+    from chat_server import ChatServer
+
+    return ChatServer

@@ -176,7 +176,7 @@ def test_a_huge_value_is_shortened() -> None:
 @pytest.mark.parametrize("values", [3, "name=Max", ["name"], None])
 def test_values_must_be_a_mapping(values: Any) -> None:
     (fault,) = faults([voice], {"voice": values})
-    assert fault == f"settings for 'voice' must be fields and values, not {values!r}"
+    assert fault == f"settings for 'voice' must be a mapping of fields to values, not {values!r}"
 
 
 def test_an_instance_of_another_class_is_refused() -> None:

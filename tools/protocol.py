@@ -87,7 +87,7 @@ def typescript(source: Source) -> str:
 def _line_of(module: Any, name: str) -> int:
     try:
         return inspect.getsourcelines(getattr(module, name))[1]
-    except (AttributeError, OSError, TypeError):  # a record from elsewhere comes first
+    except (AttributeError, OSError, TypeError):  # a record of another module comes first
         return 0
 
 
@@ -132,7 +132,7 @@ def _union(name: str, schema: Schema) -> str:
 
 
 def _fields(name: str, schema: Schema, records: Mapping[str, Schema]) -> str:
-    """Return the required fields of each frame, and what ``typeof`` says of them."""
+    """Return the required fields of each frame, each with the result of ``typeof``."""
     frames: dict[str, dict[str, str]] = {}
     for reference in schema.get("oneOf", (schema,)):
         record = records[reference["$ref"].rpartition("/")[2]]
@@ -179,7 +179,7 @@ def _without_null(schema: Schema) -> Schema:
 
 
 def _typeof(schema: Schema) -> str:
-    """Return what ``typeof`` says of a value; nothing if it may be one of several."""
+    """Return the result of ``typeof`` for a value; empty if there are several possible results."""
     if "$ref" in schema:
         return "object"
     kind = str(schema.get("type", ""))
@@ -205,7 +205,7 @@ def _key(name: str) -> str:
 
 
 def _comment(text: str, indent: int = 0) -> str:
-    """Return a JSDoc comment with its line feed; nothing for an empty text."""
+    """Return a JSDoc comment and a line feed; empty for an empty text."""
     text = re.split(r"\n\n(?:Args|Raises|Returns|Example):\n", text)[0]
     plain = re.sub(r"``(.+?)``", r"`\1`", text).strip()
     pad = " " * indent

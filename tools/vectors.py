@@ -1,7 +1,7 @@
 """Write the vectors of all built-in examples, so that a first start need not compute them.
 
 python tools/vectors.py            write the file; about 10 ms for each new example
-python tools/vectors.py --check    exit code 1 if an example has no vector or a vector no example; the tests do the same
+python tools/vectors.py --check    exit code 1 if vectors and examples differ; the tests do the same
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str]) -> int:
         if missing or stale:
             some = "; ".join(sorted(wanted[key] for key in missing)[:5])
             print(
-                f"{len(missing)} examples have no vector ({some}), {len(stale)} vectors no example: python tools/vectors.py"
+                f"{len(missing)} examples have no vector ({some}), {len(stale)} vectors have no example: python tools/vectors.py"
             )
         return int(bool(missing or stale))
     if missing or stale:

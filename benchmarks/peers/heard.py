@@ -16,7 +16,7 @@ from ravestate.modules.platform.voiceio.synthesiser import Spoken, Synthesiser
 PIECE, STEP = 480, 48
 """The number of samples of a piece to look for in the file (20 ms), and of samples between two pieces (2 ms)."""
 LOUD = 300
-"""The minimum level of a piece. A louder piece is in the file only if its sentence is."""
+"""The minimum level of a piece. A piece that is at least this loud occurs in the file only if its sentence does."""
 FRAME = 240
 """The number of samples of a frame, for measuring its power: 10 ms."""
 

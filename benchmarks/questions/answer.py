@@ -20,14 +20,14 @@ FURTHER = {
     "experta": "experta_rules.py",
     "py-trees, a fixed order": "trees.py",
 }
-"""Peers for information: name → file in ``peers``."""
+"""Peers without a target: name → file in ``peers``."""
 
 COMPILED_TARGETS = {1: 0.6, 4: 0.4, 8: 0.3}
 PURE_TARGETS = {1: 2.6, 4: 1.9, 8: 1.6}
 """The targets of the two builds: our time to that of CLIPS."""
 
 LIVED_IN = 3000
-"""Inputs before the second measurement of CLIPS: clipspy slows down with every input."""
+"""The number of inputs before the second measurement of CLIPS, because clipspy slows down with every input."""
 
 
 def at_most(ratio: float) -> bool:

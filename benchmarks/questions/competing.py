@@ -91,7 +91,7 @@ def compete(shape: str, rules: int, inputs: int) -> list[float]:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Ours, each shape; CLIPS has a thousand rules on the input and decides by salience."""
+    """Measure each shape, and CLIPS with a thousand rules on the input, which decides by salience."""
     ours, clips = bench.ours("benchmarks.questions.competing"), bench.clips()
     times: dict[str, list[float]] = {shape: [] for shape in TITLES}
     theirs = []

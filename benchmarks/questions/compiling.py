@@ -1,7 +1,8 @@
 """How long does it take to compile a policy?
 
-The common work with a chain of one, beside many rules with a signal of their own. Declarations do not count. CLIPS builds
-as many rules from text. A second row shows the growth: the time for each rule of many against each rule of few.
+The policy has the agent of ``answer`` (a chain of one rule), and many rules with a signal of their own. The time of the
+declarations does not count. CLIPS builds as many rules from text. A second row shows the growth: the time for each rule
+of many, compared with the time for each rule of few.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The camera is a video of 30 pictures a second: a person who sways before it. The agent looks at the video while users
 ask questions. Agents with and without a camera take turns. The time of an answer ends when the agent has understood the
-words: the same work in both.
+words; the work is the same in both agents.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What does an idle agent cost?
 
-The processor time of the whole process over some idle seconds, after one answered input.
+The figure is the processor time of the whole process over some idle seconds, after one answered input.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """How long does the import take, and which packages does it load?
 
-The wall time of an interpreter that imports Ravestate and ends, minus that of an interpreter that only ends.
+The figure is the wall time of an interpreter that imports Ravestate and ends, minus that of an interpreter that only
+ends.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ def burst(spikes: int) -> float:
 
 
 def in_wait(spikes: int) -> dict[str, float]:
-    """Return the seconds for one more spike beside `count` waiting spikes, and for an answer beside them."""
+    """Return the seconds for one more spike beside so many waiting spikes, and for an answer beside them."""
 
     async def measure() -> dict[str, float]:
         module = rs.Module("waiting")

@@ -25,7 +25,7 @@ LIMIT = 5_000
 """Bytes that a context at rest may hold."""
 
 AGED = 6.0
-"""Seconds after which every spike of the common work is past its age (5 s)."""
+"""Seconds after which every spike of the agent is past its age (5 s)."""
 
 
 def held(contexts: int, k: int, unrelated: int) -> float:

@@ -40,7 +40,7 @@ UTTERANCES = (
     "how many people live in {country}?", "thank you, {name}!", "do you have any friends in {town}",
     "i would like to go to {country} tomorrow evening",
 )  # fmt: skip
-"""Utterances of a talk. Each round uses other people and things, because a known vector takes no time."""
+"""Utterances of a talk. Each round uses other people and things, because the agent keeps vectors of known texts."""
 
 WORDS = (
     ("Ada", "Bremen", "tea", "Peru"), ("Ben", "Delft", "chess", "France"), ("Cleo", "Turin", "cheese", "Chile"),
@@ -51,7 +51,7 @@ WORDS = (
 
 
 def decide(rounds: int) -> dict[str, list[float]]:
-    """Seconds from input to decision, of each utterance in each round; and the bytes held at the end."""
+    """Return the seconds from input to decision, for each utterance in each round, and the bytes held at the end."""
     import asyncio
 
     import ravestate as rs
@@ -111,7 +111,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
 
 
 def _prompt() -> float:
-    """Seconds until ``ravestate chat`` shows its prompt on a terminal."""
+    """Return the seconds until ``ravestate chat`` shows its prompt on a terminal."""
     ours, theirs = pty.openpty()
     with tempfile.TemporaryDirectory() as folder:
         command = [str(Path(sys.executable).with_name("ravestate")), "chat"]

@@ -1,7 +1,7 @@
 """What does a plain function in a worker thread cost?
 
-The common work with a chain of one, where the answering rule is a plain function. It is compared with an ``async``
-answering rule, and with a bare hop into a thread and back.
+The agent of ``answer`` (a chain of one rule) has a plain function as its answering rule. The benchmark compares it with
+an ``async`` answering rule, and with a bare hop into a thread and back.
 """
 
 from __future__ import annotations

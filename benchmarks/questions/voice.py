@@ -220,7 +220,8 @@ PAUSE, APART = 1.0, 2.5
 def ends_of_turns(model: str, many: int, open_: Any = OPEN, complete: Any = COMPLETE) -> tuple[float, float, int]:
     """Return the shares of false cuts and of missed ends, and the number of sentences of each kind.
 
-    A false cut is a turn that ends in the pause of a sentence. A missed end is a turn that ends as late as each turn does.
+    A false cut is a turn that ends in the pause of a sentence. A missed end is a turn that ends only after the longest
+    pause, which ends any turn.
     """
     broken = [(spoken(begin), spoken(rest)) for begin, rest in open_[:many]]
     whole = [spoken(text) for text in complete[:many]]

@@ -81,7 +81,7 @@ class Talk:
 
 
 def _begin_anew(recorder: Any) -> None:
-    """Take away the records that a recorder may take because it was idle during the turns of the others."""
+    """Cancel the allowance that a recorder has saved up while it was idle, during the turns of the others."""
     recorder._granted = asyncio.get_running_loop().time()
     recorder._left = max(1, min(recorder._left, int(recorder._rate * PAUSE)))
     recorder._idle_share.share()

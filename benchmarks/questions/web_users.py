@@ -85,12 +85,12 @@ def _run(work: Coroutine[Any, Any, None], told: threading.Event) -> None:
 
 
 def worked() -> float:
-    """Processor time that the process has taken so far (seconds)."""
+    """Return the processor time that the process has taken so far (seconds)."""
     return time.process_time()
 
 
 async def serve_agent(tell: Any) -> None:
-    """The agent, on its page."""
+    """Serve the agent on its page."""
     import importlib
 
     import ravestate as rs
@@ -116,7 +116,7 @@ async def serve_agent(tell: Any) -> None:
 
 
 async def serve_echo(tell: Any) -> None:
-    """A bare echo."""
+    """Serve a bare echo."""
     import socket
 
     import uvicorn
@@ -148,7 +148,7 @@ def talk(port: int, kind: str, users: int, seconds: float) -> dict[str, Any]:
 
 
 async def _talk(port: int, kind: str, users: int, seconds: float) -> dict[str, Any]:
-    first = User(users, kind)  # for whom everything is loaded
+    first = User(users, kind)  # the server loads everything for this user
     await first.come(port)
     for _ in PHRASES:
         await first._say()

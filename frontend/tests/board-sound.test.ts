@@ -75,7 +75,7 @@ test("a written conversation has no voices, and old speech is forgotten", () => 
   expect(sound.marks[USER].map((mark) => mark.kind)).toEqual(["barge-in"]);
 });
 
-test("the lanes of the voices show bands and words, and tell what is under the pointer", () => {
+test("the lanes of the voices show bands and words, and the pointer finds both", () => {
   const drawn = scene(talk(), [USER, AGENT, ""], { now: 5 });
   const boxes: number[][] = [];
   const texts: [string, number][] = [];

@@ -32,7 +32,7 @@ function bars(trace: Trace, rule: string) {
     .bars.map((bar) => [bar.from, bar.to, bar.outcome, bar.phases.map((phase) => phase.state)]);
 }
 
-test("an activation gathers, has all, waits, runs and is done", () => {
+test("an activation gathers spikes, has all of them, waits, runs and is done", () => {
   const trace = new Trace();
   trace.add([
     held(1, 7, "m:r", 1, ["m:t"]),
@@ -179,7 +179,7 @@ test("after a gap, dead bars end and new ones appear", () => {
   expect(trace.gaps).toEqual([{ time: 2, spikes: 40 }]);
 });
 
-test("the oldest records go with everything that depends on them", () => {
+test("the oldest records are dropped, together with everything that depends on them", () => {
   restart();
   const trace = new Trace(1000);
   for (let i = 0; i < 3000; i++) {
@@ -220,7 +220,7 @@ test("groups stay merged when those between them are forgotten", () => {
   expect(trace.group(3)).toBe(1);
 });
 
-test("100,000 records are folded", () => {
+test("100,000 records become lanes and spikes", () => {
   const trace = new Trace();
   restart();
   const records: TraceRecord[] = [];

@@ -46,7 +46,7 @@ test("faces at one time have rows of their own, and the last row takes the rest"
   expect(faces(crowd).map((each) => (each as { row: number }).row)).toEqual([0, 1, 2, 2]);
 });
 
-test("a body, and what it does", () => {
+test("a body and its activity make stretches", () => {
   const { vision } = scene(
     [
       born(1, "visionio:pose", "Pose(33 landmarks, time=1.0)"),
@@ -82,7 +82,7 @@ test("an agent without a camera has no such lanes, and old faces are forgotten",
   expect(vision.any).toBe(false);
 });
 
-test("the lanes show bands and names, and tell what is under the pointer", () => {
+test("the lanes show bands and names, and the pointer finds both", () => {
   const records = [
     face(1, 1, "'Anna'", "0.3"),
     face(1.1, 2),

@@ -120,7 +120,7 @@ const input = (spike: number, time: number, text: string): TraceRecord => ({
   payload: { text },
 });
 
-test("it asks for its conversation and the diagram", () => {
+test("the board asks for its conversation and the diagram", () => {
   const [server, board] = Server.open();
   expect(server.sent[0]).toEqual({ type: "hello", v: 1, session: "secret" });
   expect(server.sent[1]).toEqual({ type: "diagram", unfolded: ["m"] });
@@ -211,7 +211,7 @@ test("a slot is written as JSON or as text; markup in a value is shown as text",
   expect(container.textContent).toContain(markup);
   await fireEvent.click(screen.getByRole("button", { name: "Edit m:secret" }));
   const field = screen.getByLabelText("New value of m:secret, as JSON or as text");
-  expect(field).toHaveProperty("value", ""); // a value beyond JSON can only be replaced
+  expect(field).toHaveProperty("value", ""); // JSON cannot express the value, so the user can only replace it
   await fireEvent.input(field, { target: { value: '{"a": 1}' } });
   await fireEvent.click(screen.getByRole("button", { name: "Write" }));
   expect(server.sent.at(-1)).toEqual({ type: "put", slot: "m:secret", value: { a: 1 } });
@@ -603,7 +603,7 @@ test("an ended conversation has no clock controls", () => {
   }
 });
 
-test("a typed text stays without a connection", async () => {
+test("without a connection, a typed text stays in its field", async () => {
   const [server, board] = Server.open();
   render(Say, { board });
   const field = screen.getByLabelText("Say something to the agent");
@@ -647,7 +647,7 @@ test("a recording shows its file name, and closing it returns to the conversatio
   render(Bar, { board, main: "timeline", ...handlers });
   board.play("one", "monday.json");
   server.socket.onopen?.();
-  board.play("two", "tuesday.json"); // a second one does not hide the way back
+  board.play("two", "tuesday.json"); // a second recording does not replace the conversation to return to
   server.socket.onopen?.();
   flushSync();
   expect(server.sent.at(-1)).toEqual({ type: "hello", v: 1, recording: "two" });
@@ -698,7 +698,7 @@ test("the list shows each conversation's start, visitor and last words", () => {
   ]);
 });
 
-test("it follows the newest conversation of its browser until the user chooses one", () => {
+test("the board follows the newest conversation of its browser until the user chooses one", () => {
   const [server, board] = Server.open({});
   expect(server.sent[0]).toEqual({ type: "hello", v: 1 });
   const hello = () => {
@@ -717,7 +717,7 @@ test("it follows the newest conversation of its browser until the user chooses o
   expect(hello()).toEqual({ type: "hello", v: 1, visitor: "other" });
 });
 
-test("if its browser's conversation is over, it shows the newest one of the server", () => {
+test("if its browser's conversation is over, the board shows the server's newest conversation", () => {
   const [server] = Server.open({ session: "over" });
   server.socket.onclose?.({ code: 4404 });
   server.socket.onopen?.();

@@ -13,7 +13,7 @@ afterEach(() => {
   sessionStorage.clear();
 });
 
-test("Enter says it, Shift-Enter begins a line, and while a character is composed it does neither", async () => {
+test("Enter sends the text, but not with Shift, and not while a character is composed", async () => {
   const onsay = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   const field = screen.getByLabelText("What you say to Elske");
@@ -26,7 +26,7 @@ test("Enter says it, Shift-Enter begins a line, and while a character is compose
   expect(field).toHaveProperty("value", "");
 });
 
-test("it tells that something is being written, but not of an empty field", async () => {
+test("the field reports typing, unless it is blank", async () => {
   const onwrite = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onwrite, onsay: vi.fn() });
   const field = screen.getByLabelText("What you say to Elske");
@@ -40,7 +40,7 @@ test("it tells that something is being written, but not of an empty field", asyn
   expect(onwrite).toHaveBeenCalledOnce();
 });
 
-test("in Safari the Enter that ends a composition says nothing", async () => {
+test("in Safari, the Enter that ends a composition sends nothing", async () => {
   const onsay = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   const field = screen.getByLabelText("What you say to Elske");
@@ -49,7 +49,7 @@ test("in Safari the Enter that ends a composition says nothing", async () => {
   expect(onsay).not.toHaveBeenCalled();
 });
 
-test("what is too long is neither cut nor said, and one is told why", async () => {
+test("a text that is too long is neither cut nor sent, and an alert says why", async () => {
   const onsay = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   const field = screen.getByLabelText("What you say to Elske");
@@ -66,7 +66,7 @@ test("what is too long is neither cut nor said, and one is told why", async () =
   expect(onsay).toHaveBeenCalledExactlyOnceWith(text.slice(1));
 });
 
-test("nothing is not said", async () => {
+test("an empty text is not sent", async () => {
   const onsay = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay });
   await fireEvent.keyDown(screen.getByLabelText("What you say to Elske"), { key: "Enter" });
@@ -74,7 +74,7 @@ test("nothing is not said", async () => {
   expect(screen.getByRole("button", { name: "Send" })).toHaveProperty("disabled", true);
 });
 
-test("what looks like HTML is shown as text", async () => {
+test("a message with HTML is shown as plain text", async () => {
   const conversation = new Conversation({ open: TestSocket.make });
   conversation.start();
   TestSocket.newest.welcome("s");
@@ -112,7 +112,7 @@ test("the header says that the agent is paused, or does not respond", async () =
   vi.useRealTimers();
 });
 
-test("the first screen offers things to say until something is said", async () => {
+test("the page suggests things to say until the visitor says something", async () => {
   const conversation = new Conversation({ open: TestSocket.make });
   conversation.start();
   TestSocket.newest.open();
@@ -136,7 +136,7 @@ test("the first screen offers things to say until something is said", async () =
   conversation.stop();
 });
 
-test("a note shows until something is said, once in each browser", async () => {
+test("a note shows until the visitor says something, and only once in each browser", async () => {
   localStorage.clear();
   const begin = () => {
     const conversation = new Conversation({ open: TestSocket.make });
@@ -167,7 +167,7 @@ test("a note shows until something is said, once in each browser", async () => {
   second.stop();
 });
 
-test("of five thousand lines only those near the view are in the DOM", async () => {
+test("of five thousand lines, only the lines near the view are in the DOM", async () => {
   const conversation = new Conversation({ open: TestSocket.make });
   conversation.start();
   TestSocket.newest.welcome("s");

@@ -26,7 +26,7 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-test("it says hello, and is open once it is welcomed", () => {
+test("a connection says hello, and is open once the server welcomes it", () => {
   TestSocket.newest.open();
   expect(TestSocket.newest.sent).toEqual([{ type: "hello", v: 1 }]);
   expect(connection.send({ type: "ping" })).toBe(false);
@@ -35,7 +35,7 @@ test("it says hello, and is open once it is welcomed", () => {
   expect(connection.send({ type: "ping" })).toBe(true);
 });
 
-test("a lost connection comes back, each time after a longer wait", () => {
+test("a lost connection reconnects, each time after a longer wait", () => {
   TestSocket.newest.welcome("s");
   TestSocket.newest.lose();
   expect(statuses).toEqual(["open", "lost"]);
@@ -56,7 +56,7 @@ test.each([
   [1000, "ended"],
   [4401, "token"],
   [4400, "refused"],
-] as const)("closed with %i, it is %s, and does not come back", (code, status) => {
+] as const)("a connection that is closed with code %i is %s, and does not reconnect", (code, status) => {
   TestSocket.newest.welcome("s");
   TestSocket.newest.lose(code);
   expect(statuses.at(-1)).toBe(status);
@@ -64,7 +64,7 @@ test.each([
   expect(TestSocket.all).toHaveLength(1);
 });
 
-test("a server without a pong is silent, and lost after a while", () => {
+test("a server that sends no pong counts as silent, and later as lost", () => {
   const first = TestSocket.newest;
   first.welcome("s");
   vi.advanceTimersByTime(15_000);
@@ -81,7 +81,7 @@ test("a server without a pong is silent, and lost after a while", () => {
   expect(first.closed).toBe(true);
 });
 
-test("a server that does not take an utterance is silent until its next frame", () => {
+test("a server that does not confirm an utterance counts as silent until its next frame", () => {
   const first = TestSocket.newest;
   first.welcome("s");
   connection.send({ type: "say", id: "a", text: "hello" });
@@ -92,19 +92,19 @@ test("a server that does not take an utterance is silent until its next frame", 
   expect(statuses).toEqual(["open", "silent", "open"]);
 });
 
-test("a server that takes the connection and never welcomes is given up", () => {
+test("a connection without a welcome counts as lost", () => {
   TestSocket.newest.open();
   vi.advanceTimersByTime(10_000);
   expect(statuses).toEqual(["lost"]);
 });
 
-test("when the network is back it does not wait", () => {
+test("a lost connection reconnects at once if it is nudged", () => {
   TestSocket.newest.lose();
   connection.nudge();
   expect(TestSocket.all).toHaveLength(2);
 });
 
-test("what comes from a socket that was given up is not heard", () => {
+test("messages from a socket that was given up are ignored", () => {
   const first = TestSocket.newest;
   connection.start();
   expect(first.closed).toBe(true);

@@ -42,7 +42,7 @@ function lastSaid(): string {
   return frame.id;
 }
 
-test("what is said waits until the server has it, and is not shown twice then", () => {
+test("words wait for the server's confirmation, and then appear only once", () => {
   TestSocket.newest.welcome("s");
   conversation.say("hello");
   expect(conversation.lines).toMatchObject([{ text: "hello", from: "user" }]);
@@ -52,7 +52,7 @@ test("what is said waits until the server has it, and is not shown twice then", 
   expect(conversation.lines[0]?.time).toBe(1000);
 });
 
-test("after a lost connection it asks for what it lacks, and says again what was not heard", () => {
+test("after a lost connection, the page asks for missing messages, and repeats unconfirmed words", () => {
   TestSocket.newest.welcome("s");
   TestSocket.newest.tell(message(1, "agent", "Hi!"));
   TestSocket.newest.lose();
@@ -71,7 +71,7 @@ test("a message that comes twice is shown once", () => {
   expect(texts()).toEqual(["Hi!"]);
 });
 
-test("after a reload it takes up the conversation, and says again what was not heard", () => {
+test("after a reload, the page resumes the conversation, and repeats unconfirmed words", () => {
   TestSocket.newest.welcome("s");
   conversation.say("hello");
   const id = lastSaid();
@@ -87,7 +87,7 @@ test("after a reload it takes up the conversation, and says again what was not h
   expect(TestSocket.newest.sent).toHaveLength(1);
 });
 
-test("what comes in between stands before what was not heard yet", () => {
+test("new messages appear before words that the server has not confirmed", () => {
   TestSocket.newest.welcome("s");
   conversation.say("one");
   TestSocket.newest.tell(message(1, "agent", "Hi!"));
@@ -104,7 +104,7 @@ test("an utterance grows, may be corrected, and is whole at its end", () => {
   expect([conversation.partial, ...texts()]).toEqual(["", "Rembrandt."]);
 });
 
-test("when the server has forgotten the conversation, a new one follows on it visibly", () => {
+test("if the server has forgotten the conversation, a new one begins below the old lines, with a mark", () => {
   TestSocket.newest.welcome("s");
   TestSocket.newest.tell(message(1, "agent", "Hi!"), message(2, "agent", "Welcome."));
   TestSocket.newest.lose();
@@ -121,7 +121,7 @@ test("when the server has forgotten the conversation, a new one follows on it vi
   expect(new Set(conversation.lines.map((line) => line.key)).size).toBe(4);
 });
 
-test("a conversation that has ended is not taken up again", () => {
+test("a conversation that has ended is not resumed", () => {
   TestSocket.newest.welcome("s");
   conversation.leave();
   expect(TestSocket.newest.sent.at(-1)).toEqual({ type: "bye" });
@@ -134,7 +134,7 @@ test("a conversation that has ended is not taken up again", () => {
   expect(texts()).toEqual([]);
 });
 
-test("the token of a link is presented, kept across reloads, and taken out of the address", () => {
+test("the page sends the token of its link, keeps it across reloads, and removes it from the address", () => {
   history.replaceState(null, "", "/#token=sesame");
   reload();
   expect(location.hash).toBe("");
@@ -143,7 +143,7 @@ test("the token of a link is presented, kept across reloads, and taken out of th
   expect(TestSocket.newest.sent[0]).toMatchObject({ token: "sesame" });
 });
 
-test("why it was refused is told until it is welcomed", () => {
+test("the reason for a refusal shows until the server welcomes the page", () => {
   TestSocket.newest.open();
   TestSocket.newest.tell({ type: "error", code: "full", text: "9 visitors are here already" });
   TestSocket.newest.lose(1013);
@@ -153,7 +153,7 @@ test("why it was refused is told until it is welcomed", () => {
   expect(conversation.trouble).toBe("");
 });
 
-test("a token that was refused may be replaced", () => {
+test("the visitor may replace a token that was refused", () => {
   TestSocket.newest.open();
   TestSocket.newest.tell({ type: "error", code: "token", text: "a token is needed" });
   TestSocket.newest.lose(4401);
@@ -163,7 +163,7 @@ test("a token that was refused may be replaced", () => {
   expect(TestSocket.newest.sent[0]).toMatchObject({ token: "sesame" });
 });
 
-test("a browser that keeps nothing loses nothing but the reload", () => {
+test("a conversation works in a browser that refuses to store anything", () => {
   const refuse = vi.spyOn(Storage.prototype, "setItem").mockImplementation(() => {
     throw new DOMException("refused", "SecurityError");
   });
@@ -173,7 +173,7 @@ test("a browser that keeps nothing loses nothing but the reload", () => {
   refuse.mockRestore();
 });
 
-test("what the server does not take is not said again, and is seen not to be taken", () => {
+test("words that the server refuses are marked, and are not sent again", () => {
   TestSocket.newest.welcome("s");
   conversation.say("\u0085");
   const text = 'say: "text" has nothing in it';
@@ -186,7 +186,7 @@ test("what the server does not take is not said again, and is seen not to be tak
   expect(texts()).toEqual([]);
 });
 
-test("what was said before a reload is told apart from what comes after it", () => {
+test("after a reload, the page tells earlier lines from new ones", () => {
   TestSocket.newest.welcome("s");
   expect(conversation.recalling).toBe(false);
   TestSocket.newest.tell(message(1, "agent", "Hi!"), message(2, "agent", "Welcome."));
@@ -199,11 +199,11 @@ test("what was said before a reload is told apart from what comes after it", () 
   expect(conversation.recalling).toBe(false);
   TestSocket.newest.lose();
   vi.advanceTimersByTime(1000);
-  TestSocket.newest.welcome("s", true, 3); // one was missed, and is news
+  TestSocket.newest.welcome("s", true, 3); // the missed message is new
   expect(conversation.recalling).toBe(false);
 });
 
-test("that something is being written is told now and then, and again after it was said", () => {
+test("the page reports typing every two seconds, and again after an utterance", () => {
   TestSocket.newest.welcome("s");
   const kinds = () => TestSocket.newest.sent.slice(1).map((frame) => frame.type);
   for (let key = 0; key < 41; key += 1) {
@@ -216,7 +216,7 @@ test("that something is being written is told now and then, and again after it w
   expect(kinds().slice(3)).toEqual(["say", "writing"]);
 });
 
-test("what is being written while nobody is reached is told once somebody is", () => {
+test("typing without a connection is not reported; later typing is", () => {
   TestSocket.newest.welcome("s");
   TestSocket.newest.lose();
   conversation.write();
@@ -226,14 +226,14 @@ test("what is being written while nobody is reached is told once somebody is", (
   expect(TestSocket.newest.sent.map((frame) => frame.type)).toEqual(["hello", "writing"]);
 });
 
-test("a server that does not know of writing is not told of it", () => {
+test("a server that does not accept reports of typing gets none", () => {
   TestSocket.newest.open();
   TestSocket.newest.tell({ type: "welcome", v: 1, session: "s", resumed: false, first: 1, agent: "Elske" });
   conversation.write();
   expect(TestSocket.newest.sent.map((frame) => frame.type)).toEqual(["hello"]);
 });
 
-test("an agent that is called otherwise from now on is", () => {
+test("the page takes the agent's new name", () => {
   TestSocket.newest.welcome("s");
   expect(conversation.agent).toBe("Elske");
   TestSocket.newest.tell({ type: "renamed", agent: "Robin" });

@@ -62,7 +62,7 @@ async function failure(work: Promise<Devices>): Promise<string> {
   );
 }
 
-test("the browser is to remove the echo, and may play sound", async () => {
+test("the page asks the browser to remove the echo and to play sound", async () => {
   await openDevices(listener);
   expect(getUserMedia.mock.calls[0]?.[0].audio).toMatchObject({
     echoCancellation: true,
@@ -86,7 +86,7 @@ test("sound goes through both ways, and the microphone can be silent", async () 
   devices.close();
   expect(track.stop).toHaveBeenCalled();
   expect(Sound.newest.close).toHaveBeenCalled();
-  track.dispatchEvent(new Event("ended")); // its own end
+  track.dispatchEvent(new Event("ended")); // the page itself has stopped the track
   expect(listener.onlost).not.toHaveBeenCalled();
 });
 
@@ -115,7 +115,7 @@ test("if the worklet does not load, the microphone goes off", async () => {
   expect(track.stop).toHaveBeenCalled();
 });
 
-test("an address without https, an old browser and an embedding site each have their own words", async () => {
+test("an address without https, an old browser and an embedding site each have a message of their own", async () => {
   expect(explain(new DOMException("", "NotAllowedError"), true)).toContain("the web site around the chat");
   vi.stubGlobal("AudioWorkletNode", undefined);
   expect(await failure(openDevices(listener))).toContain("too old");

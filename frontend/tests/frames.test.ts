@@ -18,10 +18,10 @@ test.each([
   '{"type":"message","n":"1","from":"agent","text":"Hi","time":5}',
   '{"type":"typing"}',
   '{"type":"renamed"}',
-])("what is not a frame is left aside: %s", (text) => {
+])("a text that is not a frame is ignored: %s", (text) => {
   expect(parse(text)).toBeNull();
 });
 
-test("binary messages are left aside", () => {
+test("binary messages are ignored", () => {
   expect(parse(new ArrayBuffer(2))).toBeNull();
 });

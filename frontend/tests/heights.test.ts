@@ -13,7 +13,7 @@ test("lines that nobody has measured have the average height", () => {
   expect(heights.sum(lines, 0, 2)).toBe(96);
 });
 
-test("the lines between two places", () => {
+test("the heights tell which lines lie between two places", () => {
   const heights = new Heights();
   for (const { key } of lines) heights.measure(key, 10);
   expect(heights.between(lines, 0, 30)).toEqual({ first: 0, last: 2 });

@@ -8,7 +8,7 @@ function sound(seconds: number): Float32Array {
   return new Float32Array(24_000 * seconds).fill(0.5);
 }
 
-/** Pull blocks; which of them had sound. */
+/** Pull blocks; return for each block whether it had sound. */
 function pull(buffer: JitterBuffer, blocks: number): boolean[] {
   const out = new Float32Array(BLOCK);
   return Array.from({ length: blocks }, () => {

@@ -15,14 +15,14 @@ export function restart(): void {
   newest = 0;
 }
 
-/** A spike of its own number, an input unless it has parents. */
+/** Return the record of a spike with a new number. It is an input unless it has parents. */
 export function born(time: number, signal: string, text = "null", more: Partial<Born> = {}): TraceRecord {
   newest = more.spike ?? newest + 1;
   const payload = { text } as Born["payload"];
   return { kind: "born", time, spike: newest, signal, group: 1, parents: [], source: 0, payload, ...more };
 }
 
-/** The board, with ten seconds of a trace on 1,000 by 300 pixels. */
+/** Return a scene that shows ten seconds of a trace on 1,000 by 300 pixels. */
 export function scene(records: TraceRecord[], lanes: string[], more: Partial<Scene> = {}): Scene {
   const trace = new Trace();
   trace.add(records);

@@ -32,7 +32,7 @@ test.each([
   expect(amplitude(made, 1500, to)).toBeLessThan(0.01);
 });
 
-test("tones above half of the new rate are gone, instead of turning into others", () => {
+test("tones above half of the new rate are removed, instead of becoming lower tones", () => {
   const made = new Resampler(48_000, 16_000).push(tone(10_000, 48_000, 1));
   for (const hertz of [2000, 4000, 6000]) expect(amplitude(made, hertz, 16_000)).toBeLessThan(0.003);
 });
@@ -52,7 +52,7 @@ test("pieces of any size make the same sound as the whole", () => {
   });
 });
 
-test("samples beyond the range are cut, and come back as they were", () => {
+test("samples become integers and floats again; those beyond the range are cut", () => {
   expect([...toInt16(Float32Array.of(-2, -1, 0, 0.5, 2))]).toEqual([-32768, -32767, 0, 16384, 32767]);
   expect([...toFloat(Int16Array.of(-32768, 0, 16384))]).toEqual([-1, 0, 0.5]);
 });

@@ -91,7 +91,7 @@ test("a notice comes before the camera goes on, until the visitor has agreed onc
   expect(sight().state).toBe("on");
 });
 
-test("another notice asks again", async () => {
+test("a changed notice asks for consent again", async () => {
   welcome();
   await turnOn();
   sight().stop();
@@ -111,7 +111,7 @@ test("each request gets one picture, announced by its number", async () => {
   expect(sight().looks).toBe(true);
 });
 
-test("a camera that has no picture yet is tried again, and only the last request counts", async () => {
+test("the page asks a camera without a picture again, and answers only the last request", async () => {
   welcome();
   await turnOn();
   const socket = TestSocket.newest;

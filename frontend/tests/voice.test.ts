@@ -80,7 +80,7 @@ test("a short press opens the microphone, and another one turns it off", async (
   ]);
 });
 
-test("while the button is held the visitor talks; then silence goes to the agent", async () => {
+test("while the visitor holds the button, their sound goes to the agent; after that, silence does", async () => {
   welcome();
   await press(1000);
   expect([voice().state, voice().mode, voice().talking]).toEqual(["on", "hold", false]);
@@ -111,7 +111,7 @@ test("a microphone that starts after the visitor has changed their mind is turne
   expect(told()).toEqual([]);
 });
 
-test("keys work as the pointer does, and screen readers click", async () => {
+test("the button works with keys, and with the clicks of screen readers", async () => {
   welcome();
   render(Composer, { agent: "Elske", closed: false, onwrite: vi.fn(), onsay: vi.fn(), voice: voice() });
   const button = screen.getByRole("button", { name: "Talk with Elske" });
@@ -123,13 +123,13 @@ test("keys work as the pointer does, and screen readers click", async () => {
   expect([voice().state, voice().talking]).toEqual(["on", false]);
   await fireEvent.click(button, { detail: 0 });
   expect(voice().talking).toBe(true);
-  await fireEvent.click(button, { detail: 1 }); // what follows a press of the pointer
+  await fireEvent.click(button, { detail: 1 }); // the click that follows a press of the pointer
   expect(voice().state).toBe("on");
   await fireEvent.click(button, { detail: 0 });
   expect(voice().state).toBe("off");
 });
 
-test("the agent's sound plays, its position is told ten times a second, and a flush drops it", async () => {
+test("the agent's sound plays, the page reports its position ten times a second, and a flush drops it", async () => {
   welcome();
   await press();
   const socket = TestSocket.newest;
@@ -157,7 +157,7 @@ test("the agent's sound plays, its position is told ten times a second, and a fl
   expect(voice().speaking).toBe(false);
 });
 
-test("Stop silences the agent at once, and sound that is on its way as well", async () => {
+test("Stop silences the agent at once, and drops sound that is on its way", async () => {
   welcome();
   await press();
   const socket = TestSocket.newest;
@@ -186,7 +186,7 @@ test("the page says when the agent begins to listen", async () => {
   expect(screen.getByText("The microphone is on.")).toBeTruthy();
 });
 
-test("captions show, and those that become no message go", async () => {
+test("a caption shows, and disappears if it becomes no message", async () => {
   welcome();
   await press();
   render(VoiceBar, { voice: voice(), agent: "Elske" });
@@ -206,7 +206,7 @@ test("another window takes the microphone", async () => {
   expect(told()).toEqual([{ type: "microphone", on: true }]);
 });
 
-test("a refused microphone leaves the words why, and can be tried again", async () => {
+test("a refused microphone shows the reason, and the button tries again", async () => {
   welcome();
   refusal = new DOMException("", "NotAllowedError");
   render(VoiceBar, { voice: voice(), agent: "Elske" });
@@ -230,7 +230,7 @@ test("an unplugged microphone turns everything off", async () => {
   ]);
 });
 
-test("with the connection the sound stops, and it comes back with it", async () => {
+test("the sound stops when the connection is lost, and returns with it", async () => {
   welcome();
   await press();
   TestSocket.newest.tell({ type: "flush", n: 1 });

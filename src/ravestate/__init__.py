@@ -68,7 +68,7 @@ def __getattr__(name: str) -> Any:
     return value
 
 
-@lru_cache(maxsize=64)  # tools ask each module again and again for names that only some have
+@lru_cache(maxsize=64)  # tools look up the same missing names again and again
 def _hint(name: str) -> str:
     from ravestate.errors import nearest
 

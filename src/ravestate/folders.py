@@ -1,4 +1,4 @@
-"""The platform's folders for a user's files."""
+"""The operating system's folders for a user's files."""
 
 from __future__ import annotations
 

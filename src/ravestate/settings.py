@@ -1,6 +1,7 @@
 """Typed settings of modules, as pydantic models. A declaration may refer to a model's fields.
 
-This file is outside the pure packages because it needs pydantic. It loads when ``rs.Settings`` is first used.
+This file is not in ``declare``, because it needs pydantic, and ``declare`` uses no third-party code. It loads when
+``rs.Settings`` is first used.
 """
 
 from __future__ import annotations
@@ -97,7 +98,9 @@ def load_settings(
                 )
             continue
         if not isinstance(values, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]  # it may come from a file
-            faults.append(DeclarationError(f"settings for {name!r} must be fields and values, not {short(values)}"))
+            faults.append(
+                DeclarationError(f"settings for {name!r} must be a mapping of fields to values, not {short(values)}")
+            )
             continue
         try:
             found[name] = model(**{**_from_environment(name, model, variables), **values})

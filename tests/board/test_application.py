@@ -33,7 +33,7 @@ def trace(tmp_path: Path) -> bytes:
     return (tmp_path / "trace.json").read_bytes()
 
 
-def test_a_recording_that_was_sent_is_looked_at(trace: bytes) -> None:
+def test_an_uploaded_recording_can_be_opened(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, client(app) as browser:
@@ -46,7 +46,7 @@ def test_a_recording_that_was_sent_is_looked_at(trace: bytes) -> None:
     test()
 
 
-def test_recordings_that_come_together_are_read_one_at_a_time(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_simultaneous_uploads_are_read_one_at_a_time(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     taken: list[str] = []
 
     async def slowly(work: Callable[..., Any], *arguments: Any) -> Any:
@@ -192,7 +192,7 @@ async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_s
 
 
 @in_virtual_time
-async def test_mounted_in_another_application_too() -> None:
+async def test_the_board_can_be_mounted_in_another_application() -> None:
     site = "https://museum.example"
     async with board(origins=(site,)) as chat:
         museum = Starlette(routes=[Mount("/guide", chat)])

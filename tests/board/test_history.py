@@ -16,14 +16,14 @@ def run(number: int, rule: str, spikes: tuple[int, ...], begin: float, end: floa
     return [Started(begin, number, rule, 0, spikes), *ended]
 
 
-def test_groups_that_have_merged_are_one_however_long_the_way() -> None:
+def test_groups_that_merge_in_many_steps_are_one() -> None:
     merges = [Merged(1.0, group, group - 1) for group in range(2, 3000)]
     history = History([born(n, "m:s", group=n) for n in range(1, 3000)] + [*reversed(merges)], 2999)
     assert history.root(2999) == 1
     assert len(history.group) == 2999
 
 
-def test_groups_that_a_file_merges_in_a_circle_are_read_all_the_same() -> None:
+def test_a_file_that_merges_groups_in_a_circle_can_still_be_read() -> None:
     records: list[Record] = [born(1, "m:s", 1), born(2, "m:s", 2), Merged(1.0, 2, 1), Merged(1.0, 1, 2)]
     assert History(records, 1).group == {1, 2}
 
@@ -32,7 +32,7 @@ def test_groups_that_a_file_merges_in_a_circle_are_read_all_the_same() -> None:
     ("time", "runs"),
     [(0.5, False), (1.0, True), (2.5, True), (5.0, True), (5.5, False), (7.0, True), (9.0, True)],
 )
-def test_whether_a_rule_ran_at_a_time(time: float, runs: bool) -> None:
+def test_a_rule_ran_at_a_time_between_its_start_and_its_end(time: float, runs: bool) -> None:
     records = [
         born(1, "m:s"),
         born(2, "m:s", group=2),
@@ -61,7 +61,7 @@ def test_the_rule_behind_a_run_raised_a_spike_of_this_group() -> None:
     assert [history.before(number) for number in (0, 99)] == ["", ""]  # unknown
 
 
-def test_the_first_that_answered_is_the_one_that_ended_first_and_not_one_of_another_cause() -> None:
+def test_the_first_answer_is_the_run_for_this_cause_that_ended_first() -> None:
     records = [
         born(1, "m:s"),
         born(2, "m:s", group=2),
@@ -75,13 +75,13 @@ def test_the_first_that_answered_is_the_one_that_ended_first_and_not_one_of_anot
     first = history.answered(hears)
     assert first is not None
     assert (first.id, first.end) == (3, 2.0)
-    last = history.answered({**hears, "m:quick": [{"m:t"}]})  # it only reads m:s
+    last = history.answered({**hears, "m:quick": [{"m:t"}]})  # m:quick does not consume m:s
     assert last is not None
     assert last.id == 1
     assert history.answered({"m:other": [{"m:s"}]}) is None
 
 
-def test_the_value_of_a_slot_is_the_last_that_was_written_by_then() -> None:
+def test_the_value_of_a_slot_at_a_time_is_its_last_write_until_then() -> None:
     history = History([born(1, "m:s"), *(Set(time, "m:x", time, 0) for time in (1.0, 2.0, 2.5))], 1)
     found = [history.value("m:x", time) for time in (0.5, 1.0, 2.2, 9.0)]
     assert [None if write is None else write.value for write in found] == [None, 1.0, 2.0, 2.5]
@@ -96,7 +96,7 @@ def test_spikes_lost_in_one_instant_were_not_lacking_before() -> None:
     assert (attempt.lacks, attempt.end, attempt.over) == (("m:u",), 2.0, True)
 
 
-def test_a_run_of_which_the_beginning_went_unseen_has_ended() -> None:
+def test_a_run_whose_start_is_missing_has_ended() -> None:
     records = [born(1, "m:s"), Held(0.0, 7, "m:r", 0, 1, "m:s", ()), Settled(2.0, 7, "m:r", "done", "", True)]
     (attempt,) = History(records, 1).of("m:r")
     assert (attempt.over, attempt.end) == (True, 2.0)

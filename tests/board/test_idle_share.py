@@ -1,4 +1,4 @@
-"""The idle share of a process: a starved one has none."""
+"""The idle share of a process. A process that other programs keep waiting has none."""
 
 from pathlib import Path
 

@@ -16,7 +16,7 @@ from ravestate.modules.platform.webio import channel
 
 
 @in_virtual_time
-async def test_it_sees_the_policy_and_what_happens_from_the_beginning() -> None:
+async def test_an_inspector_gets_the_policy_and_the_records_from_the_start() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         visit.say("Really?")
@@ -45,7 +45,7 @@ async def test_the_chat_page_gets_the_address_of_the_board() -> None:
 
 
 @in_virtual_time
-async def test_without_a_name_it_sees_the_newest_conversation_or_begins_one() -> None:
+async def test_without_a_name_an_inspector_gets_the_newest_conversation_or_begins_one() -> None:
     async with board() as app:
         async with Look(app) as look:
             first = await look.begin()
@@ -62,7 +62,7 @@ async def test_without_a_name_it_sees_the_newest_conversation_or_begins_one() ->
 
 
 @in_virtual_time
-async def test_conversations_are_listed_with_their_beginning_and_last_words_and_again_as_they_go_on() -> None:
+async def test_the_list_has_the_start_and_last_words_of_conversations_and_comes_again_after_changes() -> None:
     async with board() as app, Visit(app) as visit, Look(app) as look:
         await visit.hello()
         await look.begin(session=visit.session)
@@ -117,14 +117,14 @@ async def test_the_default_conversation_is_not_one_that_is_ending() -> None:
 
 
 @in_virtual_time
-async def test_halves_of_characters_are_sent_as_they_are() -> None:
+async def test_lone_surrogates_are_sent_unchanged() -> None:
     recording = Recording("Els\ud800", describe(rs.compile(gossip)), (), whole=True)
     async with board(recording=recording) as app, Look(app) as look:
         assert (await look.begin())["title"] == "Els\ud800"
 
 
 @in_virtual_time
-async def test_it_sees_only_the_conversation_that_it_looks_at() -> None:
+async def test_an_inspector_gets_the_records_of_its_own_conversation_only() -> None:
     async with board() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -462,7 +462,7 @@ async def test_the_end_of_a_conversation_is_announced() -> None:
 
 
 @in_virtual_time
-async def test_looking_keeps_a_conversation() -> None:
+async def test_an_open_board_keeps_its_conversation() -> None:
     async with board(keep=5) as app:
         async with Look(app) as look:
             await look.begin()

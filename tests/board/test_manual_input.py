@@ -152,7 +152,7 @@ def test_a_container_type_takes_only_such_containers(
 
 
 @pytest.mark.parametrize("kind", [tuple[str, ...], frozenset[str], set[int], Callable[[], None], tuple[int] | set[str]])
-def test_containers_that_json_does_not_know_are_not_written(kind: Any) -> None:
+def test_containers_that_json_cannot_express_are_refused(kind: Any) -> None:
     slot = rs.Module("boxes").slot("box", 0, type=kind)
     for value in ("banana", ["a"], None):
         with pytest.raises(rs.RavestateError, match=r"boxes:box takes .*, which JSON cannot express"):
@@ -160,7 +160,7 @@ def test_containers_that_json_does_not_know_are_not_written(kind: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", [Any, Literal["a", "b"], list[int] | Literal["a"]])
-def test_a_type_that_cannot_be_asked_for_is_as_none(kind: Any) -> None:
+def test_a_type_that_cannot_be_checked_counts_as_no_type(kind: Any) -> None:
     slot = rs.Module("boxes").slot("box", "a", type=kind)
     check_value(slot, "b", "a")
     with pytest.raises(rs.RavestateError, match="boxes:box holds a Point"):
@@ -186,7 +186,7 @@ async def refusals(look: Look) -> list[str]:
 
 
 @in_virtual_time
-async def test_a_rule_that_hears_a_slot_is_given_nothing_that_the_slot_would_not_take() -> None:
+async def test_a_slots_signal_cannot_be_raised_with_a_value_that_the_slot_refuses() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.tell("emit", signal="rawio:input:changed", payload=7)
@@ -200,7 +200,7 @@ async def test_a_rule_that_hears_a_slot_is_given_nothing_that_the_slot_would_not
 
 
 @in_virtual_time
-async def test_the_page_of_a_visitor_cannot_be_taken_away() -> None:
+async def test_the_page_of_a_visitor_cannot_be_removed() -> None:
     async with board(parrot) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)

@@ -55,7 +55,7 @@ async def test_memory_is_bounded_and_the_oldest_goes_first() -> None:
 
 
 @in_virtual_time
-async def test_beyond_its_rate_it_stops_listening_and_counts_the_spikes_that_it_missed() -> None:
+async def test_beyond_its_rate_a_recorder_stops_listening_and_counts_the_missed_spikes() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=200, rate=100, spare=0)
     async with context:
@@ -98,7 +98,7 @@ async def test_a_context_has_one_recorder() -> None:
 
 
 @in_virtual_time
-async def test_a_recorder_goes_with_its_context() -> None:
+async def test_a_recorder_is_freed_with_its_context() -> None:
     recorders = Recorders()
     gone: list[weakref.ref[Any]] = []
     for length in (5, 300):  # the second one is idle when its context ends
@@ -117,7 +117,7 @@ async def test_a_recorder_goes_with_its_context() -> None:
 
 
 @in_virtual_time
-async def test_the_records_of_a_failure_keep_no_exception_and_with_it_the_variables_of_the_rule() -> None:
+async def test_the_record_of_a_failure_keeps_neither_the_exception_nor_the_rules_variables() -> None:
     module = rs.Module("failing")
     tick = module.signal("tick")
 
@@ -137,7 +137,7 @@ async def test_the_records_of_a_failure_keep_no_exception_and_with_it_the_variab
 
 
 @in_virtual_time
-async def test_all_of_them_together_keep_no_more_than_is_shared_out() -> None:
+async def test_all_recorders_together_stay_within_the_shared_limit() -> None:
     recorders = Recorders(in_all=3000)
     made = [ticking() for _ in range(20)]
     kept = [recorders.of(context, whole=True) for context, _ in made]
@@ -160,7 +160,7 @@ async def test_all_of_them_together_keep_no_more_than_is_shared_out() -> None:
 
 
 @in_virtual_time
-async def test_spikes_that_went_unseen_are_counted_although_no_other_is_kept() -> None:
+async def test_missed_spikes_are_counted_right_even_if_no_earlier_spike_is_kept() -> None:
     context, tick = ticking()
     recorder = Recorder(context, rate=0, spare=0)
     async with context:
@@ -193,7 +193,7 @@ async def test_records_up_to_the_first_spike_after_a_gap_are_taken_once() -> Non
 
 
 @in_virtual_time
-async def test_shortening_during_a_gap_misses_no_more() -> None:
+async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=60, rate=0, spare=0)
     async with context:
@@ -211,7 +211,7 @@ async def test_shortening_during_a_gap_misses_no_more() -> None:
 
 
 @in_virtual_time
-async def test_a_spike_that_there_was_no_room_to_keep_was_seen() -> None:
+async def test_a_spike_that_was_dropped_for_lack_of_room_does_not_count_as_missed() -> None:
     context, tick = ticking()
     recorder = Recorder(context, kept=5, rate=0, spare=0)
     async with context:
@@ -245,7 +245,7 @@ async def test_a_gap_counts_as_a_record() -> None:
     ("lengths", "in_all", "fair"),
     [([], 10, 1), ([5, 3], 10, 5), ([5, 3], 6, 3), ([1, 9, 9], 11, 5), ([4] * 100, 50, 1), ([7], 3, 3)],
 )
-def test_the_longest_are_shortened_to_one_length(lengths: list[int], in_all: int, fair: int) -> None:
+def test_the_longest_recorders_are_shortened_to_one_length(lengths: list[int], in_all: int, fair: int) -> None:
     assert _fair(lengths, in_all) == fair
 
 

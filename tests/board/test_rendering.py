@@ -97,7 +97,7 @@ def test_lone_surrogates_are_replaced() -> None:
     assert well_formed("café 👋🏽") == "café 👋🏽"
 
 
-def test_values_beyond_json_are_known() -> None:
+def test_not_json_knows_the_values_that_json_cannot_express() -> None:
     assert (
         not_json(Loud())
         and not_json({"a": [Loud()]})

@@ -76,7 +76,7 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-def test_it_is_pythons_repr(value: object) -> None:
+def test_the_chunks_make_pythons_repr(value: object) -> None:
     assert "".join(repr_chunks(value)) == repr(value)
 
 
@@ -201,11 +201,11 @@ def things() -> Iterator[Watched]:
     ],
     ids=lambda value: type(value).__name__,
 )  # fmt: skip
-def test_no_more_is_made_than_is_taken(value: object) -> None:
+def test_no_more_chunks_are_made_than_are_read(value: object) -> None:
     Watched.asked = 0
     list(islice(repr_chunks(value), 20))
     assert 0 < Watched.asked <= 20
 
 
-def test_a_huge_text_is_cut_before_it_is_spelt() -> None:
+def test_a_huge_text_is_cut_before_its_repr_is_made() -> None:
     assert len("".join(repr_chunks(["x" * 10**7, b"x" * 10**7]))) < 250_000

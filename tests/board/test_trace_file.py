@@ -47,7 +47,7 @@ def test_why_not_is_answered_without_the_agent(tmp_path: Path) -> None:
     assert why_not(kept, found.description, "gossip:answer", spike).verdict == "untouched"
 
 
-def test_a_recording_is_looked_at_without_an_agent_and_cannot_be_acted_on(tmp_path: Path) -> None:
+def test_a_recording_is_shown_without_an_agent_and_refuses_commands(tmp_path: Path) -> None:
     records, _ = recorded(tmp_path / "trace.json")
     look_at(tmp_path, len(records))
 
@@ -100,7 +100,7 @@ def test_a_file_without_a_trace_is_refused(text: Any, words: str) -> None:
     assert words in str(caught.value)
 
 
-def test_a_diagram_that_does_not_hang_together_is_refused(tmp_path: Path) -> None:
+def test_a_diagram_whose_edge_leads_to_no_node_is_refused(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     data = json.loads((tmp_path / "trace.json").read_text("utf-8"))
     data["policy"]["diagram"]["edges"][0]["target"] = "nowhere"
@@ -109,7 +109,7 @@ def test_a_diagram_that_does_not_hang_together_is_refused(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("spell", [json.dumps, lambda data: json.dumps(data, ensure_ascii=False)])
-def test_texts_that_no_encoding_carries_are_mended(tmp_path: Path, spell: Callable[[Any], str]) -> None:
+def test_lone_surrogates_in_a_file_are_replaced(tmp_path: Path, spell: Callable[[Any], str]) -> None:
     recorded(tmp_path / "trace.json")
     data = json.loads((tmp_path / "trace.json").read_text("utf-8"))
     data["title"] = "\ud800x 👋 \\ud800"
@@ -149,7 +149,7 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         open_trace(tmp_path / "bad.json")
 
 
-def test_a_gap_is_carried_along() -> None:
+def test_a_gap_survives_the_round_trip() -> None:
     assert checked_record(data_of(Gap(1.5, 7))) == Gap(1.5, 7)
 
 

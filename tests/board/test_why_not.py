@@ -74,7 +74,7 @@ def conversation(stage: Stage, is_question: bool, resigns: bool = False, slow: f
         ctx[stage.output] = "small talk"
 
 
-def test_it_did_fire(stage: Stage) -> None:
+def test_a_rule_did_fire(stage: Stage) -> None:
     conversation(stage, is_question=True)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -86,7 +86,7 @@ def test_it_did_fire(stage: Stage) -> None:
     ]  # fmt: skip
 
 
-def test_it_was_ready_and_the_better_one_answered(stage: Stage) -> None:
+def test_a_rule_was_ready_and_a_better_rule_answered(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -102,7 +102,7 @@ def test_it_was_ready_and_the_better_one_answered(stage: Stage) -> None:
     assert ("demo:qa",) in [moment.rules for moment in found.moments]
 
 
-def test_it_lacked_a_signal_that_its_cause_did_not_raise(stage: Stage) -> None:
+def test_a_rule_lacked_a_signal_that_its_cause_did_not_raise(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "hello")
@@ -115,7 +115,7 @@ def test_it_lacked_a_signal_that_its_cause_did_not_raise(stage: Stage) -> None:
     assert raiser.words == "demo:classify finished without raising it, at 0.000 s"
 
 
-def test_it_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> None:
+def test_a_rule_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch.max_age(60), writes=stage.output)
     async def both(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "both"
@@ -137,7 +137,7 @@ def test_it_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> 
     assert "it has demo:touch and still lacks demo:input:changed" in str(found)
 
 
-def test_it_resigned(stage: Stage) -> None:
+def test_a_rule_resigned(stage: Stage) -> None:
     conversation(stage, is_question=True, resigns=True)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -147,7 +147,7 @@ def test_it_resigned(stage: Stage) -> None:
     assert other.verdict == "fired"
 
 
-def test_it_failed_before_and_after_a_write(stage: Stage) -> None:
+def test_a_rule_failed_before_and_after_a_write(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
     async def early(ctx: rs.RuleContext) -> None:
         raise ValueError("no such word")
@@ -167,7 +167,7 @@ def test_it_failed_before_and_after_a_write(stage: Stage) -> None:
     assert "failed after its write" in second.words
 
 
-def test_it_never_took_the_spike_as_the_payload_did_not_fit(stage: Stage) -> None:
+def test_a_rule_never_took_the_spike_because_the_payload_did_not_fit(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed.where(str.isupper), writes=stage.output)
     async def shout(ctx: rs.RuleContext) -> None: ...
 
@@ -178,7 +178,7 @@ def test_it_never_took_the_spike_as_the_payload_did_not_fit(stage: Stage) -> Non
     assert found.words == "it did not take demo:input:changed: its payload did not match the predicate"
 
 
-def test_it_never_took_the_spike_as_its_cause_was_answered(stage: Stage) -> None:
+def test_a_rule_never_took_the_spike_because_its_cause_was_answered(stage: Stage) -> None:
     later = stage.module.signal("later")
 
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
@@ -269,7 +269,7 @@ def test_for_causes_that_merge_later_the_answering_rule_is_named(stage: Stage) -
     assert found.words == "it did not take demo:late: demo:second had already answered this cause"
 
 
-def test_it_was_among_its_own_causes(stage: Stage) -> None:
+def test_a_rule_was_among_its_own_causes(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed | stage.output.changed, writes=stage.output)
     async def echo(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "echo"
@@ -283,7 +283,7 @@ def test_it_was_among_its_own_causes(stage: Stage) -> None:
     ]
 
 
-def test_it_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
+def test_a_rule_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch)
     async def both(ctx: rs.RuleContext) -> None: ...
 
@@ -318,7 +318,7 @@ def test_a_missing_input_that_rules_may_raise_is_named_as_both(stage: Stage) -> 
     assert [raiser.rule for raiser in missing.raisers] == ["demo:ring"]
 
 
-def test_its_patience_ran_out_while_another_waited(stage: Stage) -> None:
+def test_the_patience_of_a_rule_ran_out_while_another_rule_waited(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch, writes=stage.output)
     async def fused(ctx: rs.RuleContext) -> None: ...
 
@@ -374,7 +374,7 @@ def test_a_false_predicate_is_distinguished_from_a_better_rule(stage: Stage) -> 
     assert "demo:plain answered this cause" in found.words
 
 
-def test_its_spike_was_too_young(stage: Stage) -> None:
+def test_the_spike_of_a_rule_was_too_young(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed.min_age(3.0), writes=stage.output)
     async def slow(ctx: rs.RuleContext) -> None: ...
 
@@ -414,7 +414,7 @@ def test_repeated_waits_appear_once(stage: Stage) -> None:
     assert len(words) == len(set(words))
 
 
-def test_it_had_retired(stage: Stage) -> None:
+def test_a_rule_had_retired(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed)
     async def once(ctx: rs.RuleContext) -> rs.Retire:
         return rs.Retire()
@@ -428,7 +428,7 @@ def test_it_had_retired(stage: Stage) -> None:
     assert (second.verdict, second.words) == ("retired", "it had already retired, at 0.000 s")
 
 
-def test_its_spike_was_withdrawn(stage: Stage) -> None:
+def test_the_spike_of_a_rule_was_withdrawn(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch)
     async def both(ctx: rs.RuleContext) -> None: ...
 
@@ -440,7 +440,7 @@ def test_its_spike_was_withdrawn(stage: Stage) -> None:
     assert found.words == "demo:input:changed was withdrawn at 0.000 s: it was wiped"
 
 
-def test_it_waited_for_a_slot_that_was_taken(stage: Stage) -> None:
+def test_a_rule_waited_for_a_slot_that_was_taken(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=2)
     async def long(ctx: rs.RuleContext) -> None:
         await ctx.sleep(3)
@@ -533,7 +533,7 @@ def test_causes_are_followed_back_and_circles_end(stage: Stage) -> None:
     assert "demo:to_one did not run: it took demo:touch but lacked demo:two" in found.missing[0].raisers[0].words
 
 
-def test_a_running_rule_runs(stage: Stage) -> None:
+def test_a_running_rule_is_reported_as_running(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed)
     async def dream(ctx: rs.RuleContext) -> None:
         await ctx.sleep(100)
@@ -580,7 +580,7 @@ def shut_while_waiting(stage: Stage) -> rs.Slot[bool]:
     return lit
 
 
-def test_a_gate_that_shut_while_it_waited_is_not_another_that_answered(stage: Stage) -> None:
+def test_a_predicate_that_became_false_during_a_wait_is_no_answer_by_another_rule(stage: Stage) -> None:
     lit = shut_while_waiting(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -604,7 +604,7 @@ def test_a_gate_that_shut_while_it_waited_is_not_another_that_answered(stage: St
     assert unseen.verdict == "gated"  # a recording has no predicates to evaluate
 
 
-def test_one_that_waited_and_lost_to_another_while_its_gate_was_shut_was_gated(stage: Stage) -> None:
+def test_a_waiting_rule_that_lost_while_its_predicate_was_false_was_gated(stage: Stage) -> None:
     lit = shut_while_waiting(stage)
 
     @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=0.1)

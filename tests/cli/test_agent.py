@@ -36,11 +36,11 @@ def refused(capsys: Capture, *arguments: str, code: int = 2) -> str:
 # ---------------------------------------------------------------------------------------- modules
 
 
-def test_a_module_by_its_built_in_name() -> None:
+def test_a_module_is_found_by_its_built_in_name() -> None:
     assert load_module("rawio") is rawio.module
 
 
-def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
+def test_a_module_is_found_by_its_file(folder: Path, capsys: Capture) -> None:
     write(folder / "sub" / "hello.py", HELLO)
     write(folder / "sub" / "beside.py", "WORD = 'beside'")
     write(folder / "sub" / "uses.py", "import beside, ravestate as rs\nmodule = rs.Module(beside.WORD)")
@@ -50,7 +50,7 @@ def test_a_module_by_its_file(folder: Path, capsys: Capture) -> None:
     assert load_module("sub/uses.py").name == "beside"
 
 
-def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
+def test_a_module_is_found_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg" / "__init__.py", "")
     write(folder / "pkg" / "inner.py", HELLO + "\n    other = rs.Module('other')\n    module = hello\n")
     assert run(capsys, "pkg.inner").startswith("Hello")
@@ -58,14 +58,14 @@ def test_a_module_by_a_dotted_path(folder: Path, capsys: Capture) -> None:
     assert load_module("pkg.inner:other").name == "other"
 
 
-def test_a_module_by_the_name_of_its_package_or_file_here(folder: Path, capsys: Capture) -> None:
+def test_a_module_is_found_by_the_name_of_its_package_or_file_here(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg" / "__init__.py", HELLO)
     write(folder / "single.py", HELLO)
     assert run(capsys, "pkg").startswith("Hello")
     assert run(capsys, "single").startswith("Hello")
 
 
-def test_a_module_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_module_is_found_by_its_entry_point(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(folder / "plugin.py", "import ravestate as rs\nweather = rs.Module('weather')\nbroken = 3")
     install(
         monkeypatch,
@@ -167,7 +167,7 @@ def test_a_wrong_declaration_is_a_fault_with_its_place(folder: Path, capsys: Cap
         assert refused(capsys, way, code=1).startswith("Module: 'two words' is not a name")
 
 
-def test_a_file_without_a_module(folder: Path, capsys: Capture) -> None:
+def test_a_file_without_a_module_is_refused(folder: Path, capsys: Capture) -> None:
     write(folder / "empty.py", "")
     write(folder / "two.py", "import ravestate as rs\na, b = rs.Module('a'), rs.Module('b')")
     assert "holds no rs.Module: write module = rs.Module('name')" in refused(capsys, "./empty.py")
@@ -326,7 +326,7 @@ def test_an_unreadable_agent_file_has_a_message(folder: Path, capsys: Capture) -
 # ---------------------------------------------------------------------------------------- settings
 
 
-def test_set_goes_before_the_environment_and_that_before_the_file(
+def test_set_overrides_the_environment_which_overrides_the_file(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(folder / "hello.py", HELLO)

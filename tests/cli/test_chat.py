@@ -32,7 +32,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, 
     return seen
 
 
-def test_it_runs_the_complete_agent(started: Any, capsys: Capture) -> None:
+def test_chat_runs_the_complete_agent(started: Any, capsys: Capture) -> None:
     assert call(capsys, "chat") == (0, "", "")
     ((names, options),) = started
     assert names == ["conio", *COMPLETE]
@@ -81,7 +81,7 @@ def test_the_help_names_the_file_of_the_memory(
     assert str(history_file()).startswith("/state/")
 
 
-def test_a_user_without_a_home_has_help(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_without_a_home_folder_gets_help(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     def homeless() -> Path:
         raise RuntimeError("Could not determine home directory.")
 
@@ -91,7 +91,7 @@ def test_a_user_without_a_home_has_help(capsys: Capture, monkeypatch: pytest.Mon
     assert call(capsys, "chat", "--help")[0] == 0
 
 
-def test_it_needs_no_module() -> None:
+def test_chat_needs_no_module() -> None:
     parser = argparse.ArgumentParser()
     chat.add_arguments(parser)
     assert parser.parse_args([]).modules == []
@@ -123,7 +123,7 @@ def test_output_that_cannot_be_written_is_a_failure() -> None:
     assert "ravestate chat: conio: the agent's words cannot be written: No space left on device\n" in run.stderr
 
 
-def test_it_answers_a_pipe_and_ends_with_it() -> None:
+def test_chat_answers_the_lines_of_a_pipe_and_ends_with_the_pipe() -> None:
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", "--without", "wildtalk"]
     run = subprocess.run(command, input="hello\nbye\n", capture_output=True, text=True, timeout=60, check=False)
     assert (run.returncode, complaints(run.stderr)) == (0, "")

@@ -41,7 +41,7 @@ def test_findings_are_printed_and_are_no_faults(folder: Path, capsys: Capture) -
     assert lines[-1].endswith("no faults, 3 findings")
 
 
-def test_examples_that_two_intents_share(folder: Path, capsys: Capture) -> None:
+def test_examples_that_two_intents_share_are_findings(folder: Path, capsys: Capture) -> None:
     write(
         folder / "shop.py",
         """
@@ -85,7 +85,9 @@ MISSPELT = """
         ('rawio.outptu] = "Hello!"', "rawio.output] = ctx.sleep(1)\n        ctx.sleep(1)", "await: rule greeter:greet"),
     ],
 )
-def test_findings_that_break_a_rule_give_1(right: str, wrong: str, finding: str, folder: Path, capsys: Capture) -> None:
+def test_findings_that_break_a_rule_give_exit_code_1(
+    right: str, wrong: str, finding: str, folder: Path, capsys: Capture
+) -> None:
     write(folder / "greeter.py", MISSPELT.replace(right, wrong))
     code, out, errors = call(capsys, "check", "./greeter.py")
     assert (code, errors) == (1, "")
@@ -97,7 +99,7 @@ def test_help_names_the_exit_code(capsys: Capture) -> None:
     assert "Exit code 1: the agent has faults" in call(capsys, "check", "--help")[1]
 
 
-def test_it_prints_every_fault_at_once(folder: Path, capsys: Capture) -> None:
+def test_check_prints_every_fault_at_once(folder: Path, capsys: Capture) -> None:
     write(
         folder / "faulty.py",
         """
@@ -147,7 +149,7 @@ def test_a_module_with_a_wrong_declaration_is_a_fault(folder: Path, capsys: Capt
     assert code == 1 and errors.startswith("fault: Module: '' is not a name")
 
 
-def test_wrong_use_is_2(capsys: Capture) -> None:
+def test_wrong_use_gives_exit_code_2(capsys: Capture) -> None:
     assert call(capsys, "check")[0] == 2
     assert call(capsys, "check", "hibie")[0] == 2
 

@@ -76,7 +76,7 @@ def test_an_unreadable_file_is_named_and_sets_the_exit_code(docs: Path, capsys: 
     assert "nowhere: it does not exist" in errors
 
 
-def test_interrupted_it_says_how_to_go_on(
+def test_an_interrupted_command_says_how_to_continue(
     docs: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read = collecting.read
@@ -106,7 +106,7 @@ def test_the_index_may_be_named(
     assert "engine.txt" in call(capsys, "genqa", "list")[1]
 
 
-def test_the_index_may_be_named_behind_the_action_too(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_index_may_also_be_named_after_the_action(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "index", "docs", "--index", "my.sqlite")
     assert (docs.parent / "my.sqlite").exists()
     before = call(capsys, "genqa", "--index", "my.sqlite", "list")
@@ -119,7 +119,7 @@ def test_the_index_may_be_named_behind_the_action_too(docs: Path, capsys: pytest
 @pytest.mark.parametrize(
     "action", [["list"], ["index", "docs"], ["forget", "docs"], ["ask", "What is the capital of Peru?"]]
 )
-def test_an_index_that_is_none_is_an_error_in_words(
+def test_a_file_that_is_no_index_is_an_error_with_a_message(
     docs: Path, capsys: pytest.CaptureFixture[str], action: list[str]
 ) -> None:
     (docs / "index.txt").write_text("This is a letter and no index of anything.", encoding="utf-8")
@@ -129,7 +129,7 @@ def test_an_index_that_is_none_is_an_error_in_words(
     assert "--index /path/to/index.sqlite" in errors
 
 
-def test_an_index_of_a_newer_version_is_an_error_in_words(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_index_of_a_newer_version_is_an_error_with_a_message(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "--index", "my.sqlite", "index", "docs")
     base = sqlite3.connect("my.sqlite")
     base.execute("PRAGMA user_version = 99")

@@ -54,7 +54,7 @@ def test_the_name_of_a_file_decides_its_format(
     assert (folder / name).read_text(encoding="utf-8").startswith(begins)
 
 
-def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: Capture) -> None:
+def test_a_given_format_overrides_the_name_of_the_file(hello: str, folder: Path, capsys: Capture) -> None:
     assert call(capsys, "graph", hello, "-o", "a.txt", "--format", "dot")[0] == 0
     assert (folder / "a.txt").read_text(encoding="utf-8").startswith("digraph")
 
@@ -74,7 +74,7 @@ def test_a_given_format_goes_before_the_name(hello: str, folder: Path, capsys: C
         (("--unfold", "hello", "--no-fold"), "and --no-fold folds no module: use only one of them"),
     ],
 )
-def test_wrong_use_is_2_and_writes_nothing(
+def test_wrong_use_gives_exit_code_2_and_writes_nothing(
     hello: str, folder: Path, capsys: Capture, arguments: tuple[str, ...], text: str
 ) -> None:
     code, out, errors = call(capsys, "graph", hello, *arguments)
@@ -89,7 +89,9 @@ def complete_agent() -> str:
     return svg(fold(build(policy.rules.values())))
 
 
-def test_without_modules_it_draws_the_agent_of_chat_folded_to_its_modules(complete_agent: str, capsys: Capture) -> None:
+def test_without_modules_graph_draws_the_agent_of_chat_folded_to_its_modules(
+    complete_agent: str, capsys: Capture
+) -> None:
     code, out, errors = call(capsys, "graph")
     assert (code, out) == (0, f"{complete_agent}\n")
     assert re.fullmatch(
@@ -110,7 +112,7 @@ def test_modules_can_be_left_out_of_the_complete_agent(capsys: Capture) -> None:
     assert "wildtalk" in out and "emotion" not in out
 
 
-def test_some_modules_can_be_unfolded_or_all(capsys: Capture) -> None:
+def test_some_or_all_modules_can_be_unfolded(capsys: Capture) -> None:
     code, out, errors = call(capsys, "graph", "--unfold", "hibye", "--format", "mermaid")
     assert (code, errors) == (0, "")
     assert '["hibye<br/>answer#95;hello' in out.replace("_", "#95;") and re.search(r"wildtalk<br/>\d+ rules", out)
@@ -134,7 +136,7 @@ def test_slots_that_no_rule_touches_are_left_out(folder: Path, capsys: Capture) 
     assert "hello:said" in out and "spare" not in out and "rawio" not in out
 
 
-def test_faults_are_1(folder: Path, capsys: Capture) -> None:
+def test_faults_give_exit_code_1(folder: Path, capsys: Capture) -> None:
     write(
         folder / "faulty.py",
         "import ravestate as rs\nmodule = rs.Module('m')\nmodule.signal('a')\nmodule.signal('a')\n",
@@ -143,7 +145,7 @@ def test_faults_are_1(folder: Path, capsys: Capture) -> None:
     assert code == 1 and "two signals are named 'm:a'" in errors
 
 
-def test_on_a_terminal_it_asks_for_a_file(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_terminal_graph_asks_for_a_file(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     code, out, errors = call(capsys, "graph", "rawio")
     assert (code, out) == (2, "") and "-o agent.svg" in errors

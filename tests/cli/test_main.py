@@ -43,12 +43,12 @@ def test_help_lists_the_built_in_modules_and_imports_none(arguments: tuple[str, 
     assert run.stdout.splitlines()[-1] == "[]"
 
 
-def test_it_prints_the_version(capsys: Capture) -> None:
+def test_the_command_prints_its_version(capsys: Capture) -> None:
     assert call(capsys, "--version") == (0, f"ravestate {rs.__version__} ({compiled.build()})\n", "")
 
 
 @pytest.mark.parametrize("arguments", [(), ("rnu",), ("run", "--nonsense", "idle"), ("run", "idle", "--seed", "x")])
-def test_wrong_use_is_2(arguments: tuple[str, ...], capsys: Capture) -> None:
+def test_wrong_use_gives_exit_code_2(arguments: tuple[str, ...], capsys: Capture) -> None:
     code, out, errors = call(capsys, *arguments)
     assert (code, out) == (2, "") and errors.startswith("usage: ravestate")
 
@@ -99,7 +99,7 @@ def test_verbosity_is_counted(flags: tuple[str, ...], capsys: Capture) -> None:
     assert call(capsys, *flags, "check", "rawio")[0] == 0
 
 
-def test_ctrl_c_is_130(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_gives_exit_code_130(monkeypatch: pytest.MonkeyPatch) -> None:
     from ravestate.cli import check
 
     def interrupted(options: object) -> int:
@@ -119,7 +119,7 @@ def test_a_pipe_that_closes_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None
     assert main(["check", "rawio"]) == 0
 
 
-def test_a_platform_error_is_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+def test_a_platform_error_gives_exit_code_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     from ravestate.cli import check
 
     def fails(options: object) -> int:
@@ -129,7 +129,7 @@ def test_a_platform_error_is_1(monkeypatch: pytest.MonkeyPatch, capsys: Capture)
     assert call(capsys, "check", "rawio") == (1, "", "ravestate check: the microphone is gone\n")
 
 
-def test_it_is_installed_as_a_command(folder: Path) -> None:
+def test_ravestate_is_installed_as_a_command(folder: Path) -> None:
     write(folder / "hello.py", HELLO)
     command = Path(sys.executable).parent / "ravestate"
     run = subprocess.run([command, "run", "./hello.py"], capture_output=True, text=True, timeout=60, check=False)

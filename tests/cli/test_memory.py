@@ -73,7 +73,7 @@ def test_a_person_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
     assert "  <- lives_in Person Ada" in call(capsys, "memory", "--path", str(file), "show", "London")[1]
 
 
-def test_a_name_that_nobody_or_several_have(file: Path, capsys: Capture) -> None:
+def test_a_name_of_no_node_or_of_several_nodes_is_refused(file: Path, capsys: Capture) -> None:
     code, _, errors = call(capsys, "memory", "--path", str(file), "show", "Londn")
     assert code == 2
     assert errors == "ravestate memory: no node is called 'Londn'; did you mean 'London'?\n"
@@ -95,7 +95,7 @@ def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Cap
     assert sorted(path.name for path in folder.iterdir()) == names
 
 
-def test_files_that_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
+def test_files_that_cannot_be_written_or_read_are_named(file: Path, folder: Path, capsys: Capture) -> None:
     before = sorted(folder.iterdir())
     code, _, errors = call(capsys, "memory", "--path", str(file), "export", "no/where.json")
     assert code == 2 and "cannot write no/where.json: No such file" in errors
@@ -171,7 +171,9 @@ def test_files_of_a_deleted_memory_are_named(file: Path, folder: Path, capsys: C
     assert f"to remove them, run ravestate memory reset --path {file.resolve()}" in errors
 
 
-def test_an_export_is_the_users_alone_whatever_was_left_before(file: Path, folder: Path, capsys: Capture) -> None:
+def test_only_the_user_may_read_an_export_even_in_place_of_an_older_file(
+    file: Path, folder: Path, capsys: Capture
+) -> None:
     left = folder / "all.json.new"
     left.touch()
     left.chmod(0o644)
@@ -179,7 +181,7 @@ def test_an_export_is_the_users_alone_whatever_was_left_before(file: Path, folde
     assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
 
 
-def test_reset_mends_a_broken_memory(file: Path, capsys: Capture) -> None:
+def test_reset_removes_a_broken_memory(file: Path, capsys: Capture) -> None:
     file.write_bytes(b"no database at all " * 300)
     code, _, errors = call(capsys, "memory", "--path", str(file), "list")
     assert code == 1 and f"ravestate memory reset --path {file.resolve()}" in errors
@@ -212,7 +214,7 @@ def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Cap
     assert "also has Boat, but no file declares these types" in errors
 
 
-def test_the_place_may_be_named_behind_the_action_too(file: Path, folder: Path, capsys: Capture) -> None:
+def test_the_place_may_also_be_named_after_the_action(file: Path, folder: Path, capsys: Capture) -> None:
     before = call(capsys, "memory", "--path", str(file), "list")
     assert before[0] == 0
     assert call(capsys, "memory", "list", "--path", str(file)) == before
@@ -242,7 +244,7 @@ def test_the_default_place_is_the_users(folder: Path, capsys: Capture, monkeypat
     assert (folder / "ravestate" / "rosie" / "memory.lbug").is_file()
 
 
-def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture) -> None:
+def test_a_file_that_an_agent_has_open_is_refused(file: Path, folder: Path, capsys: Capture) -> None:
     agent = write(folder / "hold.py", HOLD)
     with subprocess.Popen(
         [sys.executable, agent, file], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -258,7 +260,9 @@ def test_a_file_that_an_agent_has_open(file: Path, folder: Path, capsys: Capture
         process.stdin.close()
 
 
-def test_wrong_use_and_a_missing_package(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wrong_use_and_a_missing_package_have_messages(
+    file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert call(capsys, "memory")[0] == 2
     assert call(capsys, "memory", "lst")[0] == 2
     code, _, errors = call(capsys, "memory", "--set", "ontology.pth=x", "list")

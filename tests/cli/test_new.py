@@ -24,7 +24,7 @@ def activated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
 
 
-def test_a_project_whose_tests_pass(folder: Path, capsys: Capture) -> None:
+def test_the_tests_of_a_new_project_pass(folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "my-agent")
     assert (code, errors) == (0, "")
     made = folder / "my-agent"
@@ -112,7 +112,7 @@ def test_a_folder_that_cannot_be_written_has_a_message(folder: Path, capsys: Cap
 
 
 @pytest.mark.parametrize("name", ["class", "import"])
-def test_a_keyword_is_refused_as_one(name: str, folder: Path, capsys: Capture) -> None:
+def test_a_python_keyword_is_refused_with_this_reason(name: str, folder: Path, capsys: Capture) -> None:
     code, _, errors = call(capsys, "new", name)
     assert code == 2 and f"{name!r} is a Python keyword" in errors
     assert list(folder.iterdir()) == []

@@ -12,7 +12,7 @@ from cli.examples import call
 Capture = pytest.CaptureFixture[str]
 
 
-def test_a_table_for_people(capsys: Capture) -> None:
+def test_the_analysis_is_a_table_for_people(capsys: Capture) -> None:
     code, out, errors = call(capsys, "nlp", "Where do you live? I live in Berlin.")
     assert (code, errors) == (0, "")
     lines = out.splitlines()
@@ -35,19 +35,19 @@ def test_a_table_for_people(capsys: Capture) -> None:
     ("text", "shown"),
     [("yes", "yes, surely"), ("probably not", "no, weakly"), ("no idea", "unsure"), ("I swim", "-")],
 )
-def test_answers_in_words(text: str, shown: str, capsys: Capture) -> None:
+def test_answers_are_shown_in_words(text: str, shown: str, capsys: Capture) -> None:
     _, out, _ = call(capsys, "nlp", text)
     assert f"yes/no    {shown}\n" in out
 
 
-def test_the_normal_form_acts_and_feelings(capsys: Capture) -> None:
+def test_the_normal_form_acts_and_feelings_are_shown(capsys: Capture) -> None:
     _, out, _ = call(capsys, "nlp", "thx! my mother is ill")
     assert "normal    Thanks! My mother is ill.\n" in out
     assert "acts      thanks 0." in out or "acts      thanks 1." in out
     assert "illness" in out
 
 
-def test_the_scores_of_the_intents_of_a_module(capsys: Capture, tmp_path: Path) -> None:
+def test_the_scores_of_the_intents_of_a_module_are_shown(capsys: Capture, tmp_path: Path) -> None:
     file = tmp_path / "cafe.py"
     file.write_text(
         "import ravestate as rs\nfrom ravestate.modules import nlp\nmodule = rs.Module('cafe', requires=[nlp])\n"
@@ -68,7 +68,7 @@ def test_words_need_no_quotes(capsys: Capture) -> None:
     assert code == 0 and "(you, be, PERSON)" in out
 
 
-def test_lines_of_standard_input_as_json(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_line_of_standard_input_becomes_a_line_of_json(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO("Grüße aus Rom!\n\nwho wrote Hamlet\n"))
     code, out, errors = call(capsys, "nlp", "--json")
     assert (code, errors) == (0, "")
@@ -95,7 +95,7 @@ def test_an_unknown_pipeline_has_a_message(capsys: Capture) -> None:
     assert (code, out) == (1, "") and "there is no spaCy pipeline 'nonsense'" in errors
 
 
-def test_on_a_terminal_it_says_how_to_begin_and_end(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_terminal_nlp_says_how_to_begin_and_end(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
             return True

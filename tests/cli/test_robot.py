@@ -23,7 +23,7 @@ async def answer(ctx):
 """
 
 
-def test_it_opens_a_page_beside_that_of_webio_and_ends_in_order(tmp_path: Path) -> None:
+def test_the_robots_page_opens_beside_that_of_webio_and_ends_cleanly(tmp_path: Path) -> None:
     (tmp_path / "parrot.py").write_text(PARROT)
     line = [sys.executable, "-m", "ravestate", "robot", str(tmp_path / "parrot.py"), "webio", "--on", "bus"]
     line += ["--bus", "127.0.0.1:0", "--port", "0", "--set", "webio.port=0"]
@@ -39,6 +39,6 @@ def test_it_opens_a_page_beside_that_of_webio_and_ends_in_order(tmp_path: Path) 
     assert (process.returncode, errors) == (0, "")
 
 
-def test_an_unknown_robot_is_refused_in_words(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_robot_is_refused_with_a_message(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["robot", "--robot", "robby", "--on", "bus", "--bus", "127.0.0.1:0"]) == 1
     assert "did you mean 'roboy'" in capsys.readouterr().err

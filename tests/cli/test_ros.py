@@ -56,7 +56,7 @@ def bus() -> Iterator[str]:
 
 @pytest.fixture(autouse=True)
 def one_look(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The bus knows its nodes at once."""
+    """Look only once, because the bus knows its nodes at once."""
     monkeypatch.setattr("ravestate.cli.ros.LOOKS", 1)
     monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 1)
 
@@ -65,7 +65,7 @@ def ros(bus: str, *arguments: str) -> int:
     return main(["ros", *arguments, "--set", "ros2.backend=bus", "--set", f"ros2.bus={bus}"])
 
 
-def test_check_says_what_is_bound_and_how_to_mend_it(
+def test_check_says_what_is_bound_and_how_to_fix_it(
     bus: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "agent.py").write_text(AGENT)
@@ -91,7 +91,7 @@ def test_check_looks_for_each_part_of_a_robot(bus: str, capsys: pytest.CaptureFi
     assert "roboyio:speak      publisher of /speech/say (std_msgs/String): no subscribers" in lines[3]
 
 
-def test_topics_lists_what_there_is(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_topics_lists_topics_and_services(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert ros(bus, "topics", "--version", "2") == 0
     assert capsys.readouterr().out.splitlines() == [
         "topic    /chat  std_msgs/msg/String  1 publisher, 0 subscribers",

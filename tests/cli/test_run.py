@@ -10,13 +10,13 @@ import pytest
 from cli.examples import HELLO, call, complaints, write
 
 
-def test_it_runs_to_its_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_agent_runs_to_its_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(folder / "hello.py", HELLO)
     code, out, _ = call(capsys, "run", "./hello.py")
     assert code == 0 and out.startswith("Hello")
 
 
-def test_faults_are_1_and_all_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_faults_give_exit_code_1_and_are_all_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(
         folder / "faulty.py",
         """
@@ -34,7 +34,7 @@ def test_faults_are_1_and_all_printed(folder: Path, capsys: pytest.CaptureFixtur
     assert "weight=0.0 must be above 0" in errors and "can never be at least 9 s" in errors
 
 
-def test_ctrl_c_ends_it_in_order(folder: Path) -> None:
+def test_ctrl_c_ends_the_agent_cleanly(folder: Path) -> None:
     write(
         folder / "waits.py",
         """

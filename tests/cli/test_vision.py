@@ -40,7 +40,7 @@ def test_the_commands_who_learn_and_forget(tmp_path: Path, capsys: pytest.Captur
     assert [name for name, _, _ in rows(out)] == ["Barack", *["unknown"] * 7]
     assert [float(distance) <= 0.45 for _, distance, _ in rows(out)] == [True, *[False] * 7]
     code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")))
-    assert (code, out) == (0, "learnt 0 views of Barack\n")  # it tells nothing new
+    assert (code, out) == (0, "learnt 0 views of Barack\n")  # the picture tells nothing new
     code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))  # two names for one face
     assert code == 1 and "memory knows this face as Barack" in errors and "memory forget" in errors
     code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
@@ -79,7 +79,7 @@ def test_check_names_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str
     assert code == 0 and "finds and recognises faces" in out and "/dev/video9" in out
 
 
-def test_a_missing_part_is_named_with_the_mend(
+def test_a_missing_part_is_named_with_the_remedy(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(places.sys, "prefix", str(tmp_path / "env"))

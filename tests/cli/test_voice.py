@@ -60,7 +60,7 @@ def test_transcribe_prints_a_line_for_each_file(folder: Path, capsys: pytest.Cap
     assert "might even have been made" in first and second == ""
 
 
-def test_a_file_that_cannot_be_read_does_not_cost_the_others(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_cannot_be_read_does_not_stop_the_others(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "bad.wav").write_bytes(b"no sound")
     good = wav(folder / "good.wav", track((0.3, "What time is it?"), length=2.0))
     code, out, errors = call(capsys, "voice", "transcribe", "bad.wav", "none.wav", str(good), *TINY)
@@ -112,7 +112,7 @@ def test_a_recording_is_never_overwritten(folder: Path, capsys: pytest.CaptureFi
     assert code == 2 and "would be overwritten" in errors and file.read_bytes() == before
 
 
-def test_files_of_another_kind_are_refused_with_the_mend(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_of_another_kind_are_refused_with_the_remedy(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wav(folder / "rec.sound", noise(0.1, 500))
     code, _, errors = call(capsys, "voice", "talk", "rec.sound", "-o", "out.wav", "rawio")
     assert code == 2 and "rec.sound: name a recording that ends in .wav" in errors
@@ -132,7 +132,7 @@ def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFix
     assert out.splitlines()[-1].endswith("You said something about the weather today.")
 
 
-def test_ctrl_c_ends_a_conversation_in_order(folder: Path) -> None:
+def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
     """A thread that waits for input stops the virtual clock. Otherwise the clock would reach the end before the
     signal."""
     (folder / "slow.py").write_text(

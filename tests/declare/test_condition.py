@@ -55,7 +55,7 @@ def test_chaining_makes_new_constraints_and_leaves_the_old_ones() -> None:
     assert twice.predicates == (cheerful, bool)
 
 
-def test_slot_predicates_are_conditions() -> None:
+def test_a_slot_predicate_can_be_part_of_a_condition() -> None:
     holds = mood.holds(cheerful)
     assert isinstance(holds, Holds) and holds.slot is mood
     assert (a & holds).parts == (a, holds)
@@ -83,7 +83,7 @@ def test_only_conditions_can_be_combined(other: object) -> None:
         _ = a | other
 
 
-def test_a_slot_beside_a_condition_gets_a_hint_at_its_signal() -> None:
+def test_the_message_about_a_slot_beside_a_condition_names_its_signal() -> None:
     with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write & mood\.changed"):
         _ = a & mood
     with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write \| mood\.changed"):
@@ -93,7 +93,7 @@ def test_a_slot_beside_a_condition_gets_a_hint_at_its_signal() -> None:
 
 
 @pytest.mark.parametrize("age", ["2", None, True, object()])
-def test_ages_are_numbers_or_settings(age: object) -> None:
+def test_an_age_that_is_no_number_and_no_setting_is_refused(age: object) -> None:
     with pytest.raises(rs.DeclarationError, match=r"min_age\(.*\): expected seconds as a number, or a setting"):
         a.min_age(age)
     if age is not None:
@@ -101,7 +101,7 @@ def test_ages_are_numbers_or_settings(age: object) -> None:
             a.max_age(age)
 
 
-def test_predicates_are_functions() -> None:
+def test_a_predicate_that_is_no_function_is_refused() -> None:
     with pytest.raises(rs.DeclarationError, match=r"demo:a\.where\('yes'\): expected a function of the payload"):
         a.where("yes")
     with pytest.raises(rs.DeclarationError, match=r"demo:mood\.holds\('calm'\): expected a function of the value"):
@@ -172,7 +172,7 @@ def test_every_plain_callable_is_a_predicate(predicate: object) -> None:
     assert mood.holds(predicate).predicate == predicate
 
 
-def test_a_condition_of_any_depth_can_be_read() -> None:
+def test_a_condition_of_any_depth_can_be_printed() -> None:
     condition: rs.Condition = a
     for _ in range(3000):
         condition = AllOf((b, AnyOf((condition, c))))

@@ -61,7 +61,7 @@ def test_a_rule_takes_one_or_many_slots_and_signals(demo: rs.Module) -> None:
     assert (rule.reads, rule.writes, rule.emits) == ((a,), (a, b), (x,))
 
 
-def test_a_rule_may_have_another_name(demo: rs.Module) -> None:
+def test_a_rule_may_have_another_name_than_its_function(demo: rs.Module) -> None:
     go = demo.signal("go")
     assert demo.rule(when=go)(do).name == "demo:do"
     assert demo.rule(when=go, name="other")(do).name == "demo:other"
@@ -99,7 +99,7 @@ def test_a_python_module_without_a_module_or_with_two_is_refused(demo: rs.Module
     refused("expected an rs.Module (or a Python module that holds one), not 'demo'", lambda: as_module("demo"))
 
 
-def test_wrong_requirements_name_the_module_that_requires_them() -> None:
+def test_the_message_about_a_wrong_requirement_names_the_module_that_requires_it() -> None:
     message = refused("not 'rawio'", lambda: rs.Module("user", requires="rawio"))
     assert re.match(rf"module user \({HERE}:\d+\): requires: expected an rs.Module", message)
     refused("requires: expected an rs.Module", lambda: rs.Module("user", requires=[None]))
@@ -109,7 +109,7 @@ def test_wrong_requirements_name_the_module_that_requires_them() -> None:
 
 
 @pytest.mark.parametrize("name", ["", "two words", "a:b", "1st", "a.b", None, 3])
-def test_names_are_words(name: Any, demo: rs.Module) -> None:
+def test_a_name_that_is_no_identifier_is_refused(name: Any, demo: rs.Module) -> None:
     for declare in (
         lambda: rs.Module(name),
         lambda: demo.signal(name),
@@ -121,12 +121,12 @@ def test_names_are_words(name: Any, demo: rs.Module) -> None:
 
 
 @pytest.mark.parametrize("name", ["a", "my-agent", "_x1", "gefühl"])
-def test_words_are_names(name: str) -> None:
+def test_identifiers_with_or_without_hyphens_are_names(name: str) -> None:
     assert rs.Module(name).signal(name).name == f"{name}:{name}"
 
 
 @pytest.mark.parametrize("settings", [Options(), {"late": 1}, dict, "Options"])
-def test_settings_are_a_class_derived_from_settings(settings: Any) -> None:
+def test_settings_that_are_no_settings_class_are_refused(settings: Any) -> None:
     refused("write class Settings(rs.Settings): ...", lambda: rs.Module("m", settings=settings))
     assert rs.Module("m", settings=Options).settings is Options
 
@@ -190,7 +190,7 @@ def test_a_rule_needs_a_condition(when: Any, demo: rs.Module) -> None:
         refused(f"until={when!r} is not a condition", lambda: demo.rule(when=demo.signal("go"), until=when)(do))
 
 
-def test_a_slot_as_condition_gets_a_hint_at_its_signal(demo: rs.Module) -> None:
+def test_the_message_about_a_slot_as_condition_names_its_signal(demo: rs.Module) -> None:
     mood = demo.slot("mood")
     refused(
         "when=demo:mood is a slot: write when=mood.changed",
@@ -204,7 +204,7 @@ def test_a_slot_as_condition_gets_a_hint_at_its_signal(demo: rs.Module) -> None:
 
 @pytest.mark.parametrize("what", ["weight", "cooldown", "patience", "timeout"])
 @pytest.mark.parametrize("number", ["2", True, [1]])
-def test_numbers_are_numbers(what: str, number: Any, demo: rs.Module) -> None:
+def test_a_value_that_is_no_number_is_refused(what: str, number: Any, demo: rs.Module) -> None:
     options: dict[str, Any] = {what: number}
     refused(
         f"{what}={number!r} is not a number; write {what}=1.0 or a setting",
@@ -244,7 +244,7 @@ def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) ->
         ("has no argument 'setings'; did you mean 'settings'?", lambda m: rs.Module("x", setings=None)),
     ],
 )
-def test_a_misspelt_keyword_gets_a_hint(refusal: str, declare: Any, demo: rs.Module) -> None:
+def test_the_message_about_a_misspelt_keyword_names_the_nearest(refusal: str, declare: Any, demo: rs.Module) -> None:
     assert re.search(rf"\({HERE}:\d+\)", refused(refusal, lambda: declare(demo)))
     assert demo.rules == demo.slots == []
 

@@ -1,4 +1,4 @@
-"""A rule is still its function."""
+"""A rule acts like its function: calls, name, docstring and repr."""
 
 import asyncio
 import inspect

@@ -32,14 +32,14 @@ def test_the_signals_have_the_options_of_the_slot() -> None:
     assert changed.origin == mood.origin and mood.origin.rsplit(":", 1)[0] == __file__
 
 
-def test_defaults() -> None:
+def test_the_value_of_a_slot_before_the_first_write_is_its_default() -> None:
     assert (mood.default, lit.default, people.default) == ("calm", False, NOTHING)
     assert demo.slot("nothing").default is None
     assert demo.slot("typed", type=int).default is None
 
 
 class Text(str):
-    """A kind of text."""
+    """A subclass of `str`."""
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,9 @@ def test_unknown_types_are_not_checked(kind: Any) -> None:
         (mood, "hold", "did you mean 'holds'?"),
     ],
 )
-def test_a_misspelt_signal_of_a_slot_gets_a_hint(slot: rs.Slot[object], attribute: str, text: str) -> None:
+def test_the_message_about_a_misspelt_signal_of_a_slot_names_the_nearest(
+    slot: rs.Slot[object], attribute: str, text: str
+) -> None:
     with pytest.raises(AttributeError, match=text.replace("?", r"\?")):
         getattr(slot, attribute)
 

@@ -20,7 +20,7 @@ def test_names_are_spelt_as_code(name: str, home: str, typed: str) -> None:
     assert spelt(name, home) == typed
 
 
-def test_the_place_is_the_line_of_the_designer() -> None:
+def test_the_place_of_a_call_is_in_the_designers_file() -> None:
     go = rs.Module("m").signal("go")
     assert place_of_call().startswith(f"{__file__}:")
     with pytest.raises(rs.DeclarationError, match=f"{__file__}:"):
@@ -41,6 +41,6 @@ def test_a_long_value_is_cut() -> None:
 
 
 def test_a_slot_refuses_a_value_without_a_repr() -> None:
-    """In the past, the message failed if the value's own code failed."""
+    """A `repr` that raises must not replace the message."""
     with pytest.raises(rs.RuleError, match="the rule wrote <Shy without a repr> to m:mood, which takes str"):
         rs.Module("m").slot("mood", "", type=str).check(Shy(), "the rule")

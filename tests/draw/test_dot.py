@@ -33,7 +33,7 @@ def test_each_kind_looks_different() -> None:
     assert len(looks) == len(kinds)
 
 
-def test_a_loop_as_text() -> None:
+def test_a_loop_has_its_lines_and_labels() -> None:
     text = dot(build(prompting().rules))
     assert 'digraph "Signal-Rule-Slot diagram" {' in text
     assert "style=dotted, penwidth=2, arrowhead=empty" in text

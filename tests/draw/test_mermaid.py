@@ -33,7 +33,7 @@ def test_kinds_without_their_own_arrow_have_words() -> None:
     assert '  n0 -.->|"reads"| n1' in text and "  n1 ==> n0" in text
 
 
-def test_the_worked_example_as_text() -> None:
+def test_the_worked_example_has_its_lines() -> None:
     text = mermaid(build(games().rules))
     assert '(["demo<br/>input:changed"]):::srs-signal' in text
     assert '[["demo<br/>output"]]:::srs-slot' in text

@@ -11,8 +11,8 @@ from typing import Any
 from ravestate import modules
 from ravestate.cli.complete import COMPLETE
 from ravestate.engine.trace import Born, Set, Started
+from ravestate.language.chat import Message, Progress
 from ravestate.modules import rawio, wildtalk
-from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.testing import simulate
 
 WORDS = "Hm, that is small talk."

@@ -73,7 +73,7 @@ async def test_axe_finds_nothing_serious_in_any_state_of_the_page(
 
 
 @on_stage
-async def test_axe_finds_nothing_serious_where_a_token_is_asked_for(stage: Stage) -> None:
+async def test_axe_finds_nothing_serious_on_a_page_that_asks_for_a_token(stage: Stage) -> None:
     async with (
         stage.serve(host, token="open sesame, please") as served,
         stage.open(served.address) as page,
@@ -83,7 +83,7 @@ async def test_axe_finds_nothing_serious_where_a_token_is_asked_for(stage: Stage
 
 
 @on_stage
-async def test_the_page_loads_little_and_nothing_from_elsewhere(stage: Stage) -> None:
+async def test_the_page_loads_little_and_only_from_its_own_server(stage: Stage) -> None:
     async with stage.serve(host) as served, stage.open(served.address) as page:
         await expect(page.get_by_text("Good evening.")).to_be_visible()
         loaded = await page.evaluate("performance.getEntriesByType('resource').map((entry) => entry.name)")

@@ -137,7 +137,7 @@ async def painted(page: Page, rule: str) -> set[str]:
 
 
 async def passing(page: Page, seconds: float) -> None:
-    """Wait until the agent's clock, as the page shows it, has moved on by so many seconds."""
+    """Wait until the agent's clock on the page has moved on by some seconds."""
     await page.evaluate(
         """seconds => new Promise(resolve => {
             const until = window.raveboard.now() + seconds;
@@ -226,7 +226,7 @@ async def test_the_rule_panel_shows_the_parts_of_the_utility(stage: Stage) -> No
 
 
 @on_stage
-async def test_the_clock_pauses_steps_and_goes_on_while_the_view_is_another_thing(stage: Stage) -> None:
+async def test_the_clock_pauses_steps_and_continues_independently_of_the_view(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("button", name="Pause", exact=True).click()
         await expect(page.locator(".status")).to_have_text("paused")

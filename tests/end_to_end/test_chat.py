@@ -40,7 +40,7 @@ def spoken(text: str) -> tuple[str, str]:
 
 
 @on_stage
-async def test_a_conversation(stage: Stage) -> None:
+async def test_a_visitor_talks_with_the_agent(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await expect(page).to_have_title("Elske")
         await said(page, "Good evening.")
@@ -51,7 +51,7 @@ async def test_a_conversation(stage: Stage) -> None:
 
 
 @on_stage
-async def test_the_agent_knows_that_one_is_writing_but_not_from_each_key(stage: Stage) -> None:
+async def test_the_agent_learns_that_the_visitor_is_writing_but_not_of_each_key(stage: Stage) -> None:
     async with stage.serve(host, watcher, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         text = "It is quiet here, and yet I hear the raven."
@@ -63,7 +63,7 @@ async def test_the_agent_knows_that_one_is_writing_but_not_from_each_key(stage: 
 
 
 @on_stage
-async def test_the_page_is_called_as_the_agent_is(stage: Stage) -> None:
+async def test_the_page_shows_the_agents_name(stage: Stage) -> None:
     async with stage.serve(host, namesake) as served, stage.open(served.address) as page:
         await expect(page).to_have_title("Ravestate")
         await say(page, "I call you Robin")
@@ -75,7 +75,7 @@ async def test_the_page_is_called_as_the_agent_is(stage: Stage) -> None:
 
 
 @on_stage
-async def test_it_is_seen_thinking_and_then_speaking(stage: Stage) -> None:
+async def test_the_page_shows_that_the_agent_thinks_and_then_speaks(stage: Stage) -> None:
     Cue.thought, Cue.told = asyncio.Event(), asyncio.Event()
     async with stage.serve(host, storyteller, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
@@ -91,7 +91,7 @@ async def test_it_is_seen_thinking_and_then_speaking(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_reload_in_the_middle(stage: Stage) -> None:
+async def test_a_reload_in_the_middle_of_an_utterance_loses_nothing(stage: Stage) -> None:
     Cue.thought, Cue.told = asyncio.Event(), asyncio.Event()
     async with stage.serve(host, storyteller, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
@@ -109,7 +109,7 @@ async def test_a_reload_in_the_middle(stage: Stage) -> None:
 
 
 @on_stage
-async def test_two_users_are_apart(stage: Stage) -> None:
+async def test_two_visitors_have_separate_conversations(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as served,
         stage.open(served.address) as ada,
@@ -193,7 +193,7 @@ async def test_a_script_is_shown_and_not_run(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_script_that_got_in_would_not_run(stage: Stage) -> None:
+async def test_the_page_runs_no_injected_script(stage: Stage) -> None:
     async with stage.serve(host) as served, stage.open(served.address, complaints=True) as page:
         await page.evaluate(
             "() => { const s = document.createElement('script'); s.textContent = 'window.hacked = 1';"
@@ -252,7 +252,7 @@ async def test_on_a_phone_fingers_find_everything(stage: Stage) -> None:
 
 
 @on_stage
-async def test_the_first_screen_offers_three_things_to_say(stage: Stage) -> None:
+async def test_the_page_first_suggests_three_things_to_say(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         offered = page.get_by_role("list", name="Things to say").get_by_role("button")
         await expect(offered).to_have_text(["Hello!", "Who are you?", "What can you do?"])
@@ -398,7 +398,7 @@ async def test_on_a_phone_the_agents_name_is_not_cut(stage: Stage) -> None:
 
 
 @on_stage
-async def test_on_a_phone_what_is_being_written_fits_too(stage: Stage) -> None:
+async def test_on_a_phone_a_long_unsent_text_fits(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         await said(page, "Good evening.")
         await page.get_by_label("What you say to Elske").fill("https://museum.example/" + "w" * 300)
@@ -422,7 +422,7 @@ async def test_a_text_that_is_too_long_is_not_cut(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_text_that_is_not_taken_is_not_sent_for_ever(stage: Stage) -> None:
+async def test_a_refused_text_is_not_sent_again_and_again(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as served,
         stage.open(served.address, complaints=True) as page,
@@ -460,7 +460,7 @@ async def test_two_windows_of_one_conversation_show_the_same(stage: Stage) -> No
 
 
 @on_stage
-async def test_with_the_keyboard_alone(stage: Stage) -> None:
+async def test_the_page_works_with_the_keyboard_alone(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         keys = page.keyboard
@@ -512,7 +512,7 @@ async def test_the_page_does_not_scroll_while_the_visitor_reads_further_up(stage
 
 
 @on_stage
-async def test_however_long_it_grows_only_the_log_scrolls_and_its_end_is_seen(stage: Stage) -> None:
+async def test_in_a_long_conversation_only_the_log_scrolls_and_its_end_shows(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         await said(page, "Good evening.")
         for number in range(12):
@@ -529,7 +529,7 @@ async def test_however_long_it_grows_only_the_log_scrolls_and_its_end_is_seen(st
 
 
 @on_stage
-async def test_a_link_with_the_token_lets_in_and_does_not_show_it(stage: Stage) -> None:
+async def test_a_link_with_the_token_opens_the_page_and_hides_the_token(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske", token=TOKEN) as served,
         stage.open(f"{served.address}#token={TOKEN.replace(' ', '%20')}") as page,
@@ -541,7 +541,7 @@ async def test_a_link_with_the_token_lets_in_and_does_not_show_it(stage: Stage) 
 
 
 @on_stage
-async def test_without_the_token_it_is_asked_for(stage: Stage) -> None:
+async def test_without_a_token_the_page_asks_for_it(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske", token=TOKEN) as served,
         stage.open(served.address) as page,

@@ -76,7 +76,7 @@ class Reader:
         return said
 
     def end(self) -> None:
-        """Press Ctrl-C: everything ends in order."""
+        """Press Ctrl-C, and check that everything ends cleanly."""
         while self._running:
             process = self._running.pop()
             process.send_signal(signal.SIGINT)

@@ -20,7 +20,7 @@ def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path, backend: st
         assert (answer.module, "Lima" in answer.text) == ("genqa", True)
 
 
-def test_example_2_an_answer_is_asked_for_stored_and_known_after_a_restart(tmp_path: Path) -> None:
+def test_example_2_the_agent_asks_stores_the_answer_and_knows_it_after_a_restart(tmp_path: Path) -> None:
     with Conversation(tmp_path, {"persqa": {"topics": ["home"], "turns": 0}}) as talk:
         assert spoken_by(talk.say("what is your favorite animal")) in (["genqa"], ["agentqa"])
         asked = [line.text for line in talk.silence(60.0) if line.module == "persqa"]
@@ -66,7 +66,7 @@ def test_every_utterance_gets_exactly_one_answer(tmp_path: Path) -> None:
             assert len(talk.say(text, 1.0)) == 1, text
 
 
-def test_nothing_odd_stops_the_talk(tmp_path: Path) -> None:
+def test_odd_inputs_do_not_stop_the_talk(tmp_path: Path) -> None:
     odd = (
         "x" * 100_000,
         "🦊🦊🦊",

@@ -97,6 +97,6 @@ async def test_a_question_by_voice_its_answer_and_an_interruption(stage: Stage, 
         await point(board, "user speaks", "speech of")
         await point(board, "user speaks", "end of turn")
         await point(board, "user speaks", "the user interrupts")
-        await point(board, "agent speaks", "heard by the user, and no more")
+        await point(board, "agent speaks", "heard by the user; the rest was cut off")
         await board.mouse.move(0, 0)
         await board.screenshot(path=Path(os.environ.get("PICTURES", tmp_path)) / "board-voice.png")

@@ -55,7 +55,7 @@ def line_of(served: Host) -> Any:
 
 
 @on_stage
-async def test_a_spoken_conversation(stage: Stage, tmp_path: Path) -> None:
+async def test_a_visitor_talks_with_the_agent_by_voice(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0)) as browser,
         stage.serve(ears, story, title="Elske") as served,
@@ -65,7 +65,7 @@ async def test_a_spoken_conversation(stage: Stage, tmp_path: Path) -> None:
         await expect(bar(page)).to_contain_text("seconds so far")
         await expect(lines(page)).to_have_text(["You: a sound", f"Elske: {ANSWER}"])
         await expect(bar(page)).to_contain_text("Elske is speaking.")
-        await expect(bar(page)).to_contain_text("The microphone is on.")  # it has spoken to the end
+        await expect(bar(page)).to_contain_text("The microphone is on.")  # the agent has spoken to the end
         (session,) = served.sessions
         assert session.context.read(rawio.heard) == ANSWER
         assert session.line.played == pytest.approx(len(ANSWER.split()) * WORD)
@@ -104,7 +104,9 @@ async def test_push_to_talk_by_pointer_and_by_key(stage: Stage, tmp_path: Path) 
         button = page.get_by_role("button", name="Talk with Elske")
         await button.hover()
         await page.mouse.down()
-        await expect(bar(page)).to_contain_text(re.compile(r"(0\.[6-9]|[1-9]\.\d) seconds so far"))  # no short press
+        await expect(bar(page)).to_contain_text(
+            re.compile(r"(0\.[6-9]|[1-9]\.\d) seconds so far")
+        )  # so this was no short press
         await page.mouse.up()
         await expect(lines(page).nth(0)).to_have_text("You: a sound")  # though the voice goes on
         await expect(page.get_by_role("button", name="Hold to talk")).to_have_attribute("aria-pressed", "false")
@@ -188,7 +190,7 @@ async def test_the_window_that_turns_its_microphone_on_takes_it_from_the_other(s
 
 
 @on_stage
-async def test_in_the_widget_on_another_site_one_can_speak_too(stage: Stage, tmp_path: Path) -> None:
+async def test_a_visitor_can_speak_in_the_widget_on_another_site(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0)) as browser,
         Museum().serve() as museum,
@@ -222,7 +224,7 @@ async def test_the_visitor_refuses_the_microphone(stage: Stage) -> None:
 
 
 @on_stage
-async def test_there_is_no_microphone(stage: Stage) -> None:
+async def test_without_a_microphone_the_page_says_what_to_do(stage: Stage) -> None:
     async with stage.serve(ears, story) as served, stage.open(served.address, permissions=["microphone"]) as page:
         await page.get_by_role("button", name="Talk with").click()
         await expect(page.get_by_role("alert")).to_contain_text("There is no microphone. Connect one")

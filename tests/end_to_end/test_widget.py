@@ -45,7 +45,7 @@ class Museum:
 
 
 @on_stage
-async def test_it_opens_the_chat_on_another_site_and_closes_it(stage: Stage) -> None:
+async def test_the_widget_opens_and_closes_the_chat_on_another_site(stage: Stage) -> None:
     async with (
         Museum().serve() as museum,
         stage.serve(host, title="Elske", origins=(museum.origin,)) as served,
@@ -72,7 +72,7 @@ async def test_it_opens_the_chat_on_another_site_and_closes_it(stage: Stage) -> 
 
 
 @on_stage
-async def test_on_another_site_too_the_agent_knows_that_one_is_writing(stage: Stage) -> None:
+async def test_on_another_site_the_agent_learns_that_the_visitor_is_writing(stage: Stage) -> None:
     async with (
         Museum().serve() as museum,
         stage.serve(watcher, title="Elske", origins=(museum.origin,)) as served,
@@ -86,7 +86,7 @@ async def test_on_another_site_too_the_agent_knows_that_one_is_writing(stage: St
 
 
 @on_stage
-async def test_on_a_phone_it_takes_the_whole_screen(stage: Stage) -> None:
+async def test_on_a_phone_the_widget_takes_the_whole_screen(stage: Stage) -> None:
     async with (
         Museum().serve() as museum,
         stage.serve(host, title="Elske", origins=(museum.origin,)) as served,
@@ -101,7 +101,7 @@ async def test_on_a_phone_it_takes_the_whole_screen(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_site_that_is_not_named_may_not_embed_it_and_is_told_why(
+async def test_a_site_without_permission_may_not_embed_the_chat_and_learns_why(
     stage: Stage, caplog: pytest.LogCaptureFixture
 ) -> None:
     async with Museum().serve() as museum, stage.serve(host, title="Elske") as served:

@@ -1,7 +1,8 @@
 """Workloads whose cost must grow as fast as their size, and the number of steps of the engine that each one takes.
 
-A step is a line of the engine, or a member in a list of a causal group's members: one line makes the whole list. Both can
-be counted in pure Python only, so ``test_growth.py`` runs this file in a process of its own.
+A step is a line of the engine that runs. A list of a causal group's members counts one step for each member, because a
+single line makes the whole list. Steps can be counted in pure Python only, so ``test_growth.py`` runs this file in a
+process of its own.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def independent_writers(size: int) -> Work:
 
 
 def fallbacks(size: int, *, cooldown: float = 0.0, guarded: bool = False) -> Work:
-    """Make fallbacks that wait for a topic; two inputs come so soon after each other that the first answer recovers."""
+    """Make fallbacks that wait for a topic; at the second input, the rule of the first answer still recovers."""
     m = rs.Module("m")
     heard, out, calm = m.signal("heard"), m.slot("out", ""), m.flag("calm", default=True)
     declared(m, "topic", when=heard & m.signal("topic"), writes=out)

@@ -1,4 +1,4 @@
-"""Benches: first spikes of a sole writer share a counterpart, and all happens as if each had an activation."""
+"""Benches: first spikes of a sole writer share a counterpart, and the runs are the same as without benches."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def at_rest(engine: Engine) -> bool:
 
 
 def burst(signal: str, count: int, first: int = 0) -> list[Event]:
-    """Return events that emit a signal."""
+    """Return `count` events that emit a signal; the payloads are the numbers from `first` on."""
     return [Emit(signal, n) for n in range(first, first + count)]
 
 
 @pytest.mark.parametrize("together", [True, False])
-def test_the_oldest_spikes_meet(together: bool) -> None:
+def test_the_oldest_spikes_become_a_pair(together: bool) -> None:
     engine = writer()
     given = [*burst("m:a", 5), *burst("m:b", 5)]
     found = runs(engine, *given) if together else [run for event in given for run in runs(engine, event)]
@@ -42,7 +42,7 @@ def test_the_oldest_spikes_meet(together: bool) -> None:
     assert at_rest(engine)
 
 
-def test_a_counterpart_of_many_makes_one_activation() -> None:
+def test_a_counterpart_of_many_spikes_makes_one_activation() -> None:
     engine = writer()
     runs(engine, *burst("m:a", 20), Emit("m:b", 0), end=False)
     assert activations(engine) == 1

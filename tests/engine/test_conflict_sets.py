@@ -1,4 +1,4 @@
-"""Conflict sets: with and without a trace the same happens."""
+"""Conflict sets: the same rules run with and without a trace."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Explanations are as exact in a crowd as for two rules: until when a rule waits, and by how much it is behind."""
+"""Explanations are exact among many rules, too: the end of a wait, and the lead of a rival."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def alive(engine: Engine, rule: str) -> ActivationState:
     return activation
 
 
-def test_the_end_of_a_wait_outlives_the_best_of_the_rivals() -> None:
+def test_a_wait_keeps_its_end_when_the_best_rival_resigns() -> None:
     m = rs.Module("m")
     heard, out = m.signal("heard"), m.slot("out", "")
     topics = [m.signal(f"topic{n}") for n in range(4)]

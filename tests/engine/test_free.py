@@ -1,4 +1,5 @@
-"""Activations that need no consent leave their queue in the order of their newest spikes, in whatever order they joined."""
+"""Activations that need no consent leave their queue in the order of their newest spikes, not in the order of
+joining."""
 
 from __future__ import annotations
 

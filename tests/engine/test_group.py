@@ -1,4 +1,4 @@
-"""Causal groups, and the empty table that stands in for those that are made on first use."""
+"""Causal groups, and the shared empty table that stands for a table without entries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ten times the work costs ten times the steps: nothing in the engine is quadratic where the laws allow."""
+"""Ten times the work costs about ten times the steps: no part of the engine is quadratic unless a law demands it."""
 
 from __future__ import annotations
 

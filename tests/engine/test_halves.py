@@ -1,4 +1,4 @@
-"""Halves: a first spike costs no activation, and all happens as if it did."""
+"""Halves: a first spike costs no activation, and the runs are the same as if it had one."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_a_first_spike_makes_no_activation_and_counts_as_activity() -> None:
 
 
 @pytest.mark.parametrize("together", [True, False])
-def test_the_oldest_spikes_meet(together: bool) -> None:
+def test_the_oldest_spikes_become_a_pair(together: bool) -> None:
     engine = pair()
     firsts: list[Event] = [Emit("m:a", n) for n in range(3)]
     seconds: list[Event] = [Emit("m:b", n) for n in range(3)]
@@ -91,7 +91,7 @@ def test_a_pair_is_one_activation_however_many_spikes_wait() -> None:
     assert activations(engine) == 1
 
 
-def test_the_next_in_line_steps_in_for_a_wiped_spike() -> None:
+def test_the_next_spike_takes_the_place_of_a_wiped_one() -> None:
     m = rs.Module("m")
     a, b, root = m.signal("a"), m.signal("b"), m.signal("root")
     declared(m, "raises", when=root, emits=a)
@@ -116,7 +116,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     assert activations(engine) == 1
     engine.receive(Emit("m:topic7", None, classifier.run), 0.0)
     assert activations(engine) == 2
-    # The classifier may yet raise the topic of a rule that was declared before.
+    # The classifier may yet raise the topic of a rule that was declared earlier, so this rule waits.
     assert not runs(engine, end=False)
     [run] = runs(engine, Finish(classifier.run, "done"))
     assert run.rule.name == "m:about7"
@@ -124,7 +124,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     assert not engine.state.halves
 
 
-def test_a_rival_in_a_half_is_kept_waiting_for_with_patience() -> None:
+def test_a_rule_waits_with_patience_for_a_rival_in_a_half() -> None:
     m = rs.Module("m")
     speech, point, out = m.signal("speech"), m.signal("point"), m.slot("out", "")
     declared(m, "fused", when=speech & point, writes=out)
@@ -200,7 +200,7 @@ def test_a_rule_pairs_spikes_although_a_rule_beside_it_has_retired() -> None:
 
 
 @pytest.mark.parametrize("traced", [False, True])
-def test_a_predicate_that_is_false_spares_those_after_it(traced: bool) -> None:
+def test_after_a_false_predicate_no_further_one_is_called(traced: bool) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     declared(m, "both", when=a.where(lambda n: n is not None).where(lambda n: n > 0) & b)

@@ -1,4 +1,4 @@
-"""The horizon derives a cycle of causes once, however many ways lead around it, and all happens as the laws say."""
+"""The horizon derives a cycle of causes once, however many ways lead around it, and its result follows the laws."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def clique(size: int, *, writes: bool) -> tuple[Engine, list[Any]]:
 
 
 @pytest.mark.parametrize("writes", [False, True])
-def test_a_clique_of_topics_costs_by_its_links(writes: bool) -> None:
+def test_the_cost_of_a_clique_of_topics_grows_with_its_links(writes: bool) -> None:
     counts: list[int] = []
     for size in (3, 6):
         engine, taken = clique(size, writes=writes)

@@ -1,4 +1,4 @@
-"""A line gives its places in order, in whatever order they joined."""
+"""A line gives its places in order, not in the order of joining."""
 
 from __future__ import annotations
 

@@ -197,7 +197,7 @@ def test_a_look_at_an_engine_at_rest_keeps_no_parts() -> None:
     assert engine.next_deadline() is None
 
 
-def test_a_flag_of_the_engine_that_is_written_at_rest_is_put_right() -> None:
+def test_a_built_in_flag_that_is_written_at_rest_gets_its_right_value_again() -> None:
     policy = rs.compile(m)
     engine = Engine(policy)
     engine.receive(Write("core:activity", True), 0.0)

@@ -42,7 +42,7 @@ def test_a_spike_that_is_held_is_wiped_even_if_detached_needs_have_forgotten_it(
 
 
 def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgotten_it() -> None:
-    # L23: at most one live spike of s0, so the second pushes the first out of the first rule's hands.
+    # L23: s0 has at most one live spike, so the first rule loses the first s0 when the second is born.
     looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
     world = World(
         (SignalOf(limit=1), SignalOf(), SignalOf()),
@@ -61,7 +61,7 @@ def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgott
 
 @pytest.mark.parametrize("end", ["resigned", "failed"])
 def test_a_rule_that_resigned_does_not_take_the_same_spikes_again(end: str) -> None:
-    # L18: the rule gives up these spikes. Another activation of it held the older s0 and the same s1.
+    # L18: a rule that resigned gives up its spikes. Another of its activations held the older s0 and the same s1.
     world = World(
         (SignalOf(), SignalOf(), SignalOf()),
         V1,
@@ -77,9 +77,9 @@ def test_a_rule_that_resigned_does_not_take_the_same_spikes_again(end: str) -> N
     Play(world, started=Exclusion()).play()
 
 
-def test_a_rule_that_hears_pressure_end_may_itself_be_kept_waiting() -> None:
-    # L22, L24: holding the spike of pressure:false makes it wait, which makes pressure true, which withdraws the
-    # spike, which makes pressure false, ... all in one instant: `effects` never returned.
+def test_a_rule_that_hears_the_end_of_pressure_may_itself_be_kept_waiting() -> None:
+    # L22, L24: a rule that holds the spike of pressure:false waits, so pressure becomes true. That withdraws the spike,
+    # so pressure becomes false, and so on, all in one instant: `effects` never returned.
     world = World(
         S3,
         V1,
@@ -94,8 +94,8 @@ def test_a_rule_that_hears_pressure_end_may_itself_be_kept_waiting() -> None:
     Play(world, before=bounded).play()
 
 
-def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_more() -> None:
-    # L22, L24: as above; holding the spike of activity:false is activity.
+def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_another_signal() -> None:
+    # L22, L24: as above, because an activation that holds the spike of activity:false counts as activity.
     world = World(
         S3,
         rules=(RuleOf(when=on("s0")), RuleOf(when=on("core:activity:false", "s1"))),
@@ -105,7 +105,7 @@ def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_more() -> None:
 
 
 def test_the_best_of_a_conflict_set_may_be_judged_against_a_rival() -> None:
-    # Unfolding the alternatives in a loop over the members of their group was a RuntimeError.
+    # In the past, the alternatives unfolded within a loop over the members of their group, which raised a RuntimeError.
     world = World(
         S3,
         V1,
@@ -122,8 +122,8 @@ def test_the_best_of_a_conflict_set_may_be_judged_against_a_rival() -> None:
 
 
 def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
-    # L9, L15: r1 waits to ripen on v0:changed and is worth more, so r0 waits; then r1 runs on another cause, is worth
-    # nothing from then on, and nobody is left for whom r0 would have to wait.
+    # L9, L15: r1 has more utility and holds a v0:changed that is too young, so r0 waits. Then r1 runs for another
+    # cause. From then on its utility is 0, so r0 need not wait any more.
     world = World(
         S3,
         V1,
@@ -138,9 +138,9 @@ def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
 
 
 def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another_cause() -> None:
-    # L15, L16: r1 holds s0 and s1 and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
-    # consumed, and r1 lacks it. Its patience for s0 began at 0 s, when it lacked s1 for the first time, and is over. But
-    # r0 did not ask again, as its group is that of s0 alone, and waited for ever.
+    # L15, L16: r1 holds s0 and s1, and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
+    # consumed, so r1 lacks it. The patience of r1 for s0 began at 0 s, when r1 first lacked s1, and is over. But r0 did
+    # not ask again, because its only group is that of s0; it waited for ever.
     def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
         return (tuple(Want(signal, max_age=None) for signal in signals),)
 
@@ -166,8 +166,8 @@ def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another
 
 
 def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_joined() -> None:
-    # L12, L16: two constraints on s1 want one causal group. With an s1 that fulfils one of them and not the other, the
-    # rival is viable no longer: an input cannot come into a group that is there already.
+    # L12, L16: both constraints on s1 need spikes of one causal group. Once the rival holds an s1 that meets only one
+    # of them, it is not viable any more: a new input never joins an existing group.
     world = World(
         S3,
         V1,
@@ -181,10 +181,10 @@ def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_j
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
 
 
-def test_a_waiting_rule_asks_again_when_the_rule_that_was_live_elsewhere_is_not() -> None:
-    # L16 (iii): r1 lacks v0:false, which r0 and r1 might cause as long as they are live for another cause. At 3 s they have
-    # had their patience there, and r0 runs; from then on they are live nowhere else. Only the end of a rule's last
-    # activation was noticed, and there is still the one that waits.
+def test_a_waiting_rule_asks_again_when_a_rule_is_no_longer_live_elsewhere() -> None:
+    # L16 (iii): r1 lacks v0:false. Rules r0 and r1 might cause it while they are live for another cause. At 3 s their
+    # patience there has ended, and r0 runs; from then on they are live nowhere else. The engine noticed only the end of
+    # a rule's last activation, but the waiting activation was left.
     world = World(
         S3,
         (SlotOf("flag"),),
@@ -202,7 +202,7 @@ def test_a_waiting_rule_asks_again_when_the_rule_that_was_live_elsewhere_is_not(
 @pytest.mark.parametrize("traced", [False, True])
 @pytest.mark.parametrize("wiped", [False, True])
 def test_an_alternative_gives_a_withdrawn_spike_up(traced: bool, wiped: bool) -> None:
-    # L20, L25: r1 would have lost the spike if its activation had been made, as it is when somebody traces.
+    # L20, L25: with a tracer, r1 has an activation, which loses the spike. Without a tracer, r1 must lose it as well.
     world = World(
         (SignalOf(keep="latest"),),
         V1,
@@ -217,8 +217,8 @@ def test_an_alternative_gives_a_withdrawn_spike_up(traced: bool, wiped: bool) ->
 
 
 def test_a_stand_by_rival_is_not_made_firm_by_a_spike_of_another_cause() -> None:
-    # L15, L16: for the cause of s1, r0 is a rival only if r1 raises s2, which wants an input; so patience bounds it. The
-    # s2 on which it runs for another cause does not give it a stake here.
+    # L15, L16: for the cause of s1, r0 is a rival only if r1 raises s2. For that, r1 needs an input, so patience bounds
+    # the wait. Rule r0 also runs for another cause, but the s2 of that cause gives r0 no stake here.
     world = World(
         S3,
         V1,
@@ -234,7 +234,7 @@ def test_a_stand_by_rival_is_not_made_firm_by_a_spike_of_another_cause() -> None
 
 
 def test_a_spike_that_a_new_rule_may_look_back_at_is_forgotten_in_time() -> None:
-    # L23: it was born before the rule that looks back at s0 for 2 s was added, and nobody held it at 2 s.
+    # L23: the spike was born before a rule was added that looks back at s0 for 2 s. At 2 s, nothing held the spike.
     looking = RuleOf(when=((Want("s1"), Want("s0", max_age=2.0, detached=True)),))
     world = World(
         S3,
@@ -263,8 +263,8 @@ def test_a_waiting_rule_asks_again_when_the_rule_that_it_waits_for_retires() -> 
     assert next(line for line in play.heard if "<rule m:r2>" in line).startswith("0.25 s < Run(")
 
 
-def test_looking_at_a_predicate_that_fails_is_no_failure_of_the_rule() -> None:
-    # L24, L25: a snapshot says of each gate whether it is open; that a predicate cannot tell is not an effect.
+def test_a_predicate_that_raises_in_a_snapshot_is_no_failure_of_the_rule() -> None:
+    # L24, L25: a snapshot tests each gate. A predicate that raises there is not reported.
     world = World(S3, V1, (RuleOf(when=((Want("s0"), Gate("v0", "fussy")),)),), ((0.0, ("write", "v0", 2)),))
     play = Play(world).play()
     snapshot(play.engine)
@@ -274,8 +274,8 @@ def test_looking_at_a_predicate_that_fails_is_no_failure_of_the_rule() -> None:
 
 
 def test_replay_takes_effects_when_the_runtime_took_them() -> None:
-    # L24. The classifier ends within its first step, so nobody is ever kept waiting, and pressure stays false; a
-    # replay that asks for effects once more before it feeds the end makes the fallback wait, and pressure true.
+    # L24. The classifier ends within its first step, so no rule has to wait, and pressure stays false. If a replay took
+    # the effects once more before the end of the run, the fallback would wait, and pressure would become true.
     world = World(
         S3,
         V1,
@@ -323,7 +323,7 @@ def test_an_older_activation_spares_the_younger_one_no_wait() -> None:
 
 
 def test_a_rule_that_the_asking_one_keeps_waiting_makes_no_rival_viable() -> None:
-    # L16: r1 would wait a second for r0, which lacks s1, which only r2 raises, which waits for r1.
+    # L16: r1 would wait a second for r0, because r0 lacks s1. Only r2 raises s1, and r2 waits for r1.
     world = World(
         S3,
         OUT,
@@ -438,7 +438,7 @@ def test_events_of_one_instant_count_in_the_order_in_which_they_arrive() -> None
 
 
 def test_every_stalemate_of_an_instant_is_broken() -> None:
-    # L15: for each of two inputs r1 waits for r0, which r3 may help, and r3 for r2, which r1 may help.
+    # L15: for each of two inputs, r1 waits for r0, which r3 may help; and r3 waits for r2, which r1 may help.
     world = World(
         S3,
         (SlotOf(), SlotOf()),
@@ -483,8 +483,9 @@ def test_an_added_rule_looks_again_when_a_spike_that_is_older_than_the_rule_ripe
     assert call.startswith("1.625 s") and "'m:s0': 2" in call
 
 
-def test_a_rule_asks_again_when_a_rival_gives_up_on_which_another_rival_hangs() -> None:
-    # L15, L16: r1 asks. r0 might get s1 from r2; r2 lacks the input v1 and has no patience, so it gives up at once.
+def test_a_rule_asks_again_when_a_rival_that_another_rival_depends_on_gives_up() -> None:
+    # L15, L16: r1 asks. Its rival r0 might get s1 from r2; but r2 lacks the input v1 and has no patience, so r2 gives
+    # up at once.
     world = World(
         S3,
         (SlotOf(), SlotOf(), SlotOf()),
@@ -500,8 +501,8 @@ def test_a_rule_asks_again_when_a_rival_gives_up_on_which_another_rival_hangs() 
 
 def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_cause() -> None:
     # L12, L15: at 1.25 s the first activation of r2 runs and writes v0. The second one loses its spikes, and takes the
-    # later s1 of 0 s and the new write. It kept its place as if it still had its old cause. The s1 of 0.75 s comes from
-    # the s0, which is older than that later s1. So the activation with this s1 goes first.
+    # later s1 of 0 s and the new write. In the past, it kept its place as if it still had its old cause. The s1 of 0.75
+    # s comes from the s0, which is older than that later s1. So the activation with this s1 goes first.
     world = World(
         S3,
         V1,
@@ -522,7 +523,7 @@ def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_
 
 
 def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> None:
-    # L15: r1 waits for r3, which either of two activations of r2 may help; both wait for r0, which r1 may help.
+    # L15: r1 waits for r3. Either of two activations of r2 may help r3, but both wait for r0, which r1 may help.
     world = World(
         (*S3, SignalOf()),
         (SlotOf(), SlotOf(), SlotOf()),
@@ -718,7 +719,7 @@ def test_rules_that_share_a_half_may_give_its_spike_up_one_after_another() -> No
     assert runs(Play(World(S3[:2], V1, rules, inputs)).play()) == ["r2", "r1", "r3", "r0"]
 
 
-def test_those_that_wait_for_the_same_rule_to_recover_ask_in_the_same_instant() -> None:
+def test_activations_that_wait_for_one_rule_to_recover_ask_in_the_same_instant() -> None:
     # L15: r0 recovers to the weight of r1 at 3.5 s. Two of its activations wait for this moment, from different times on.
     ripe = ((Want("s0", min_age=1.0),),)
     again = (Act(((0.0, ("emit", "s0", 2)),)),)

@@ -1,4 +1,4 @@
-"""Standing: which of two clauses goes first, now and in time."""
+"""Standing: which of two clauses goes first, now and later."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_the_weight_of_rules_worth_nothing_counts() -> None:
     assert not here.is_ahead(one, other)
 
 
-def test_a_rule_that_recovers_faster_from_nothing_is_behind_none() -> None:
+def test_a_rule_worth_0_that_recovers_faster_is_behind_no_other() -> None:
     here, (slow, fast) = standing({0: 5.0, 1: 5.0}, 5.0, slow={"cooldown": 20.0}, fast={"cooldown": 5.0})
     assert not here.is_ahead(slow, fast)  # they are equal now, but not in the moment after
     assert not here.is_ahead(fast, slow)  # and now the first declared goes first

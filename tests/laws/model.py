@@ -21,10 +21,10 @@ from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
 INSTANT = 0.5e-9
-"""Two moments that differ by at most so many seconds count as one."""
+"""Two moments that differ by at most this many seconds count as one."""
 
 BATCH = 100
-"""Rules without consent that start before the events of their runs arrive."""
+"""The number of rules that may start without consent before the events of their runs arrive."""
 
 
 class Model:
@@ -37,7 +37,7 @@ class Model:
         self.values: dict[int, Any] = {}
         self.spikes: list[Spike] = []
         self.writing = False  # whether the signals of a write are being raised
-        self.newborn: Spike | None = None  # it has not been offered to all
+        self.newborn: Spike | None = None  # a spike that has not been offered to all rules yet
         self.acts: list[Act] = []
         self.running: dict[int, Act] = {}
         self.retired: set[int] = set()
@@ -128,7 +128,7 @@ class Model:
         return all(act.held[n.index].born + n.min_age <= self.now for n in act.clause.needs)
 
     def look(self, act: Act, need: Any) -> None:
-        """L19: hold the newest live spike that fits and is old enough; else the one that is old enough first."""
+        """Hold the newest live spike that fits and is old enough; else the one that is old enough first (L19)."""
         fits = [s for s in self.spikes if s.signal is need.signal and self.fits(need, s)]
         ripe = [s for s in fits if s.born + need.min_age <= self.now]
         if ripe:
@@ -191,7 +191,7 @@ class Model:
         return found
 
     def consent_round(self) -> bool:
-        """L15: ask for consent for the ready activations: older causes first, then greater utility. Ask again if a
+        """Let the ready activations ask for consent (L15): older causes first, then greater utility. Ask again if a
         rival has given up (L16)."""
         changed, count = False, len(self.acts)
         written: set[int] = set()
@@ -207,7 +207,7 @@ class Model:
                     written |= act.rule.slotset
                     changed = True
             elif self.consents(act):
-                break  # it reads what a rule of this round is about to write: it asks when that is done
+                break  # it reads a slot that a rule of this round may write, so it asks after that
         return changed or len(self.acts) < count
 
     def order(self, act: Act) -> Any:
@@ -243,7 +243,7 @@ class Model:
         return self.leads(now, theirs, mine), self.leads(soon, theirs, mine)
 
     def leads(self, pairs: list[tuple[float, float]], theirs: Any, mine: Any) -> bool:
-        """Compare the first half of the pairs; only if all of it is 0, the second."""
+        """Compare the first half of the pairs; if that is all 0, compare the second half."""
         for place, (one, other) in enumerate(pairs):
             if place == len(pairs) // 2 and any(pair != (0.0, 0.0) for pair in pairs[:place]):
                 break
@@ -257,12 +257,12 @@ class Model:
         closing = mine.base * fast - theirs.base * their_fast
         if closing <= 0 or theirs.base * their_far <= mine.base * far:
             return inf
-        # Counted from the last run: a moment of the plan must not depend on the moment at which it is computed.
+        # The time is counted from the last run, so that it does not depend on the moment of this call.
         began = max(self.ran[c.rule.index] for c, speed in ((mine, fast), (theirs, their_fast)) if speed)
         far = (began - self.ran[mine.rule.index]) * fast if fast else far
         their_far = (began - self.ran[theirs.rule.index]) * their_fast if their_fast else their_far
         turn = began + (theirs.base * their_far - mine.base * far) / closing
-        return round(turn, 9) if round(turn, 9) > self.now else turn  # it meets other events of the same moment
+        return round(turn, 9) if round(turn, 9) > self.now else turn  # to coincide with others
 
     # ------------------------------------------------------------------------------- consent
 
@@ -270,10 +270,9 @@ class Model:
         return not self.refusals(act)
 
     def refusals(self, act: Act, without: Iterable[Act] = (), commit: bool = True) -> set[str]:
-        """Return why groups refuse consent (L15): a slot is ``taken``, or a rival comes, ``surely`` or ``perhaps``.
-
-        A rival that only may come is pressed, or gives up (L16). With `without`, ignore the work of these activations,
-        and press no rival.
+        """Return why groups refuse consent (L15): a slot is ``taken``, or a rival becomes ready, ``surely`` or
+        ``perhaps``. A rival that becomes ready only perhaps is pressed, or gives up (L16). With `without`, ignore the work
+        of these activations, and press no rival.
         """
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))
@@ -297,15 +296,15 @@ class Model:
                         derivation, ended = Derivation(self, still), True
                 elif next_:
                     soon.append((rival, group))
-        for rival, group in soon if reasons else ():  # it waits on, and these are ahead from this moment on
+        for rival, group in soon if reasons else ():  # `act` keeps waiting; these are ahead from now on
             if self.judge_rival(rival, group, derivation, reasons, commit=commit):
                 derivation, ended = Derivation(self, still), True
         if ended and reasons:
-            return self.refusals(act, without)  # a reason may have hung on those that gave up
+            return self.refusals(act, without)  # a reason may have depended on a rival that gave up
         return reasons
 
     def judge_rival(self, rival: Any, group: Group, derivation: Derivation, reasons: set[str], *, commit: bool) -> bool:
-        """Add the reasons that a rival gives a group to refuse; return whether an activation of it gave up."""
+        """Add a rival's reasons for a group to refuse; return whether one of the rival's activations gave up."""
         sure: list[Act] = []
         ended = False
         for member in [*(a for a in self.acts if a.clause is rival and a.state < RUNS), None]:
@@ -313,7 +312,7 @@ class Model:
                 if member not in self.acts or member in derivation.still:
                     continue
                 if any(set(member.firm()) <= set(older.firm()) for older in sure):
-                    continue  # an older activation, still to run, holds all that this one holds
+                    continue  # an older activation that will run holds all spikes of this one
             strength = derivation.rival(rival, member, group)
             if strength == SURE:
                 reasons.add("surely")
@@ -367,7 +366,7 @@ class Model:
         return bool(stuck)
 
     def start(self, act: Act) -> None:
-        """L17."""
+        """Start a run: it takes its slots in its groups (L17)."""
         rule = act.rule
         act.state = RUNS
         act.parents = act.firm()
@@ -397,7 +396,7 @@ class Model:
         return Group(self.groups)
 
     def origin(self, run: Act | None) -> tuple[tuple[Spike, ...], Group]:
-        """L11: the parents of a run's spikes, and their group; several groups merge."""
+        """Return the parents of a run's spikes, and their group; several groups merge (L11)."""
         parents = () if run is None or run.rule.detached else run.parents
         if not parents:
             return (), self.new_group()
@@ -463,7 +462,7 @@ class Model:
         return all(self.test(predicate, payload, need.clause) for predicate in need.predicates)
 
     def test(self, predicate: Any, value: Any, clause: Any) -> bool:
-        """L18: a predicate that raises is false."""
+        """Return the result of a predicate; a predicate that raises counts as false (L18)."""
         try:
             return bool(predicate(value))
         except Exception as exception:
@@ -490,12 +489,12 @@ class Model:
             return False
 
     def offer(self, need: Any, spike: Spike) -> None:
-        """L12: to every activation that lacks it, oldest first; then to the one that stands by."""
+        """Offer a spike to every activation that lacks it, oldest first, and then to the stand-by (L12)."""
         clause, rule = need.clause, need.clause.rule
         if rule.index in self.retired or not self.fits(need, spike) or spike.withdrawn:
             return
         if need.detached and clause.asks_detached:
-            return  # it looks when things settle
+            return  # a detached constraint looks once everything has settled
         for act in list(self.acts):
             able = act.clause is clause and act.state == GATHERS and need.index not in act.held
             if able and self.coheres(act, need, spike):
@@ -514,7 +513,7 @@ class Model:
         if not need.detached and (
             rule.index in spike.refused
             or spike.group.root().consumed(rule.slots)
-            or any(one.rule == rule.index for one in spike.line())
+            or any(one.rule == rule.index for one in spike.ancestry())
         ):
             return False
         return self.passes(need, spike.payload)
@@ -562,7 +561,7 @@ class Model:
         self.acts.remove(act)
 
     def withdraw(self, spike: Spike) -> None:
-        """L20."""
+        """Withdraw a spike (L20)."""
         spike.withdrawn = True
         if spike in self.spikes:
             self.spikes.remove(spike)
@@ -582,7 +581,7 @@ class Model:
         return sorted(dict.fromkeys([*self.spikes, *watched]), key=lambda spike: spike.id)
 
     def give_up(self, act: Act, spikes: tuple[Spike, ...]) -> None:
-        """L18, L10: the rule gives these spikes up, in all its activations."""
+        """Make a rule give these spikes up, in all its activations (L18, L10)."""
         for spike in spikes:
             spike.refused.add(act.rule.index)
         for spike in spikes:
@@ -599,7 +598,7 @@ class Model:
                 self.judge(act, clause)
 
     def judge(self, act: Act, clause: Any) -> None:
-        """L21."""
+        """Interrupt a run whose `until` condition is met (L21)."""
         held = act.watch[clause.index]
         if act.state == RUNS and len(held) == len(clause.needs):
             ages = [(need, self.now - held[need.index].born) for need in clause.needs]
@@ -621,7 +620,7 @@ class Model:
         return self.values.setdefault(slot.index, dict(default) if slot.is_collection else default)
 
     def change(self, slot: Any, value: Any, parents: tuple[Spike, ...], run: Act | None) -> None:
-        """L2, L13."""
+        """Set the value of a slot, and raise its signals (L2, L13)."""
         self.values[slot.index] = value
         group = self.origin(run)[1]
         if slot.keep_latest:
@@ -701,7 +700,7 @@ class Model:
 
     def on_wipe(self, event: Any) -> None:
         wiper = self.run_of(event)
-        doomed = [s for s in self.known() if any(one.signal.name == event.signal for one in s.line())]
+        doomed = [s for s in self.known() if any(one.signal.name == event.signal for one in s.ancestry())]
         for spike in doomed:
             for act in sorted(self.acts, key=lambda act: (act.clause.index, act.id)):
                 if act.state == RUNS and act is not wiper and act.rule.interruptible and spike in act.held.values():
@@ -726,7 +725,7 @@ class Model:
                         self.passes(need, spike.payload)
 
     def on_finish(self, event: events.Finish) -> None:
-        """L18."""
+        """Settle a run whose function has ended (L18)."""
         run = self.running.pop(event.run)
         rule, told, outcome, exception = run.rule, run.told, event.kind, event.exception
         if told == "timeout":
@@ -757,7 +756,7 @@ class Model:
         else:
             self.give_up(run, run.parents)
         self.out.append(Ended(run.number, rule.name, outcome, fired))
-        heard = [one.signal.name for spike in run.held.values() for one in spike.line()]
+        heard = [one.signal.name for spike in run.held.values() for one in spike.ancestry()]
         self.end(run)
         if event.kind == "retired":
             self.retired.add(rule.index)

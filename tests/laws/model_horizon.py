@@ -117,7 +117,7 @@ class Derivation:
         return max(self.comes(need.signal, group, slots), outside)
 
     def caused(self, signal: Any, group: Group, slots: frozenset[int]) -> int:
-        """Return how a signal may come by a rule of a group."""
+        """Return how a rule of a group may raise a signal."""
         best = NO
         for rule in self.model.policy.rule_plans:
             if rule.detached or signal.index not in rule.raises or rule.index in self.model.retired:
@@ -135,7 +135,7 @@ class Derivation:
         return best
 
     def from_outside(self, signal: Any, group: Group) -> bool:
-        """L16 (iii)."""
+        """Return whether an input, or a live rule of another group, may raise a signal (L16 iii)."""
         if signal.input:
             return True
         wide, narrow = self.causes(signal, wide=True), self.causes(signal, wide=False)
@@ -146,7 +146,8 @@ class Derivation:
         )
 
     def causes(self, signal: Any, *, wide: bool) -> set[int]:
-        """Return the rules from which a chain of effects leads to a signal; with `wide` also over detachment."""
+        """Return the rules from which a chain of effects leads to a signal; with `wide`, also a chain through detached
+        rules and constraints."""
         known = self.model.chains.get((signal, wide))
         if known is not None:
             return known

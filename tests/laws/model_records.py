@@ -36,14 +36,14 @@ class Spike:
     group: Group
     parents: tuple[Spike, ...]
     rule: int  # the rule that raised it; -1 for code outside and detached rules
-    newest: int  # the newest activation when it was born
+    newest: int  # the number of the newest activation at the spike's birth
     refused: set[int] = field(default_factory=set)  # the rules that have given it up
     withdrawn: bool = False
 
-    def line(self) -> Iterator[Spike]:
+    def ancestry(self) -> Iterator[Spike]:
         yield self
         for parent in self.parents:
-            yield from parent.line()
+            yield from parent.ancestry()
 
 
 @dataclass(eq=False)
@@ -52,13 +52,13 @@ class Act:
     clause: Any
     held: dict[int, Spike] = field(default_factory=dict)  # place of a need → spike
     state: int = GATHERS
-    gated: bool = False  # it lacks nothing, but a predicate on a slot was false
+    gated: bool = False  # whether it lacks nothing, but a predicate on a slot was false
     pressed: dict[Group, float] = field(default_factory=dict)  # group → end of its patience there
     parents: tuple[Spike, ...] = ()
     took: list[Group] = field(default_factory=list)
     wrote: bool = False
     told: str = ""
-    number: int = 0  # of its run
+    number: int = 0  # the number of its run; 0 before the run
     due: float = inf
     watch: dict[int, dict[int, Spike]] = field(default_factory=dict)  # until clause → need → spike
 

@@ -1,4 +1,5 @@
-"""L12: a clause and the spikes that it has acquired; one stands by always; several may hold a spike; coherence."""
+"""L12: a clause and the spikes that it has acquired. One activation always stands by; several may hold a spike;
+coherence."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""L14: ready when all constraints hold spikes old enough; age is lost by the incomplete only."""
+"""L14: ready when all constraints hold spikes old enough; only an incomplete activation loses a spike to its age."""
 
 from typing import Any
 
@@ -45,7 +45,7 @@ def test_an_activation_that_still_ripens_is_incomplete(play: Any) -> None:
         sim.advance(1.0)
         sim.emit(b)
         sim.advance(9.5)
-        # The activation with both gives it up, and so does the one that b itself began.
+        # The activation that holds both spikes gives b up, and so does the one that b itself began.
         assert given_up(sim, "both") == [(6.0, "b", "age")] * 2
         assert written(sim, out) == []
         sim.emit(b)

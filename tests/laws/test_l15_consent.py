@@ -77,7 +77,7 @@ def test_the_first_declared_of_equals_wins(play: Any) -> None:
         assert written(sim, out) == ["second"] * 3
 
 
-def test_a_rival_that_writes_another_slot_is_none(play: Any) -> None:
+def test_a_rule_that_writes_another_slot_is_no_rival(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "specific", i & j, output(m, "face"))
@@ -247,8 +247,8 @@ def test_two_rules_that_wait_for_each_other_do_not_wait_for_ever(play: Any) -> N
 
     first("speak", out, y)
     first("smile", face, z)
-    writer(m, "smile_at_y", y, face)  # `smile` would wait for it, so for `speak`
-    writer(m, "speak_of_z", z, out)  # `speak` would wait for it, so for `smile`
+    writer(m, "smile_at_y", y, face)  # `smile` would wait for this rule, and so for `speak`
+    writer(m, "speak_of_z", z, out)  # `speak` would wait for this rule, and so for `smile`
     with play(m) as sim:
         sim.emit(i)
         assert (written(sim, out), written(sim, face)) == (["speak"], ["smile_at_y"])

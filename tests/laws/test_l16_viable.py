@@ -20,7 +20,7 @@ from laws.short import (
 )
 
 
-def no(ctx: Any) -> bool:
+def is_never_true(ctx: Any) -> bool:
     return False
 
 
@@ -40,7 +40,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         assert pressed(sim) == []
 
 
-def test_a_rival_that_ripens_is_waited_for_though_it_lies_in_another_group(play: Any) -> None:
+def test_a_rule_waits_for_a_rival_that_ripens_in_another_group(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "specific", i.min_age(3.0) & j, out)
@@ -65,7 +65,7 @@ def test_a_consumed_spike_makes_no_rival_viable(play: Any) -> None:
         sim.advance(2.0)
         sim.emit(i)
         sim.advance(20.0)
-        # j lives on, for another slot; a new j might come, so there is patience, but no more
+        # j is still live, for another slot. A new j might come, so `general` waits for the patience, but not longer.
         assert moments(sim, out) == [(0.0, "answer"), (3.0, "general")]
 
 
@@ -73,7 +73,7 @@ def test_a_consumed_spike_makes_no_rival_viable(play: Any) -> None:
 
 
 def classified(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
-    """Declare a slow classifier, a rule for its finding, and a rule for everything."""
+    """Declare a slow classifier, a rule for the signal that it raises, and a fallback."""
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=after, **options)
@@ -94,7 +94,7 @@ def test_a_rule_waits_for_the_effects_of_a_running_rule_without_patience(play: A
 
 @pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
 def test_a_waiting_rule_is_reconsidered_when_another_ends_without_its_signal(play: Any, after: float) -> None:
-    m, i, out = classified(after, only_if=no)
+    m, i, out = classified(after, only_if=is_never_true)
     with play(m) as sim:
         sim.emit(i)
         sim.advance(100.0)
@@ -109,7 +109,7 @@ def chain(stops_at: int) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
     for number in range(3):
         emitter(
             m, f"link_{number}", signals[number], signals[number + 1], after=10.0,
-            only_if=no if number == stops_at else lambda ctx: True,
+            only_if=is_never_true if number == stops_at else lambda ctx: True,
         )  # fmt: skip
     out = output(m)
     writer(m, "specific", signals[3], out)
@@ -137,7 +137,7 @@ def test_the_horizon_reaches_over_rules_that_are_still_viable(play: Any) -> None
 def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> None:
     m = rs.Module("m")
     i, x, y, z, out = m.signal("i"), m.signal("x"), m.signal("y"), m.signal("z"), output(m)
-    emitter(m, "one", i, x, after=2.0, only_if=no)
+    emitter(m, "one", i, x, after=2.0, only_if=is_never_true)
     emitter(m, "two", i, y, after=9.0)
     emitter(m, "join", x & y, z)
     writer(m, "specific", z, out)
@@ -145,13 +145,13 @@ def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> N
     with play(m) as sim:
         sim.emit(i)
         sim.advance(20.0)
-        assert moments(sim, out) == [(2.0, "general")]  # without x no z, whatever `two` still finds
+        assert moments(sim, out) == [(2.0, "general")]  # without x there is no z, whatever `two` still raises
 
 
 def test_alternatives_keep_a_rival_viable(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
-    emitter(m, "fast", i, x, after=1.0, only_if=no)
+    emitter(m, "fast", i, x, after=1.0, only_if=is_never_true)
     emitter(m, "slow", i, x, after=5.0)
     writer(m, "specific", x, out)
     writer(m, "general", i, out)
@@ -211,7 +211,7 @@ def fusion(**options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], r
     return m, point, speech, out
 
 
-def test_an_input_is_waited_for_with_a_patience_of_one_second(play: Any) -> None:
+def test_a_rule_waits_one_second_for_an_input(play: Any) -> None:
     m, _, speech, out = fusion()
     with play(m) as sim:
         sim.advance(2.0)
@@ -274,7 +274,7 @@ def test_a_rival_that_lost_patience_gives_its_spikes_up(play: Any) -> None:
         assert given_up(sim, "fused") == [(1.0, "speech", "eliminated")]
         sim.emit(point)
         assert written(sim, out) == []
-        sim.emit(speech)  # it stands by as ever
+        sim.emit(speech)  # `fused` still stands by
         assert moments(sim, out) == [(2.0, "fused")]
 
 
@@ -329,7 +329,7 @@ def test_an_effect_of_another_group_in_time_makes_the_rival_ready(play: Any) -> 
 
 
 def test_no_rule_waits_longer_than_the_live_rule_of_another_group_lives(play: Any) -> None:
-    m, i, kick, out = foreign(after=0.5, only_if=no)
+    m, i, kick, out = foreign(after=0.5, only_if=is_never_true)
     with play(m) as sim:
         sim.emit(kick)
         sim.emit(i)
@@ -429,8 +429,8 @@ def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_an_effect_of_the_group(pl
         assert pressed(sim) == []
 
 
-def test_a_rival_elsewhere_lets_go_when_the_group_cannot_cause_it(play: Any) -> None:
-    m, i, j, out = mixed(after=3.0, only_if=no)
+def test_a_rival_elsewhere_is_none_once_the_group_cannot_cause_its_signal(play: Any) -> None:
+    m, i, j, out = mixed(after=3.0, only_if=is_never_true)
     with play(m) as sim:
         sim.emit(j)
         sim.emit(i)
@@ -565,7 +565,7 @@ def test_a_derivation_may_be_deeper_than_the_interpreter_nests_calls(
     play: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(limit: int) -> None:
-        raise AssertionError(f"the recursion limit is the interpreter's: {limit}")
+        raise AssertionError(f"the engine must not change the recursion limit: {limit}")
 
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)

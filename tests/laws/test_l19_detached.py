@@ -103,7 +103,7 @@ def test_a_detached_rule_consumes_like_any_other(play: Any) -> None:
         assert written(sim, out) == ["first"]
 
 
-def test_a_detached_rule_may_go_round_for_ever(play: Any) -> None:
+def test_a_loop_through_a_detached_rule_may_run_for_ever(play: Any) -> None:
     m = rs.Module("m")
     tick, out = m.signal("tick", input=True), output(m)
 

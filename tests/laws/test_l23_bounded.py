@@ -29,7 +29,7 @@ def test_beyond_the_limit_the_oldest_is_dropped_counted_and_traced(play: Any) ->
         assert heard == [2, 3, 4]
 
 
-def test_up_to_the_limit_all_are_kept(play: Any) -> None:
+def test_up_to_the_limit_all_spikes_are_kept(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a", payload=int, limit=3), m.signal("b"), list[Any]()
     hearer(m, "pair", a & b, a, heard)
@@ -115,7 +115,7 @@ def test_a_wiped_signal_leaves_nothing_behind(play: Any) -> None:
         for _ in range(50):
             sim.emit(a)
         sim.advance(1_000.0)
-        assert len(sim.snapshot()["spikes"]) == 50  # for ever is for ever
+        assert len(sim.snapshot()["spikes"]) == 50  # with max_age=None, spikes never grow too old
         sim.wipe(a)
         assert at_rest(sim)
         assert written(sim, out) == []

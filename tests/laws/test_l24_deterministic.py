@@ -72,7 +72,7 @@ def test_the_same_simulation_gives_the_same_trace() -> None:
 
 
 def test_the_origin_of_time_does_not_matter() -> None:
-    """A later origin of time shifts everything by as much."""
+    """A later origin of time shifts all times by the same amount."""
 
     def shape(driver: Driver) -> list[tuple[str, float]]:
         begin = driver.trace[0].time
@@ -84,7 +84,7 @@ def test_the_origin_of_time_does_not_matter() -> None:
     assert shape(told(early)) == shape(told(late))
 
 
-def test_the_engine_asks_no_clock_and_throws_no_dice(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_engine_uses_no_clock_and_no_random_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     def forbidden(*_: object) -> Any:
         raise AssertionError("the engine is pure")
 
@@ -140,7 +140,7 @@ def test_a_spurious_advance_changes_nothing(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_record_can_be_replayed(seed: int) -> None:
+def test_a_recorded_run_can_be_replayed(seed: int) -> None:
     policy, journal = rs.compile(everything()), Journal()
     with simulate(policy, journal=journal) as sim:
         tell(sim, seed)
@@ -156,8 +156,8 @@ def test_a_record_can_be_replayed(seed: int) -> None:
     assert state(engine) == {**live, "next_deadline": None}
 
 
-def test_after_a_crash_it_resumes_where_it_was() -> None:
-    """The state of an engine depends only on the calls up to a moment."""
+def test_the_calls_up_to_a_moment_restore_the_state_of_that_moment() -> None:
+    """A new engine that gets the same calls has the same snapshot, as after a crash."""
     policy = rs.compile(everything())
     pictures: list[tuple[int, dict[str, Any]]] = []
 

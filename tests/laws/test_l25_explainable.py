@@ -29,7 +29,7 @@ def fusion(**options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any]]:
     return m, point, speech
 
 
-def test_the_spikes_that_a_rule_holds_and_lacks(play: Any) -> None:
+def test_an_explanation_lists_the_spikes_that_a_rule_holds_and_lacks(play: Any) -> None:
     m, _, speech = fusion()
     with play(m) as sim:
         assert sim.explain("m:fused").activations == ()
@@ -41,7 +41,7 @@ def test_the_spikes_that_a_rule_holds_and_lacks(play: Any) -> None:
         assert (plain.state, plain.holds, plain.lacks) == ("waiting", (("m:speech", 0.25),), ())
 
 
-def test_the_rival_that_it_waits_for_and_the_nats_between(play: Any) -> None:
+def test_an_explanation_names_the_rival_and_its_lead_in_nats(play: Any) -> None:
     m, _, speech = fusion(weight=2.0)
     with play(m) as sim:
         sim.emit(speech)
@@ -51,7 +51,7 @@ def test_the_rival_that_it_waits_for_and_the_nats_between(play: Any) -> None:
         assert nats == pytest.approx(2.0 * policy.utility("m:fused") - policy.utility("m:plain"))
 
 
-def test_the_latest_end_of_its_wait(play: Any) -> None:
+def test_an_explanation_has_the_latest_end_of_a_wait(play: Any) -> None:
     m, _, speech = fusion(patience=3.0)
     with play(m) as sim:
         sim.advance(1.0)
@@ -61,7 +61,7 @@ def test_the_latest_end_of_its_wait(play: Any) -> None:
         assert alive(sim, "m:fused").until == 4.0
 
 
-def test_the_time_at_which_a_spike_grows_too_old(play: Any) -> None:
+def test_an_explanation_has_the_time_at_which_a_spike_grows_too_old(play: Any) -> None:
     m, point, _ = fusion()
     with play(m) as sim:
         sim.advance(1.0)
@@ -93,7 +93,7 @@ def test_a_taken_slot_is_named(play: Any) -> None:
         assert alive(sim, "m:next_best").waits_for == (("m:busy", 0.0),)
 
 
-def test_a_spike_that_ripens_and_a_gate_that_is_closed(play: Any) -> None:
+def test_an_explanation_shows_a_spike_that_ripens_and_a_closed_gate(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "later", i.min_age(2.0), out)
@@ -261,7 +261,8 @@ def test_births_holdings_and_outcomes_are_traced_with_their_causes(play: Any) ->
 
 
 def test_the_reason_to_wait_is_traced_again_when_it_changes(play: Any) -> None:
-    """The wait of `better` ends at 1 s, and that of `best` at 2 s; the two fallbacks learn of it at the same time."""
+    """The patience of `better` ends at 1 s, that of `best` at 2 s. `second` and `third` always wait for the rivals of
+    `first`."""
     m = rs.Module("m")
     speech, topic, x, y = (m.signal(name) for name in ("speech", "topic", "x", "y"))
     out = output(m)
@@ -341,7 +342,7 @@ def test_tracing_changes_nothing() -> None:
     assert ends[0] == ends[1]
 
 
-def test_the_state_is_plain_data(play: Any) -> None:
+def test_a_snapshot_is_plain_data(play: Any) -> None:
     with play(everything()) as sim:
         tell(sim)
         state = json.loads(json.dumps(sim.snapshot()))

@@ -69,7 +69,7 @@ def test_wide_ancestors_stop_at_inputs() -> None:
     assert names(policy, policy.causes.wide_ancestors(policy.signal_of["m:y"].index)) == ["second"]
 
 
-def test_downstream_are_the_writing_clauses_in_reach_the_best_first() -> None:
+def test_downstream_has_the_writing_clauses_in_reach_the_best_first() -> None:
     m = rs.Module("m")
     entry, x, y = (m.signal(name) for name in ("entry", "x", "y"))
     out = m.slot("out")
@@ -86,7 +86,7 @@ def test_downstream_are_the_writing_clauses_in_reach_the_best_first() -> None:
     assert downstream(policy.rule_plan("m:plain")) == ()
 
 
-def test_grounded_signals_may_occur() -> None:
+def test_grounded_has_the_signals_that_may_occur() -> None:
     policy, causes = chain()
     entry, x, y, z, out = signals(policy, "entry", "x", "y", "z", "out:changed")
     assert causes.grounded([entry]) >= {entry, x, y, z, out}
@@ -104,7 +104,7 @@ def test_a_grounded_effect_needs_a_whole_clause() -> None:
     assert ic in policy.causes.grounded([ia, ib])
 
 
-def test_cycles_end() -> None:
+def test_ancestors_in_a_cycle_are_found_once() -> None:
     m = rs.Module("m")
     entry, a, b = (m.signal(name) for name in ("entry", "a", "b"))
     rule(m, "enter", entry, emits=a)

@@ -32,11 +32,11 @@ def forms(condition: rs.Condition) -> list[str]:
         (mood.holds(bool) & a & mood.holds(bool), ["demo:a demo:mood.holds(bool)"]),
     ],
 )
-def test_clauses_stand_in_declaration_order_without_doubles(condition: rs.Condition, clauses: list[str]) -> None:
+def test_clauses_are_in_declaration_order_without_duplicates(condition: rs.Condition, clauses: list[str]) -> None:
     assert forms(condition) == clauses
 
 
-def test_a_signal_is_its_own_constraint() -> None:
+def test_a_bare_signal_becomes_a_constraint() -> None:
     assert normal_form(a) == normal_form(a.min_age(0))
 
 
@@ -58,7 +58,7 @@ def test_too_many_clauses_are_refused_before_they_are_made(count: int, alternati
         normal_form(pairs(count))
 
 
-def test_the_greatest_number_of_clauses() -> None:
+def test_the_greatest_number_of_clauses_is_allowed() -> None:
     assert len(normal_form(pairs(8))) == MAX_CLAUSES == 256
 
 
@@ -75,7 +75,7 @@ def test_a_part_in_many_places_is_expanded_once() -> None:
         normal_form(condition)
 
 
-def test_depth_is_no_limit() -> None:
+def test_a_condition_of_any_depth_has_a_normal_form() -> None:
     module = rs.Module("deep")
     signals = [module.signal(f"s{number}") for number in range(2000)]
     nested: rs.Condition = signals[0]

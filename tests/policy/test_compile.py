@@ -36,7 +36,7 @@ def faults(*modules: Any) -> list[str]:
     return [str(fault) for fault in caught.value.exceptions]
 
 
-# ---------------------------------------------------------------------------------------- what is well
+# ---------------------------------------------------------------------------------------- policies without faults
 
 
 def test_core_alone_is_a_policy() -> None:
@@ -105,7 +105,7 @@ def test_the_message_names_a_module_that_is_not_required() -> None:
     assert rs.compile(m, elsewhere).rules["m:r"].when is word
 
 
-def test_a_signal_of_another_module_of_that_name_is_refused() -> None:
+def test_a_signal_of_another_module_with_the_same_name_is_refused() -> None:
     first, second = rs.Module("twin"), rs.Module("twin")
     word = first.signal("word")
     second.signal("word")
@@ -115,7 +115,7 @@ def test_a_signal_of_another_module_of_that_name_is_refused() -> None:
     assert "the policy has another signal of that name: two modules are named 'twin'" in text
 
 
-def test_an_unknown_signal_gets_the_nearest_as_a_hint() -> None:
+def test_the_message_about_an_unknown_signal_names_the_nearest() -> None:
     m = rs.Module("m")
     word = m.signal("wrod")
     m.signals.remove(word)
@@ -128,7 +128,7 @@ def test_an_unknown_signal_gets_the_nearest_as_a_hint() -> None:
 # ---------------------------------------------------------------------------------------- names used twice
 
 
-def test_two_modules_of_one_name() -> None:
+def test_two_modules_with_one_name_are_refused() -> None:
     one, other = rs.Module("twin"), rs.Module("twin")
     for module in (one, other):
         rule(module, "r", module.signal("s"), writes=module.slot("t"))
@@ -141,7 +141,7 @@ def test_no_other_module_may_be_named_core() -> None:
     assert "two modules are named 'core'" in faults(rs.Module("core"))[0]
 
 
-def test_two_signals_slots_and_rules_of_one_name() -> None:
+def test_two_signals_slots_or_rules_with_one_name_are_refused() -> None:
     m = rs.Module("m")
     go = m.signal("go")
     m.signal("go")
@@ -167,7 +167,7 @@ def test_the_message_shows_a_cycle_of_requires() -> None:
 
 
 @pytest.mark.parametrize("value", ["rawio", None, 3, rs.compile()])
-def test_compile_needs_modules(value: object) -> None:
+def test_a_value_that_is_no_module_is_refused(value: object) -> None:
     (text,) = faults(value)
     assert text == f"expected an rs.Module (or a Python module that holds one), not {value!r}"
 
@@ -189,13 +189,13 @@ def test_an_age_above_the_default_max_age_needs_its_own() -> None:
     assert "write .min_age(10).max_age(None) (max_age is 5 s by default)" in text
 
 
-def test_ages_that_exclude_each_other() -> None:
+def test_ages_that_exclude_each_other_are_refused() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go.min_age(3).max_age(2)))
     assert text.endswith("write .min_age(3).max_age(None)")
 
 
 @pytest.mark.parametrize("age", [-1, float("nan"), float("inf"), -float("inf")])
-def test_ages_are_seconds(age: float) -> None:
+def test_an_age_that_is_no_number_of_seconds_is_refused(age: float) -> None:
     assert "m:go.min_age" in only_fault(lambda m, go: rule(m, "r", go.min_age(age).max_age(None)))
     text = only_fault(lambda m, go: rule(m, "r", go.max_age(age)))
     assert f"m:go.max_age={age!r}" in text.replace("-1.0", "-1") and "must be 0 s or more" in text
@@ -214,7 +214,7 @@ def test_ages_are_seconds(age: float) -> None:
         ("timeout", float("inf"), "more than 0 s"),
     ],
 )
-def test_numbers_are_in_range(what: str, value: float, wanted: str) -> None:
+def test_a_number_out_of_range_is_refused(what: str, value: float, wanted: str) -> None:
     text = only_fault(lambda m, go: rule(m, "r", go, **{what: value}))
     assert text.endswith(f"{what}={float(value)!r} must be {wanted}")
 
@@ -240,7 +240,7 @@ def test_a_predicate_needs_a_signal_beside_it() -> None:
     )
 
 
-def test_too_many_clauses() -> None:
+def test_too_many_clauses_are_refused() -> None:
     m = rs.Module("m")
     condition: rs.Condition = m.signal("a") | m.signal("b")
     for number in range(9):
@@ -253,7 +253,7 @@ def test_too_many_clauses() -> None:
     ("least", "most"),
     [(0, 0), (0, None), (0, 1e-9), (3, 3), (5, 5), (1e9, None), (4.5, 5), (rs.setting("after"), 2), (2, rs.setting("after"))],
 )  # fmt: skip
-def test_possible_ages(least: Any, most: Any) -> None:
+def test_ages_that_a_spike_can_have_are_allowed(least: Any, most: Any) -> None:
     m = rs.Module("m", settings=Late)
     rule(m, "r", m.signal("go").min_age(least).max_age(most))
     (need,) = rs.compile(m).rule_plan("m:r").clauses[0].needs
@@ -270,9 +270,9 @@ def test_possible_ages(least: Any, most: Any) -> None:
         (2.5, rs.setting("after"), "at least 2.5 s and at most 2 s old"),
     ],
 )
-def test_impossible_ages(least: Any, most: Any, text: str) -> None:
+def test_ages_that_no_spike_can_have_are_refused(least: Any, most: Any, text: str) -> None:
     assert text in only_fault(lambda m, go: rule(m, "r", go.min_age(least).max_age(most)), settings=Late)
-    assert text in only_fault(  # also where nobody else cares
+    assert text in only_fault(  # also in a second clause, and for a detached constraint
         lambda m, go: rule(m, "r", m.signal("other") | go.detached().min_age(least).max_age(most)),
         settings=Late,
     )
@@ -283,7 +283,7 @@ def test_the_ages_of_until_are_checked_too() -> None:
     assert "until: m:go can never be at least 1 s and at most 0 s old" in text
 
 
-def test_a_spike_of_no_age_is_still_there_when_it_is_born() -> None:
+def test_a_rule_with_max_age_0_takes_a_spike_at_the_moment_of_its_birth() -> None:
     m = rs.Module("m")
     go = m.signal("go")
     rule(m, "now", go.max_age(0))
@@ -295,7 +295,7 @@ def test_a_spike_of_no_age_is_still_there_when_it_is_born() -> None:
 # ---------------------------------------------------------------------------------------- size
 
 
-def test_a_chain_of_requires_of_any_length() -> None:
+def test_a_chain_of_requires_of_any_length_compiles() -> None:
     module = rs.Module("m0")
     for number in range(1, 3000):
         module = rs.Module(f"m{number}", requires=[module])
@@ -355,12 +355,14 @@ def test_rules_that_wait_only_for_each_other_are_unreachable() -> None:
     found = faults(m)
     assert len(found) == 2
     assert re.match(
-        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; only m:second may raise that", found[0]
+        rf"rule m:first \({HERE}:\d+\) is unreachable: it waits for m:b; "
+        r"no input leads to the rules that may raise it \(m:second\)",
+        found[0],
     )
     assert found[0].endswith("if code outside the rules raises the signal, declare it with input=True")
 
 
-def test_a_way_in_makes_a_cycle_reachable() -> None:
+def test_an_input_or_a_detached_rule_makes_a_cycle_reachable() -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b", input=True)
     rule(m, "first", b, emits=a)

@@ -35,7 +35,7 @@ def scene() -> Scene:
     return Scene()
 
 
-def test_a_policy_without_surprises_has_no_findings(scene: Scene) -> None:
+def test_a_policy_without_mistakes_has_no_findings(scene: Scene) -> None:
     question = scene.module.signal("question")
     scene.rule("classify", scene.heard, emits=question)
     scene.rule("chat", scene.heard, writes=scene.out)
@@ -43,7 +43,7 @@ def test_a_policy_without_surprises_has_no_findings(scene: Scene) -> None:
     assert scene.findings() == {}
 
 
-def test_a_rule_that_only_a_write_from_outside_can_start(scene: Scene) -> None:
+def test_a_rule_that_only_a_write_from_outside_can_start_is_reported(scene: Scene) -> None:
     mood = scene.module.slot("mood")
     scene.rule("loop", mood.changed, writes=mood, detached=True)
     scene.rule("fine", scene.heard, writes=scene.out)
@@ -55,29 +55,31 @@ def test_a_rule_that_only_a_write_from_outside_can_start(scene: Scene) -> None:
     scene.module.slots.remove(mood)
 
 
-def test_a_rule_that_waits_for_a_rule_with_its_slot(scene: Scene) -> None:
+def test_a_rule_that_waits_for_a_rule_with_its_slot_is_unreachable(scene: Scene) -> None:
     said = scene.module.signal("said")
     scene.rule("say", scene.heard, writes=scene.out, emits=said)
     scene.rule("again", said, writes=scene.out)
     text = scene.findings()["unreachable", "m:again"]
     assert "waits for an effect of rules that write m:out before it" in text
-    assert "add .detached() to that signal, or detached=True to the rule that causes it" in text
+    assert (
+        "add .detached() to the signal that it waits for, or detached=True to the rule that raises this signal" in text
+    )
 
 
 @pytest.mark.parametrize("way", ["constraint", "rule"])
-def test_a_detached_constraint_or_cause_frees_it(scene: Scene, way: str) -> None:
+def test_a_detached_constraint_or_cause_makes_such_a_rule_reachable(scene: Scene, way: str) -> None:
     said = scene.module.signal("said")
     scene.rule("say", scene.heard, writes=scene.out, emits=said, detached=way == "rule")
     scene.rule("again", said.detached() if way == "constraint" else said, writes=scene.out)
     assert not [kind for kind, _ in scene.findings() if kind == "unreachable"]
 
 
-def test_a_rule_that_can_never_win(scene: Scene) -> None:
+def test_a_rule_that_can_never_win_is_reported(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("second", scene.heard, writes=scene.out)
     text = scene.findings()["never-wins", "m:second"]
     assert "rule m:second runs only when m:first resigns" in text
-    assert "give it one more signal, a greater weight, or give the other rule a cooldown" in text
+    assert "give it one more signal or a greater weight, or give the other rule a cooldown" in text
 
 
 @pytest.mark.parametrize(
@@ -91,7 +93,7 @@ def test_a_rule_that_can_never_win(scene: Scene) -> None:
         {"weight": 0.5},
     ],
 )
-def test_ways_for_the_other_to_win(scene: Scene, first: dict[str, Any]) -> None:
+def test_a_rule_that_may_win_is_not_reported(scene: Scene, first: dict[str, Any]) -> None:
     ways = {
         "where": scene.heard.where(bool),
         "holds": scene.heard & scene.out.holds(bool),
@@ -105,7 +107,7 @@ def test_ways_for_the_other_to_win(scene: Scene, first: dict[str, Any]) -> None:
     assert ("never-wins", "m:second") not in scene.findings()
 
 
-def test_one_clause_that_may_win_is_enough(scene: Scene) -> None:
+def test_a_rule_with_one_clause_that_may_win_is_not_reported(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("second", scene.heard | scene.module.signal("other"), writes=scene.out)
     assert ("never-wins", "m:second") not in scene.findings()
@@ -129,7 +131,7 @@ def test_a_weight_decides_a_tie_without_information(scene: Scene) -> None:
     assert scene.findings() == {}
 
 
-def test_a_cooldown_without_a_rival(scene: Scene) -> None:
+def test_a_cooldown_without_a_rival_is_reported(scene: Scene) -> None:
     bored = scene.module.signal("bored", input=True)
     scene.rule("chat", scene.heard, writes=scene.out)
     scene.rule("nag", bored, writes=scene.out, cooldown=300.0)
@@ -144,7 +146,7 @@ def test_a_cooldown_without_a_rival(scene: Scene) -> None:
     assert list(scene.findings()) == [("cooldown", "m:blink")]
 
 
-def test_signals_that_no_rule_hears(scene: Scene) -> None:
+def test_signals_that_no_rule_hears_are_reported(scene: Scene) -> None:
     lost, watched, free = (scene.module.signal(name) for name in ("lost", "watched", "free"))
     scene.rule("emit", scene.heard, emits=(lost, watched))
     scene.rule("watch", scene.heard, writes=scene.out, until=watched)
@@ -157,7 +159,7 @@ def test_signals_that_no_rule_hears(scene: Scene) -> None:
     assert free.name == "m:free"
 
 
-def test_the_order_of_findings(scene: Scene) -> None:
+def test_findings_come_in_the_order_of_their_kinds(scene: Scene) -> None:
     lost, mood = scene.module.signal("lost"), scene.module.slot("mood")
     scene.rule("emit", scene.heard, writes=scene.out, emits=lost)
     scene.rule("same", scene.heard, writes=scene.out)
@@ -166,7 +168,7 @@ def test_the_order_of_findings(scene: Scene) -> None:
     assert kinds == ["unreachable", "loop", "never-wins", "tie", "unheard"]
 
 
-def test_two_rules_at_startup_on_one_slot(scene: Scene) -> None:
+def test_the_advice_for_two_rules_at_startup_is_a_detached_constraint(scene: Scene) -> None:
     """Startup comes once: neither one more signal nor a cooldown would help the second rule."""
     scene.rule("listen", rs.startup, writes=scene.out, cooldown=5.0)
     scene.rule("serve", rs.startup, writes=scene.out)
@@ -219,8 +221,8 @@ def test_the_message_names_the_best_winner(scene: Scene) -> None:
     assert "runs only when m:best resigns" in scene.findings()["never-wins", "m:last"]
 
 
-def test_signals_that_no_rule_raises(scene: Scene) -> None:
-    """A plain signal that comes from outside says so with input=True; a slot may be written from outside."""
+def test_signals_that_no_rule_raises_are_reported(scene: Scene) -> None:
+    """A signal from outside must have input=True. A slot needs no mark, because code outside may write any slot."""
     question, stop = scene.module.signal("question"), scene.module.signal("stop")
     scene.rule("answer", question | scene.out.changed, until=stop)
     found = scene.findings()
@@ -234,7 +236,7 @@ def test_signals_that_no_rule_raises(scene: Scene) -> None:
 # ---------------------------------------------------------------------------------------- loops (L23)
 
 
-def test_detached_rules_that_set_each_other_off(scene: Scene) -> None:
+def test_detached_rules_that_trigger_each_other_are_a_loop(scene: Scene) -> None:
     one, other = scene.module.signal("one"), scene.module.signal("other")
     scene.rule("start", scene.heard, emits=one)
     scene.rule("ping", one, emits=other, detached=True)
@@ -255,7 +257,7 @@ def test_a_detached_constraint_makes_a_loop_too(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("end", ["group", "min_age", "input", "where", "holds"])
-def test_loops_that_end_or_take_time(scene: Scene, end: str) -> None:
+def test_loops_that_end_or_take_time_are_not_reported(scene: Scene, end: str) -> None:
     one, other = scene.module.signal("one"), scene.module.signal("other")
     wanted: dict[str, rs.Condition] = {
         "group": one,
@@ -326,7 +328,7 @@ def test_source_is_examined_on_demand_only(scene: Scene) -> None:
     )
 
 
-def test_a_forgotten_await(scene: Scene) -> None:
+def test_a_forgotten_await_is_reported(scene: Scene) -> None:
     @scene.module.rule(when=scene.heard, name="later")
     async def later(ctx: rs.RuleContext) -> None:
         ctx.sleep(1)  # type: ignore[unused-coroutine]

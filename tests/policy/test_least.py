@@ -40,24 +40,24 @@ def all_of(conditions: list[rs.Signal[None]]) -> rs.Condition:
 
 
 @pytest.mark.parametrize("count", [10, 1000, 3000])
-def test_a_ring_of_any_length(count: int) -> None:
+def test_the_least_pathway_in_a_ring_of_any_length(count: int) -> None:
     m = rs.Module("m")
     entry, ring = m.signal("entry"), signals(m, "s", count)
     m.rule(when=entry, emits=ring[0], name="enter")(nothing)
     for number in range(count):
         m.rule(when=ring[number], emits=ring[(number + 1) % count], name=f"r{number}")(nothing)
     policy = rs.compile(m)
-    # All but one rule have the whole ring on their pathways, and all have the entry.
+    # All rules but one have the whole ring on their pathways, and all have the entry.
     each = log((count + 1) / count)
     for number in (0, count // 2, count - 1):
         (clause,) = policy.clauses(f"m:r{number}")
         assert clause.utility == pytest.approx(each * (number + 1))
-    # By the entry, or round the ring, where the first signal closes the cycle again.
+    # One pathway comes from the entry. The other goes round the ring, back to the first signal, where the cycle is cut.
     assert [len(pathway) for pathway in policy.clauses("m:r0")[0].pathways] == [2, count]
 
 
 @pytest.mark.parametrize("count", [3, 10, 40])
-def test_a_clique_of_any_size(count: int) -> None:
+def test_the_least_pathway_in_a_clique_of_any_size(count: int) -> None:
     m = rs.Module("m")
     entry, members = m.signal("entry"), signals(m, "s", count)
     m.rule(when=entry, emits=members, name="enter")(nothing)
@@ -66,12 +66,12 @@ def test_a_clique_of_any_size(count: int) -> None:
         m.rule(when=others, emits=member, name=f"r{number}")(nothing)
     policy = rs.compile(m)
     for clause in policy.clauses("m:r0"):
-        # The member itself, as the entry is on all.
+        # Only the member itself counts, because the entry is on all pathways.
         assert clause.utility == pytest.approx(log((count + 1) / count))
     assert policy.clauses("m:r0")[0].pathways[0] == {entry, members[1]}
 
 
-def test_a_chain_of_any_length() -> None:
+def test_the_least_pathway_in_a_chain_of_any_length() -> None:
     m = rs.Module("m")
     chain = signals(m, "s", 2000)
     for number in reversed(range(1999)):  # effects first
@@ -82,8 +82,8 @@ def test_a_chain_of_any_length() -> None:
     assert policy.clauses("m:r1998")[0].pathways == (frozenset(chain[:-1]),)
 
 
-def test_two_causes_at_each_step_of_a_chain() -> None:
-    """There are 2^60 pathways. The first of each pair is on one rule more, so the first ones are the least."""
+def test_the_least_pathway_with_two_causes_at_each_step_of_a_chain() -> None:
+    """There are 2^60 pathways. The first cause of each pair is on one rule more, so it has less information."""
     m = rs.Module("m")
     firsts, seconds = signals(m, "a", 60), signals(m, "b", 60)
     for number in range(59):
@@ -147,7 +147,7 @@ def test_independent_choices_do_not_multiply() -> None:
     assert len(clause.pathways) == MAX_PATHWAYS  # of 3^40
 
 
-def test_a_torus_has_an_end() -> None:
+def test_the_search_in_a_torus_ends() -> None:
     """A torus: rings through rings, with one input."""
     m = rs.Module("m")
     side = 12
@@ -163,7 +163,7 @@ def test_a_torus_has_an_end() -> None:
     for name in policy.rules:
         assert 0 <= policy.utility(name) <= least * side * side
     (clause,) = policy.clauses("m:r11_11")
-    assert len(clause.pathways) == 1  # the least that was found
+    assert len(clause.pathways) == 1  # only the best one that the search found
 
 
 # ------------------------------------------------------------------------------- against every union

@@ -79,7 +79,7 @@ def test_the_speaker_in_the_worked_example(text: str, said: list[str], face: str
         assert sim.read(m.slots[0]) == face
 
 
-# ------------------------------------------------------------- the laws, read aloud, on random policies
+# ------------------------------------------------------------- an interpreter of L8 and L9, on random policies
 
 Constraint = tuple[str, bool, int]
 """A signal's name, whether the constraint is detached, and its number of predicates."""
@@ -99,9 +99,10 @@ Pathway = frozenset[str]
 
 
 def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
-    """The signal and, recursively, its causes: one completion for each way to cause it (L8).
+    """Return the completions of a signal: the signal and, recursively, its causes, once for each way to cause it (L8).
 
-    `way` is what leads from the clause here; a signal that stands there already closes a cycle, which is cut.
+    `way` has the signals between the clause and this one. A signal that is on the way already closes a cycle, which is
+    cut.
     """
     if signal in way:
         return {frozenset()}
@@ -117,7 +118,7 @@ def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]
 
 
 def pathways(clause: list[Constraint], way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
-    """The clause and, for each of its non-detached constraints, one completion: every combination."""
+    """Return every combination of the clause with one completion for each of its non-detached constraints."""
     choices = [
         {frozenset({signal})} if detached else completions(signal, way, rules, inputs) for signal, detached, _ in clause
     ]
@@ -216,7 +217,7 @@ def test_pathways_and_utilities_are_those_of_the_laws(data: st.DataObject) -> No
         assume(False)
         return
     expected = utilities(world.rules, world.inputs)
-    assume(max(len(found) for rule in expected for found, _ in rule) <= 100)  # far from where the engine cuts
+    assume(max(len(found) for rule in expected for found, _ in rule) <= 100)  # the policy drops none
     for number, of_rule in enumerate(expected):
         clauses = policy.clauses(f"m:r{number}")
         assert len(clauses) == len(of_rule)

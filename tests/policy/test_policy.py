@@ -31,7 +31,7 @@ async def late(ctx: rs.RuleContext) -> None:
 policy = rs.compile(demo)
 
 
-def test_its_parts_have_names_and_cannot_change() -> None:
+def test_the_parts_of_a_policy_have_names_and_cannot_change() -> None:
     assert policy.rules["demo:add"] is add and list(policy.rules) == ["demo:add", "demo:late"]
     assert policy.signals["demo:go"] is go and policy.signals["demo:count:changed"] is count.changed
     assert policy.slots["demo:count"] is count
@@ -41,13 +41,13 @@ def test_its_parts_have_names_and_cannot_change() -> None:
     assert repr(policy) == "<policy of 2 rules in 2 modules>"
 
 
-def test_a_rule_or_its_name_is_an_argument() -> None:
+def test_a_rule_may_be_given_by_its_name() -> None:
     assert policy.utility(add) == policy.utility("demo:add")
     assert policy.clauses(late) == policy.clauses("demo:late")
 
 
 @pytest.mark.parametrize("ask", ["utility", "clauses", "rule_plan"])
-def test_an_unknown_rule_gets_a_hint(ask: str) -> None:
+def test_the_message_about_an_unknown_rule_names_the_nearest(ask: str) -> None:
     with pytest.raises(rs.DeclarationError, match="no rule 'demo:ad'; did you mean 'demo:add'"):
         getattr(policy, ask)("demo:ad")
 
@@ -86,7 +86,7 @@ def test_settings_replace_the_numbers_that_name_them() -> None:
     assert changed.settings == {"demo": Late(after=4.0)}
 
 
-def test_a_policy_that_names_no_setting_stays_itself() -> None:
+def test_settings_leave_a_policy_that_refers_to_none_as_it_is() -> None:
     plain = rs.compile(rs.Module("plain"))
     assert plain.with_settings({}) is plain
 

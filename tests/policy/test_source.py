@@ -22,7 +22,7 @@ class Names:
 
 
 def acts(function: Callable[..., Any], source: Any = inspect.getsource, **options: Any) -> tuple[Acts, list[str]]:
-    """Make a rule of a function, and return its acts and the undeclared ones in words."""
+    """Make a rule of a function. Return its acts, and phrases for those that it does not declare."""
     module = rs.Module("rules", requires=[demo])
     module.rule(when=go, name="work", **options)(function)
     plan = rs.compile(module).rule_plan("rules:work")

@@ -70,10 +70,10 @@ def triples(text: str) -> list[tuple[str, str, str]]:
     """By nlp; a question word by its name."""
     tree, entities = _read(text)
     found = (statement.triple for statement in statements_of(tree, entities, Clause.all_in(tree)))
-    return [(_text(s), predicate, _text(o)) for s, predicate, o in found]
+    return [(text_of(s), predicate, text_of(o)) for s, predicate, o in found]
 
 
-def _text(part: str | QuestionWord) -> str:
+def text_of(part: str | QuestionWord) -> str:
     return part.name if isinstance(part, QuestionWord) else part
 
 

@@ -47,7 +47,7 @@ def test_known_sentences_are_understood(name: str) -> None:
 def test_a_set_sees_what_the_whole_analysis_has() -> None:
     for text, _ in (*labelled("triples_rows")[::30], *labelled("questions_rows")[::20]):
         whole = modules._seen(text)
-        assert [tuple(map(modules._text, triple)) for triple in whole.triples] == modules.triples(text)
+        assert [tuple(map(modules.text_of, triple)) for triple in whole.triples] == modules.triples(text)
         assert whole.question == modules.question(text)
 
 

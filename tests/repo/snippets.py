@@ -55,7 +55,7 @@ class Block:
 
     @property
     def runs(self) -> bool:
-        """Whether the tests run the block, or would run it without the reason to skip it."""
+        """Whether the tests run the block, or would run it if the page gave no reason to skip it."""
         return self.language in LANGUAGES
 
     @property

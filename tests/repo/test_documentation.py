@@ -42,7 +42,7 @@ def test_the_readme_is_a_page_long() -> None:
     assert len(before.split()) <= 700
 
 
-def test_the_page_lists_every_extra() -> None:
+def test_the_page_about_installing_lists_every_extra() -> None:
     extras = set(tomllib.loads(text_of("pyproject.toml"))["project"]["optional-dependencies"])
     page = text_of("docs/how-to/install-it-in-a-project.md")
     assert set(re.findall(r"^\| `([\w-]+)` \|", page, re.MULTILINE)) == extras - {"dev", "docs"}

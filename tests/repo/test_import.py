@@ -48,8 +48,8 @@ def test_import_leaves_no_trace() -> None:
     assert (found["threads"], found["handlers"], found["filters"], found["hooks"]) == (1, 0, 0, True)
 
 
-@pytest.mark.parametrize("room", ["declare", "policy", "engine", "errors"])
-def test_pure_rooms_load_nothing_impure(room: str) -> None:
+@pytest.mark.parametrize("package", ["declare", "policy", "engine", "errors"])
+def test_pure_packages_load_nothing_impure(package: str) -> None:
     """This includes indirect imports: the clock, the loop and the threads stay in `runtime`."""
-    loaded = set(loaded_by(f"ravestate.{room}")["loaded"])  # type: ignore[call-overload]
+    loaded = set(loaded_by(f"ravestate.{package}")["loaded"])  # type: ignore[call-overload]
     assert not loaded & {"asyncio", "concurrent.futures", "queue", "pydantic", "yaml", "ravestate.runtime"}

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "ravestate"
 KINDS = ("platform", "modality", "meta", "skill")
 
-PURE_ROOMS = ("declare", "policy", "draw", "engine", "errors.py")
+PURE_PACKAGES = ("declare", "policy", "draw", "engine", "errors.py")
 PURE_LIBRARY = {
     "__future__", "abc", "array", "ast", "bisect", "collections", "contextlib", "copy", "dataclasses", "difflib", "dis",
     "enum", "fractions", "functools", "graphlib", "hashlib", "heapq", "html", "inspect", "itertools", "json",
@@ -31,10 +31,10 @@ PURE_LIBRARY = {
 """Modules of the standard library for values and algorithms. Never add clocks, loops, threads, chance, files or logs."""
 
 
-def files_of(*rooms: str) -> list[Path]:
+def files_of(*packages: str) -> list[Path]:
     found: list[Path] = []
-    for room in rooms:
-        place = SOURCE / room
+    for package in packages:
+        place = SOURCE / package
         found += [place] if place.is_file() else sorted(place.rglob("*.py"))
     return found
 
@@ -71,11 +71,11 @@ def imports_in(file: Path) -> list[Import]:
     return list(visit(ast.parse(file.read_text(encoding="utf-8"), str(file)), False))
 
 
-def name_of(file: Path) -> str:
+def path_of(file: Path) -> str:
     return file.relative_to(SOURCE).as_posix()
 
 
-def test_rooms_import_only_rooms_below_them() -> None:
+def test_packages_import_only_packages_of_lower_layers() -> None:
     run = subprocess.run(
         [Path(sys.executable).with_name("lint-imports"), "--no-cache"],
         cwd=ROOT, capture_output=True, text=True, check=False,
@@ -83,10 +83,10 @@ def test_rooms_import_only_rooms_below_them() -> None:
     assert run.returncode == 0, run.stdout + run.stderr
 
 
-@pytest.mark.parametrize("file", files_of(*PURE_ROOMS), ids=name_of)
-def test_pure_rooms_import_nothing_impure(file: Path) -> None:
+@pytest.mark.parametrize("file", files_of(*PURE_PACKAGES), ids=path_of)
+def test_pure_packages_import_nothing_impure(file: Path) -> None:
     impure = [
-        f"{name_of(file)}:{line}: {module}"
+        f"{path_of(file)}:{line}: {module}"
         for line, module, _, _ in imports_in(file)
         if not {module, module.partition(".")[0]} & {"ravestate", *PURE_LIBRARY}
     ]
@@ -95,9 +95,9 @@ def test_pure_rooms_import_nothing_impure(file: Path) -> None:
 
 def test_nothing_imports_the_command_line() -> None:
     guilty = [
-        f"{name_of(file)}:{line}: {module}"
+        f"{path_of(file)}:{line}: {module}"
         for file in files_of(".")
-        if not (name_of(file).startswith("cli/") or name_of(file) == "__main__.py")
+        if not (path_of(file).startswith("cli/") or path_of(file) == "__main__.py")
         for line, module, names, _ in imports_in(file)
         if f"{module}.".startswith("ravestate.cli.") or (module == "ravestate" and "cli" in names)
     ]
@@ -107,7 +107,7 @@ def test_nothing_imports_the_command_line() -> None:
 def test_skills_know_no_platform() -> None:
     platforms = {place.stem for place in (SOURCE / "modules" / "platform").glob("[!_]*")}
     guilty = [
-        f"{name_of(file)}:{line}: {module} {', '.join(names)}"
+        f"{path_of(file)}:{line}: {module} {', '.join(names)}"
         for file in files_of("modules/skill")
         for line, module, names, _ in imports_in(file)
         if (lazy := module == "ravestate.modules" and platforms.intersection({*names, "platform"}))
@@ -130,8 +130,8 @@ def test_modules_are_folders_all_built_alike() -> None:
 
 
 def test_no_import_leads_back_to_its_file() -> None:
-    """Imports at the top of files form no circle. Imports within functions run later, so they do not count."""
-    files = {_name_of(file): file for file in SOURCE.rglob("*.py")}
+    """Imports at the top of files form no cycle. Imports within functions run later, so they do not count."""
+    files = {module_name(file): file for file in SOURCE.rglob("*.py")}
     graph: dict[str, set[str]] = {}
     for name, file in files.items():
         graph[name] = {
@@ -141,9 +141,9 @@ def test_no_import_leads_back_to_its_file() -> None:
             for target in [f"{module}.{each}" for each in names if f"{module}.{each}" in files] or [module]
             if target in files and target != name
         }
-    TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
+    TopologicalSorter(graph).prepare()  # raises a CycleError that names the files
 
 
-def _name_of(file: Path) -> str:
+def module_name(file: Path) -> str:
     parts = file.relative_to(SOURCE.parent).with_suffix("").parts
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)

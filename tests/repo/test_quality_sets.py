@@ -49,7 +49,7 @@ def _sentences(file: Path) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def known() -> dict[str, Path]:
-    """Return the plain form of every sentence that may be seen, with its file."""
+    """Return the plain form of every sentence outside the blind sets, with its file."""
     files = [*ROOT.glob("src/**/*.yaml"), *ROOT.glob("examples/**/*.yaml"), *ROOT.glob("tests/**/*.yaml")]
     files += [*ROOT.glob("tests/**/*.tsv"), *ROOT.glob("tests/**/*.py"), *ROOT.glob("src/**/*.py")]
     seen = (file for file in files if BLIND not in file.parents)

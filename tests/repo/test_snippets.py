@@ -116,7 +116,7 @@ def test_indented_blocks_are_found(tmp_path: Path) -> None:
     assert page.module.e == 1
 
 
-def test_shown_output_must_come_out(tmp_path: Path) -> None:
+def test_the_shown_output_must_match(tmp_path: Path) -> None:
     page = page_of(tmp_path, "```pycon\n>>> g = 7\n>>> g\n7\n```\n```pycon\n>>> g + 1\n9\n```\n")
     page.run(page.blocks[0])
     with pytest.raises(AssertionError, match="Expected"):
@@ -164,7 +164,7 @@ def test_files_that_blocks_leave_behind_are_known(tmp_path: Path) -> None:
     assert page.leavings() == ["new"]
 
 
-def test_tests_that_nobody_would_run_are_refused(tmp_path: Path) -> None:
+def test_tests_in_a_block_without_a_title_are_refused(tmp_path: Path) -> None:
     page = page_of(tmp_path, "```python\ndef test_nothing():\n    assert False\n```\n")
     with pytest.raises(AssertionError, match=r'page\.md:2: give it title="test_'):
         page.run(page.blocks[0])

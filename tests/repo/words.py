@@ -1,6 +1,6 @@
-"""Find prose that a reader has to read twice: headless openings, circuitous passives, overlong sentences.
+"""Find prose that a reader has to read twice: openings without a noun, circuitous passives, overlong sentences.
 
-    python tests/repo/words.py [PATH ...]        # default: everything that the repository says
+    python tests/repo/words.py [PATH ...]        # default: all prose of the repository
 
 The finder reads Markdown pages, the docstrings, comments and messages of Python files, and the comments of the web
 pages' sources. It knows only the worst faults.

@@ -54,7 +54,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
     return machine
 
 
-WHAT = pytest.mark.parametrize("first_step", [True, False])
+IN_EITHER_STEP = pytest.mark.parametrize("first_step", [True, False])
 
 
 def warnings_of(machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, **did: float) -> list[str]:
@@ -73,7 +73,7 @@ def warnings_of(machine: Machine, caplog: pytest.LogCaptureFixture, first_step: 
     return [record.getMessage() for record in caplog.records]
 
 
-@WHAT
+@IN_EITHER_STEP
 def test_a_rule_that_computes_too_long_is_named(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
 ) -> None:
@@ -81,7 +81,7 @@ def test_a_rule_that_computes_too_long_is_named(
     assert re.match(rf"rule m:work \({HERE}:\d+\) blocked the loop for 250 ms by computing: make it a plain", text)
 
 
-@WHAT
+@IN_EITHER_STEP
 def test_a_rule_that_sleeps_too_long_is_named(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
 ) -> None:
@@ -89,7 +89,7 @@ def test_a_rule_that_sleeps_too_long_is_named(
     assert re.match(rf"rule m:work \({HERE}:\d+\) blocked the loop for 5000 ms by sleeping: make it a plain", text)
 
 
-@WHAT
+@IN_EITHER_STEP
 @pytest.mark.parametrize("wait", ["wait_for_a_processor", "wait_for_the_interpreter"])
 def test_a_busy_machine_raises_no_false_alarm(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, wait: str

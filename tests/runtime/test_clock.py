@@ -15,7 +15,7 @@ from ravestate.testing import simulate
 from ravestate.testing.virtual_loop import VirtualLoop
 
 
-class Bench:
+class Scene:
     """A clock on a virtual loop, and its sleepers."""
 
     def __init__(self) -> None:
@@ -36,64 +36,64 @@ class Bench:
 
 
 @pytest.fixture
-def bench() -> Bench:
-    return Bench()
+def scene() -> Scene:
+    return Scene()
 
 
-def test_it_follows_its_loop_from_zero(bench: Bench) -> None:
-    assert bench.clock.now() == 0.0
-    bench.sleeper("a", 2.0)
-    bench.sleeper("b", 1.0)
-    bench.pass_by(5.0)
-    assert bench.woken == [("b", 1.0), ("a", 2.0)]
-    bench.loop.close()
+def test_a_clock_follows_its_loop_from_zero(scene: Scene) -> None:
+    assert scene.clock.now() == 0.0
+    scene.sleeper("a", 2.0)
+    scene.sleeper("b", 1.0)
+    scene.pass_by(5.0)
+    assert scene.woken == [("b", 1.0), ("a", 2.0)]
+    scene.loop.close()
 
 
-def test_a_sleep_does_not_count_the_time_in_which_the_clock_is_halted(bench: Bench) -> None:
-    bench.sleeper("a", 2.0)
-    bench.pass_by(0.5)
-    bench.clock.halt()
-    bench.sleeper("b", 1.0)
-    bench.pass_by(10.0)
-    assert (bench.clock.now(), bench.woken) == (0.5, [])
-    bench.clock.go()
-    bench.pass_by(10.0)
-    assert bench.woken == [("b", 1.5), ("a", 2.0)]
-    assert bench.clock.now() == 10.5
-    bench.loop.close()
+def test_a_sleep_does_not_count_the_time_in_which_the_clock_is_halted(scene: Scene) -> None:
+    scene.sleeper("a", 2.0)
+    scene.pass_by(0.5)
+    scene.clock.halt()
+    scene.sleeper("b", 1.0)
+    scene.pass_by(10.0)
+    assert (scene.clock.now(), scene.woken) == (0.5, [])
+    scene.clock.go()
+    scene.pass_by(10.0)
+    assert scene.woken == [("b", 1.5), ("a", 2.0)]
+    assert scene.clock.now() == 10.5
+    scene.loop.close()
 
 
-def test_sleeping_for_nan_seconds_is_refused(bench: Bench) -> None:
+def test_sleeping_for_nan_seconds_is_refused(scene: Scene) -> None:
     with pytest.raises(ValueError, match="nan"):
-        bench.loop.run_until_complete(bench.clock.sleep(math.nan))
-    bench.loop.close()
+        scene.loop.run_until_complete(scene.clock.sleep(math.nan))
+    scene.loop.close()
 
 
-def test_the_clock_is_set_forward_only_while_it_is_halted_and_never_back(bench: Bench) -> None:
-    bench.sleeper("a", 2.0)
-    bench.pass_by(0.5)
-    bench.clock.set(3.0)
-    assert bench.clock.now() == 0.5
-    bench.clock.halt()
-    assert bench.clock.next_waking() == 2.0
-    bench.clock.set(2.0)
-    bench.clock.set(1.0)
-    bench.pass_by(0.0)
-    assert (bench.clock.now(), bench.woken, bench.clock.next_waking()) == (2.0, [("a", 2.0)], None)
-    bench.loop.close()
+def test_the_clock_is_set_forward_only_while_it_is_halted_and_never_back(scene: Scene) -> None:
+    scene.sleeper("a", 2.0)
+    scene.pass_by(0.5)
+    scene.clock.set(3.0)
+    assert scene.clock.now() == 0.5
+    scene.clock.halt()
+    assert scene.clock.next_waking() == 2.0
+    scene.clock.set(2.0)
+    scene.clock.set(1.0)
+    scene.pass_by(0.0)
+    assert (scene.clock.now(), scene.woken, scene.clock.next_waking()) == (2.0, [("a", 2.0)], None)
+    scene.loop.close()
 
 
-def test_a_cancelled_sleeper_is_forgotten(bench: Bench) -> None:
-    task = bench.sleeper("a", 2.0)
-    bench.pass_by(0.5)
+def test_a_cancelled_sleeper_is_forgotten(scene: Scene) -> None:
+    task = scene.sleeper("a", 2.0)
+    scene.pass_by(0.5)
     task.cancel()
-    bench.pass_by(0.0)
-    assert bench.clock.next_waking() is None
-    bench.clock.halt()
-    bench.clock.go()
-    bench.pass_by(5.0)
-    assert bench.woken == []
-    bench.loop.close()
+    scene.pass_by(0.0)
+    assert scene.clock.next_waking() is None
+    scene.clock.halt()
+    scene.clock.go()
+    scene.pass_by(5.0)
+    assert scene.woken == []
+    scene.loop.close()
 
 
 def story() -> tuple[rs.Module, rs.Signal[None], rs.Slot[str]]:
@@ -187,7 +187,7 @@ def test_a_paused_context_ends_in_order() -> None:
     assert ended == [1.0]
 
 
-def test_observers_come_and_go_while_it_runs() -> None:
+def test_observers_come_and_go_while_a_context_runs() -> None:
     m, asked, _ = story()
     first: list[Any] = []
     second: list[Any] = []

@@ -68,13 +68,13 @@ async def test_a_context_runs_once() -> None:
         lambda c: c.add_rule(echo),
     ],
 )
-def test_nothing_can_be_done_before_it_begins(act: Callable[[rs.Context], object]) -> None:
+def test_a_context_that_has_not_started_refuses_every_call(act: Callable[[rs.Context], object]) -> None:
     with pytest.raises(rs.EngineError, match=r"has not started: write `async with rs\.Context"):
         act(rs.Context(policy))
 
 
 @on_loop
-async def test_waiting_before_it_begins_is_refused_too() -> None:
+async def test_a_context_that_has_not_started_refuses_waiting() -> None:
     context = rs.Context(policy)
     for wait in (context.next(number), context.quiet(), context.until_stopped(), context.stop()):
         with pytest.raises(rs.EngineError, match="has not started"):
@@ -82,7 +82,7 @@ async def test_waiting_before_it_begins_is_refused_too() -> None:
 
 
 @on_loop
-async def test_after_its_end_a_context_can_be_read_and_no_more() -> None:
+async def test_a_context_that_has_ended_can_only_be_read() -> None:
     async with rs.Context(policy) as context:
         context.put(heard, "x")
         await context.quiet()
@@ -98,7 +98,7 @@ async def test_after_its_end_a_context_can_be_read_and_no_more() -> None:
     await context.stop()  # a second time changes nothing
 
 
-def test_after_its_loop_has_closed_nothing_happens_either() -> None:
+def test_calls_after_the_loop_has_closed_do_nothing() -> None:
     context = rs.Context(policy)
 
     async def main() -> None:
@@ -142,7 +142,7 @@ def test_patience_is_a_number_of_seconds(patience: Any) -> None:
 
 
 @on_loop
-async def test_put_emit_and_next() -> None:
+async def test_next_returns_the_answer_to_a_put_or_an_emit() -> None:
     async with rs.Context(policy) as context:
         answer = asyncio.create_task(context.next(said.changed))
         await turns(1)
@@ -304,7 +304,7 @@ async def test_a_background_rule_does_not_hold_up_quiet() -> None:
 
     @m.rule(when=go, writes=done, background=True)
     async def wait(ctx: rs.RuleContext) -> None:
-        """It waits for the slot that `keep` has."""
+        """Wait for the slot that `keep` has taken."""
 
     async with rs.Context(m) as context:
         context.emit(go)
@@ -556,7 +556,7 @@ def test_a_rule_for_shutdown_may_be_kept_waiting_first() -> None:
     assert ending.told == ["farewell at 1 s"]
 
 
-def test_a_farewell_is_not_cut_off_when_shutdown_interrupts_another() -> None:
+def test_a_farewell_is_not_cut_off_when_shutdown_interrupts_another_rule() -> None:
     ending = Ending()
 
     @ending.rule(ending.go, until=rs.shutdown)
@@ -680,7 +680,7 @@ def test_no_rule_starts_while_the_last_ones_clean_up(caplog: pytest.LogCaptureFi
     assert not caplog.records
 
 
-def test_the_others_go_on_when_a_rule_interrupts_the_process() -> None:
+def test_the_other_rules_go_on_after_a_rule_has_raised_keyboard_interrupt() -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -718,7 +718,7 @@ def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning_later(
         assert sim.fired == ["m:long"] and not caplog.records
 
 
-def test_shutdown_has_five_seconds_and_no_more() -> None:
+def test_rules_for_shutdown_have_five_seconds() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown)
@@ -789,7 +789,7 @@ async def test_a_rule_that_refuses_to_end_does_not_keep_the_process_alive() -> N
 
 
 @on_loop
-async def test_cancelling_the_shutdown_breaks_it_off() -> None:
+async def test_a_cancelled_shutdown_does_not_wait_for_rules() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown)

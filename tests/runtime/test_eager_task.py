@@ -61,7 +61,7 @@ async def closed(eager: EagerTask) -> None:
     assert eager.task.done()
 
 
-# ---------------------------------------------------------------------------------------- what does not wait
+# ---------------------------------------------------------------------------------------- coroutines that do not wait
 
 
 @on_loop
@@ -126,7 +126,7 @@ async def test_rules_that_do_not_wait_share_one_spare_task() -> None:
     assert made == ["main"]
 
 
-# ---------------------------------------------------------------------------------------- what waits
+# ---------------------------------------------------------------------------------------- coroutines that wait
 
 
 @on_loop
@@ -285,7 +285,7 @@ async def test_a_context_variable_does_not_reach_the_next_rule() -> None:
 
 @pytest.mark.parametrize("when", ["before adoption", "after adoption"])
 @on_loop
-async def test_cancelling_lets_it_clean_up(when: str) -> None:
+async def test_a_cancelled_coroutine_cleans_up(when: str) -> None:
     eager = make()
     told: list[str] = []
 
@@ -313,7 +313,7 @@ async def test_cancelling_lets_it_clean_up(when: str) -> None:
 
 @pytest.mark.parametrize("fresh", [True, False])
 @on_loop
-async def test_cancelling_reaches_the_awaited_tasks(fresh: bool) -> None:
+async def test_a_cancellation_reaches_the_awaited_tasks(fresh: bool) -> None:
     eager = make()
     if not fresh:
         await turns()
@@ -338,7 +338,7 @@ async def test_cancelling_reaches_the_awaited_tasks(fresh: bool) -> None:
 
 
 @on_loop
-async def test_cancelling_may_be_declined() -> None:
+async def test_a_coroutine_may_decline_a_cancellation() -> None:
     eager = make()
 
     async def stubborn() -> str:
@@ -439,7 +439,7 @@ async def test_a_coroutine_that_refuses_to_end_can_be_abandoned() -> None:
 
 
 @on_loop
-async def test_closing_ends_a_spare_task_and_no_other() -> None:
+async def test_close_ends_a_spare_task_and_no_task_with_a_coroutine() -> None:
     await closed(make())
     eager = make()
     future: asyncio.Future[int] = asyncio.get_running_loop().create_future()

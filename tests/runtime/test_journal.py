@@ -47,7 +47,7 @@ def remember(ctx: rs.RuleContext) -> None:
 
 
 async def conversation(context: rs.Context) -> None:
-    """Put single and several inputs, with and without waiting, and add a rule."""
+    """Put one input at a time and several at once, with and without waiting, and add a rule."""
     context.put(heard, "hello")
     await context.quiet()
     context.put(heard, "why?")
@@ -126,7 +126,8 @@ async def doubt(ctx: rs.RuleContext) -> None:
 
 @on_loop
 async def test_a_recorded_or_traced_run_decides_the_same_as_a_quick_one() -> None:
-    """A run without a journal and a trace passes no event records to the engine, and still decides the same (L25)."""
+    """Without a journal, the runner calls the engine directly, without event records. The decisions are the same
+    (L25)."""
 
     async def ends(**options: Any) -> list[Ended]:
         found: list[Ended] = []

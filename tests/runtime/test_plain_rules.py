@@ -77,7 +77,7 @@ async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warnin
             assert log.texts.empty()
     assert re.fullmatch(
         r"plain functions wait for a worker thread: m:answer \(3 runs, up to 60 s\)\. All 2 threads are taken by "
-        r"m:hangs \(2 runs, up to 60 s\)\. Give a rule that may hang a timeout=, or write async def",
+        r"m:hangs \(2 runs, up to 60 s\)\. If a rule may hang, write timeout=seconds or async def",
         text,
     )
 

@@ -22,7 +22,7 @@ from runtime.on_loop import on_loop, turns
 LIMIT = 20
 
 
-def test_a_rule_ends_it_in_order() -> None:
+def test_a_rule_ends_the_agent_in_order() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -165,7 +165,7 @@ def test_faults_are_raised_before_anything_runs() -> None:
         rs.run("nonsense")
 
 
-def test_it_runs_in_a_thread_too() -> None:
+def test_an_agent_runs_in_a_thread_too() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -181,7 +181,7 @@ def test_it_runs_in_a_thread_too() -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_signal_handlers_are_there_while_it_runs_and_gone_after_it(number: signal.Signals) -> None:
+def test_signal_handlers_are_set_only_while_the_agent_runs(number: signal.Signals) -> None:
     m = rs.Module("m")
     before = signal.getsignal(number)
 
@@ -307,7 +307,7 @@ def started(folder: Path, *arguments: str) -> subprocess.Popen[str]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_one_signal_ends_it_in_order(tmp_path: Path, number: signal.Signals) -> None:
+def test_one_signal_ends_the_agent_in_order(tmp_path: Path, number: signal.Signals) -> None:
     with started(tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "running\n"
@@ -321,7 +321,7 @@ def test_one_signal_ends_it_in_order(tmp_path: Path, number: signal.Signals) -> 
     ("manner", "said"),
     [("slow", ["broken off", "cleaned up", "ended"]), ("stubborn", ["cleaned up", "ended", "no"])],
 )
-def test_a_second_signal_breaks_off(tmp_path: Path, manner: str, said: list[str]) -> None:
+def test_a_second_signal_aborts_the_shutdown(tmp_path: Path, manner: str, said: list[str]) -> None:
     with started(tmp_path, manner) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "running\n"

@@ -204,7 +204,7 @@ async def test_sys_exit_does_not_end_the_process(where: str) -> None:
         assert await talk.ask(context) == "fallback"
 
 
-def test_a_keyboard_interrupt_ends_what_runs() -> None:
+def test_a_keyboard_interrupt_ends_the_context_and_its_task() -> None:
     talk = Talk()
     ended: list[bool] = []
     talk.rule(raising(KeyboardInterrupt(), "at once"), name="interrupts")
@@ -236,7 +236,7 @@ async def test_the_message_about_a_returned_value_says_what_to_write(nonsense: o
         failure = only_failure(talk)
         assert isinstance(failure, rs.RuleError)
         assert re.match(rf"rule m:answers \({HERE}:\d+\) returned {re.escape(repr(nonsense))};", str(failure))
-        assert "a rule returns nothing, rs.Resign(reason) or rs.Retire(); write its result to a slot" in str(failure)
+        assert "a rule may only return None, rs.Resign(reason) or rs.Retire(); write its result" in str(failure)
 
 
 @on_loop

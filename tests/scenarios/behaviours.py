@@ -44,7 +44,7 @@ def classifier(
 
 
 def dialogue(takes: float = 0.0) -> tuple[rs.Module, rs.Signal[str]]:
-    """`Question`, `Qa` and `Wildtalk`."""
+    """Declare the rules `Question`, `Qa` and `Wildtalk`."""
     m = rs.Module("m", requires=[rawio])
     question = m.signal("question", payload=str)
     classifier(m, question, "?", takes=lambda text: takes)
@@ -80,7 +80,8 @@ def question(play: Play) -> None:
 
 
 def wildtalk_waits_but_not_a_moment_too_long(play: Play) -> None:
-    """2. No question: `Wildtalk` fires in the instant in which `Question` ends. A question: `Qa` alone answers."""
+    """2. To a statement, `Wildtalk` answers in the instant in which `Question` ends. To a question, `Qa` alone
+    answers."""
     for takes in (0.0, 0.7):
         m, _ = dialogue(takes)
         with play(m) as sim:
@@ -97,7 +98,7 @@ def wildtalk_waits_but_not_a_moment_too_long(play: Play) -> None:
 
 
 def qa_resigns(play: Play) -> None:
-    """3. Then `Wildtalk` answers the same input."""
+    """3. If `Qa` resigns, `Wildtalk` answers the same input."""
     m = rs.Module("m", requires=[rawio])
     question = m.signal("question", payload=str)
     classifier(m, question, "?")
@@ -140,7 +141,8 @@ def slow_cause(play: Play) -> None:
 
 
 def fusion(play: Play) -> None:
-    """5. `point & speech` against `speech`: a gesture 300 ms later fuses; without one, exactly the patience."""
+    """5. `point & speech` beats `speech` if a gesture comes 300 ms later; without one, `speech` fires after the
+    patience."""
     for patience, own in ((1.0, None), (2.5, None), (1.0, 0.4)):
         m = rs.Module("m", requires=[rawio])
         point = m.signal("point")
@@ -161,7 +163,8 @@ def fusion(play: Play) -> None:
 
 
 def prompt_loop(play: Play) -> None:
-    """6. Silence: asked again every 10 s (+ patience). An answer at 9 s: exactly one `Answered`, no second prompt."""
+    """6. In silence, the agent asks again every 10 s (+ patience). After an answer at 9 s, only `Answered` fires,
+    once."""
     m = rs.Module("m", requires=[rawio])
     prompted = m.signal("prompted")
 
@@ -181,7 +184,7 @@ def prompt_loop(play: Play) -> None:
         sim.say("Well...")
         sim.advance(100.0)
         assert sim.said == ["Prompt"] + ["PromptAgain"] * 4 + ["Answered: Well..."]
-    for moment in (9.0, 10.5):  # the second: the next prompt is due, and has patience
+    for moment in (9.0, 10.5):  # at 10.5 s the next prompt is due, but waits with patience
         with play(m) as sim:
             sim.advance(moment)
             sim.say("Fine.")
@@ -218,7 +221,7 @@ def answers(texts: tuple[str, ...]) -> list[str]:
 
 
 def burst(play: Play) -> None:
-    """8. 10,000 spikes of one signal within a second: every one handled once, memory back to rest."""
+    """8. 10,000 spikes of one signal within a second are each handled once, and no live object is left."""
     m = rs.Module("m")
     tick, count = m.signal("tick", payload=int), m.slot("count", 0)
     quick: list[int] = []
@@ -254,7 +257,7 @@ def burst(play: Play) -> None:
 def live_objects() -> int:
     """Count the live spikes, activations and groups."""
     gc.collect()
-    return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())  # isinstance would ask them
+    return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())  # isinstance runs their code
 
 
 def independent_writers(play: Play) -> None:

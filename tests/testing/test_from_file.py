@@ -56,7 +56,7 @@ def greeting(path: Path, **options: object) -> str:
         return said
 
 
-def test_it_has_the_modules_and_settings_of_the_file(agent: Path) -> None:
+def test_a_simulation_has_the_modules_and_settings_of_the_file(agent: Path) -> None:
     with simulate.from_file(str(agent)) as sim:
         sim.say("Hello")
         sim.advance(1.9)

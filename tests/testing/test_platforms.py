@@ -10,8 +10,8 @@ from ravestate.testing import CHECKS, Driver, platforms
 from ravestate.testing.platforms import check_answer, check_order, check_restart, check_users
 
 
-class Memory:
-    """The users of a platform in memory. It answers one message twice."""
+class InMemory:
+    """The users of a platform in memory, which answers the message `doubled` twice."""
 
     def __init__(self, doubled: str = "") -> None:
         self._doubled = doubled
@@ -42,12 +42,12 @@ class Memory:
 @pytest.mark.parametrize("check", CHECKS)
 def test_a_platform_without_faults_passes(check: Callable[[Driver], Awaitable[None]]) -> None:
     async def test() -> None:
-        await check(Memory())
+        await check(InMemory())
 
     asyncio.run(test())
 
 
-class Late(Memory):
+class Late(InMemory):
     """A platform whose second answer to a message is late: it comes with the next message."""
 
     def __init__(self, doubled: str) -> None:
@@ -63,13 +63,13 @@ class Late(Memory):
             self._owed[user] = text
 
 
-@pytest.mark.parametrize("platform", [Memory, Late])
+@pytest.mark.parametrize("platform", [InMemory, Late])
 @pytest.mark.parametrize(
     ("check", "last"),
     [(check_answer, "x" * 3000), (check_order, "message 11"), (check_users, "count"), (check_restart, "after of emil")],
 )
 def test_a_doubled_last_message_is_a_fault(
-    check: Callable[[Driver], Awaitable[None]], last: str, platform: Callable[[str], Memory]
+    check: Callable[[Driver], Awaitable[None]], last: str, platform: Callable[[str], InMemory]
 ) -> None:
     async def test() -> None:
         with pytest.raises(AssertionError, match="the user should have received"):
@@ -78,7 +78,7 @@ def test_a_doubled_last_message_is_a_fault(
     asyncio.run(test())
 
 
-class Silent(Memory):
+class Silent(InMemory):
     """A platform that answers nobody."""
 
     async def read(self, user: str, count: int) -> list[str]:

@@ -1,7 +1,7 @@
 """Simulated contexts: the real runtime in virtual time."""
 
 import asyncio
-from asyncio import sleep  # in here it costs no real time
+from asyncio import sleep  # a sleep in virtual time costs no real time
 from typing import Any
 
 import pytest
@@ -45,7 +45,7 @@ def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
     return module, module.signal("go"), []
 
 
-# ---------------------------------------------------------------------------------------- what is told
+# ---------------------------------------------------------------------------------------- what a simulation records
 
 
 def test_said_has_every_output_from_startup_to_the_end() -> None:
@@ -109,7 +109,7 @@ def test_the_trace_can_be_switched_off() -> None:
         assert list(sim.trace) == []
 
 
-def test_shortcuts_to_the_context() -> None:
+def test_the_shortcuts_act_on_the_context() -> None:
     module, go, _ = clock()
     value = module.slot("value", 0)
 
@@ -270,7 +270,7 @@ def test_the_error_names_a_plain_function_that_blocks_time(monkeypatch: pytest.M
         sim.emit(go)
     assert str(caught.value) == (
         "clock:hang kept virtual time waiting for over 0.001 real seconds: a plain function takes real time; to wait in "
-        "virtual time write async def and await ctx.sleep(seconds)"
+        "virtual time, write async def and await ctx.sleep(seconds)"
     )
     release.set()
 
@@ -343,7 +343,7 @@ def test_time_does_not_run_backwards() -> None:
 # ---------------------------------------------------------------------------------------- wrong use
 
 
-def test_it_is_refused_inside_a_running_loop() -> None:
+def test_a_simulation_inside_a_running_loop_is_refused() -> None:
     async def main() -> None:
         with pytest.raises(rs.EngineError, match="simulate runs a loop of its own: use it in a plain function"):
             simulate().__enter__()
@@ -351,7 +351,7 @@ def test_it_is_refused_inside_a_running_loop() -> None:
     asyncio.run(main())
 
 
-def test_it_is_a_context_manager_and_runs_once() -> None:
+def test_a_simulation_is_a_context_manager_and_runs_once() -> None:
     sim = simulate()
     for act in (lambda: sim.advance(1), sim.settle, lambda: sim.now):
         with pytest.raises(rs.EngineError, match="has not started: write"):
@@ -362,7 +362,7 @@ def test_it_is_a_context_manager_and_runs_once() -> None:
         sim.__enter__()
 
 
-def test_saying_needs_rawio() -> None:
+def test_the_message_about_say_without_rawio_names_rawio() -> None:
     with (
         simulate() as sim,
         pytest.raises(rs.UndeclaredError, match="no slot rawio:input; add module rawio to the context"),
@@ -370,7 +370,7 @@ def test_saying_needs_rawio() -> None:
         sim.say("hello")
 
 
-def test_faults_are_raised_before_it_starts() -> None:
+def test_faults_are_raised_before_a_simulation_starts() -> None:
     with pytest.raises(rs.DeclarationErrors):
         simulate(rs.Module("a"), rs.Module("a"))
     with pytest.raises(rs.DeclarationErrors):

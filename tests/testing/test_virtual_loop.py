@@ -2,7 +2,7 @@
 
 import asyncio
 import threading
-from asyncio import sleep  # in here it costs no real time
+from asyncio import sleep  # a sleep in virtual time costs no real time
 from collections.abc import Iterator
 
 import pytest
@@ -18,7 +18,7 @@ def loop() -> Iterator[VirtualLoop]:
     loop.close()
 
 
-def test_it_jumps_from_timer_to_timer(loop: VirtualLoop) -> None:
+def test_the_loop_jumps_from_timer_to_timer(loop: VirtualLoop) -> None:
     seen: list[tuple[str, float]] = []
     for name, delay in (("b", 5), ("a", 2), ("c", 5)):
         loop.call_later(delay, lambda name=name: seen.append((name, loop.time())))
@@ -41,7 +41,7 @@ def test_ready_callbacks_run_before_time_passes(loop: VirtualLoop) -> None:
     assert seen == [0.0] and task.done()
 
 
-def test_cancelled_timers_do_not_hold_it_up(loop: VirtualLoop) -> None:
+def test_cancelled_timers_do_not_hold_up_the_loop(loop: VirtualLoop) -> None:
     loop.call_later(1, lambda: None).cancel()
     loop.run_to(3)
     assert loop.time() == 3.0
@@ -53,7 +53,7 @@ def test_running_to_the_past_changes_nothing(loop: VirtualLoop) -> None:
     assert loop.time() == 3.0
 
 
-def test_it_runs_a_coroutine_to_its_end(loop: VirtualLoop) -> None:
+def test_the_loop_runs_a_coroutine_to_its_end(loop: VirtualLoop) -> None:
     async def work() -> float:
         await sleep(3600)
         return loop.time()

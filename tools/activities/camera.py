@@ -52,8 +52,8 @@ def perform(
         movement: The movement.
         rate: Its usual cycles per second.
         conditions: How much performers, cameras and noise differ.
-        rng: The chance.
-        seconds: The length.
+        rng: The source of random numbers.
+        seconds: The length of the performance.
         left: The share of left-handed performers.
     """
     fps = rng.uniform(10, 30)

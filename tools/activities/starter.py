@@ -69,7 +69,7 @@ def make() -> Starter:
 
 
 def _heat(starter: Starter, trials: dict[str, Any]) -> float:
-    """Return the heat at which the confidence is the share of right answers."""
+    """Return the heat (`Starter.heat`) at which the confidence best matches the share of right answers."""
     best, least = 1.0, np.inf
     for heat in (4.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0):
         recogniser = Recogniser(dataclasses.replace(starter, heat=heat, limit=np.inf))

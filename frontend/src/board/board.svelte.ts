@@ -48,16 +48,23 @@ export class Board {
   missed = $state(0);
   /** How many past records are still to come. */
   behind = $state(0);
+  /** Whether the trace has all records from the start of the context on. */
   whole = $state(true);
+  /** The latest error, for the user. */
   trouble = $state("");
   /** The command that the server refused, until its form takes it back. */
   refused: Refused | null = $state.raw(null);
+  /** Why the conversation has ended. */
   ending = $state("");
-  /** Counts frames: a view of the trace depends on it. */
+  /** The number of frames so far. Views of the trace depend on it, so each frame updates them. */
   version = $state(0);
+  /** The chosen rule. */
   rule: string | null = $state(null);
+  /** The chosen spike; null for the newest cause. */
   spike: number | null = $state(null);
+  /** The answer to the question why the chosen rule did not fire. */
   why: Answer | null = $state.raw(null);
+  /** Whether this question waits for its answer. */
   asking = $state(false);
   explained: Explained | null = $state.raw(null);
   diagram: Drawing | null = $state.raw(null);
@@ -96,14 +103,14 @@ export class Board {
   view = new View();
   follows = $state(true);
   trace = new Trace();
-  #asked: number | null = null; // the spike of the last "why not"
-  #sent: { command: ClientFrame; typed: string } | null = null; // the last command
-  #lent = false; // whether closing the rule returns to the newest cause
-  #before: Address = {}; // the address before a recording
+  #asked: number | null = null; // The spike of the last "why not".
+  #sent: { command: ClientFrame; typed: string } | null = null; // The last command.
+  #lent = false; // Whether closing the rule returns to the newest cause.
+  #before: Address = {}; // The address before a recording.
   #address: Address;
   #link: Link;
-  #now = 0;
-  #at = 0;
+  #now = 0; // The context's time in the last frame (seconds).
+  #at = 0; // The time at which this frame came (milliseconds).
 
   /**
    * @param address the first conversation or recording
@@ -259,7 +266,7 @@ export class Board {
     }
   }
 
-  /** Ask again. */
+  /** Ask the last question again. */
   again(): void {
     this.#ask();
   }

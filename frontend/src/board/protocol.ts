@@ -239,7 +239,7 @@ export interface Passed {
   run?: number;
 }
 
-/** The rival `rule` is under pressure because `by` waits for it, until its patience runs out (L16). */
+/** The rival `rule` is under pressure, because `by` waits for it; its patience ends at `until` (L16). */
 export interface Pressed {
   kind: "pressed";
   time: number;

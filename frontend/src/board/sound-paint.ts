@@ -46,7 +46,7 @@ function paintMark(
   const c = scene.colours;
   const stops = mark.kind === "barge-in";
   context.fillStyle = stops ? c.failed : mark.kind === "turn" || mark.kind === "heard" ? c.ink : c.quiet;
-  // An interruption reaches into the lane of the agent, which follows.
+  // An interruption reaches into the next lane, which is the agent's.
   context.fillRect(x - 1, top + 3, stops ? 3 : 1.5, stops ? 2 * height - 6 : height - 7);
   if (mark.kind === "turn") {
     context.beginPath();

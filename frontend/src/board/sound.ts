@@ -40,7 +40,7 @@ export const MEANINGS: Record<Mark["kind"], string> = {
   turn: "end of turn",
   "barge-in": "the user interrupts",
   listening: "the user shows that they listen",
-  nothing: "nobody's turn",
+  nothing: "false alarm, no turn of the user",
   heard: "heard by the user",
 };
 
@@ -49,7 +49,7 @@ export class Sound {
   bands: Record<Speaker, Band[]> = { [USER]: [], [AGENT]: [] };
   marks: Record<Speaker, Mark[]> = { [USER]: [], [AGENT]: [] };
   #turns = new Map<number, Mark>(); // by the spike of the utterance
-  #output = "";
+  #output = ""; // the agent's last utterance
 
   /** Whether anybody has spoken. */
   get any(): boolean {

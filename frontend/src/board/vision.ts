@@ -20,7 +20,7 @@ export interface Stretch {
   text: string;
   /** The distance to the nearest face in memory, or the confidence of the activity, as the trace has it. */
   figure: string;
-  /** The number of the face's track; 0 for others. */
+  /** The number of the face's track; 0 for a body or an activity. */
   track: number;
   /** The row of the face in its lane. */
   row: number;

@@ -65,8 +65,8 @@ export class Connection {
   #socket: Socket | null = null;
   #status: Status = "connecting";
   #retry: ReturnType<typeof setTimeout> | undefined;
-  #watch: ReturnType<typeof setTimeout> | undefined;
-  #awaited: keyof typeof TIMEOUTS = "welcome";
+  #watch: ReturnType<typeof setTimeout> | undefined; // the end of the present wait
+  #awaited: keyof typeof TIMEOUTS = "welcome"; // the reason of the present wait
   #backoff: Backoff;
 
   constructor(private readonly options: Options) {
@@ -109,7 +109,7 @@ export class Connection {
     return true;
   }
 
-  /** Check the connection: the network may be back, or the user looks at the page again. */
+  /** Check the connection, for example because the network may be back or the user looks at the page again. */
   nudge(): void {
     if (this.#status === "lost") this.start();
     else this.send({ type: "ping" });
@@ -129,7 +129,7 @@ export class Connection {
       return;
     }
     const frame = parse(data);
-    if (frame === null) return; // a later version may send it
+    if (frame === null) return; // a later version of the server may send frames that this page does not know
     if (frame.type === "welcome") {
       this.#backoff.reset();
       this.#become("open");

@@ -48,12 +48,12 @@ export class Conversation {
 
   #kept: Kept = recall();
   #outbox: Say[];
-  #last = 0;
-  #recalled = 0;
-  #anew = false;
-  #epoch = 0;
-  #listens = false; // whether the server takes `writing`
-  #told = Number.NEGATIVE_INFINITY; // the time of the last `writing`
+  #last = 0; // The number of the last message that the window has.
+  #recalled = 0; // The number of the last message from before a reload.
+  #anew = false; // Whether the next message begins a conversation that replaces a lost one.
+  #epoch = 0; // The number of conversations so far, for unique keys of lines.
+  #listens = false; // Whether the server takes `writing`.
+  #told = Number.NEGATIVE_INFINITY; // The time of the last `writing`.
   #connection: Connection;
 
   constructor(

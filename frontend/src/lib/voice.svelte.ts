@@ -40,13 +40,14 @@ export class Voice {
   trouble = $state("");
 
   #devices: Devices | null = null;
-  #attempt = 0;
-  #pressed: number | null = null;
+  #attempt = 0; // The number of attempts to open the devices; an older attempt is out of date.
+  #pressed: number | null = null; // The time of the press that lasts (milliseconds).
+  #began = false; // Whether this press has turned the voice on.
   #connected = false;
-  #stream = -1;
-  #hushed = false;
-  #told = Number.NEGATIVE_INFINITY;
-  #fading: ReturnType<typeof setTimeout> | undefined;
+  #stream = -1; // The number of the agent's stream of sound; -1 without one.
+  #hushed = false; // Whether the visitor has stopped this stream.
+  #told = Number.NEGATIVE_INFINITY; // The time of the last `played`.
+  #fading: ReturnType<typeof setTimeout> | undefined; // The end of the caption.
 
   constructor(private readonly options: Options) {}
 
@@ -73,8 +74,6 @@ export class Voice {
     else if (this.mode === "hold") this.#talk(false);
     else if (!began) this.stop();
   }
-
-  #began = false; // whether the present press has turned the voice on
 
   /** Let the visitor talk all the time, or while they hold the button. */
   setMode(mode: "open" | "hold"): void {

@@ -68,7 +68,7 @@ function embed(page: URL, options: DOMStringMap): void {
       frame = document.createElement("iframe"); // only now: visitors who do not open it stay unconnected
       frame.title = options.title ?? "Talk with us";
       frame.allow = "microphone; camera; autoplay";
-      frame.referrerPolicy = "origin"; // lets the server's log name a site without permission
+      frame.referrerPolicy = "origin"; // so that the server's log can name a site that may not embed the chat
       frame.addEventListener("load", () => setTimeout(complain, PATIENCE));
       frame.src =
         page.href + (options.token === undefined ? "" : `#token=${encodeURIComponent(options.token)}`);

@@ -23,8 +23,8 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the signals that are without a spike. Once the attempt has given up its last spike, `lacks` has the signals
-    that were without a spike before. `complete` is the time at which the attempt took its last missing spike (seconds);
+    `lacks` has the signals that are without a spike. When the attempt gives up its last spike, `lacks` stays as it was
+    before this loss. `complete` is the time at which the attempt took its last missing spike (seconds);
     None while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
     """
 
@@ -39,9 +39,9 @@ class Attempt:
     gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])
     started: t.Started | None = None
     settled: t.Settled | None = None
-    _missing: tuple[str, ...] = ()
-    _before: tuple[str, ...] = ()
-    _holds: set[int] = field(default_factory=set[int])
+    _missing: tuple[str, ...] = ()  # the signals that are without a spike now
+    _before: tuple[str, ...] = ()  # those signals before the losses of this instant
+    _holds: set[int] = field(default_factory=set[int])  # the numbers of the spikes that it holds now
 
     @property
     def over(self) -> bool:
@@ -76,7 +76,7 @@ class Attempt:
     def lose(self, record: t.GaveUp) -> None:
         """Note a spike that the activation gave up.
 
-        If the activation gives up all its spikes in one instant, `lacks` has the signals from before the first loss.
+        If the activation gives up all its spikes in one instant, `lacks` stays as it was before the first of these losses.
         """
         if not self.gave_up or self.gave_up[-1].time != record.time:
             self._before = self._missing
@@ -97,21 +97,21 @@ class History:
     """
 
     def __init__(self, records: Iterable[t.Record], spike: int) -> None:
-        self.born: dict[int, t.Born] = {}
-        self.attempts: dict[str, list[Attempt]] = {}
-        self.passed: dict[str, list[t.Passed]] = {}
-        self.pressed: dict[str, list[t.Pressed]] = {}
-        self.writes: dict[int, list[t.Set]] = {}
-        self.values: dict[str, list[t.Set]] = {}
-        self.retired: dict[str, float] = {}
-        self.fired: dict[str, list[float]] = {}
-        self.raising: set[tuple[int, str]] = set()
-        self.dropped: dict[int, t.Dropped] = {}
-        self.first = self.last = 0.0
-        self._runs: dict[int, Attempt] = {}
-        self._into: dict[int, int] = {}
-        self._answers: list[Attempt] = []  # in the order of their ends
-        self._of: dict[str, list[Attempt]] = {}
+        self.born: dict[int, t.Born] = {}  # by spike
+        self.attempts: dict[str, list[Attempt]] = {}  # by rule
+        self.passed: dict[str, list[t.Passed]] = {}  # by rule
+        self.pressed: dict[str, list[t.Pressed]] = {}  # by rule
+        self.writes: dict[int, list[t.Set]] = {}  # by run
+        self.values: dict[str, list[t.Set]] = {}  # by slot
+        self.retired: dict[str, float] = {}  # rule → the time at which it retired
+        self.fired: dict[str, list[float]] = {}  # rule → the times at which its runs fired
+        self.raising: set[tuple[int, str]] = set()  # each run, with each signal that it raised
+        self.dropped: dict[int, t.Dropped] = {}  # by spike
+        self.first = self.last = 0.0  # the times of the first and the last record
+        self._runs: dict[int, Attempt] = {}  # by activation
+        self._into: dict[int, int] = {}  # group → the group that it merged into
+        self._answers: list[Attempt] = []  # the attempts that fired, in the order of their ends
+        self._of: dict[str, list[Attempt]] = {}  # the results of `of`
         for number, record in enumerate(records):
             self.first = record.time if not number else self.first
             self.last = record.time
@@ -302,18 +302,18 @@ class Rivals:
         """
         pressed = self._history.pressed.get(rule.name, [])
         # `pressed` is sorted by `until`, because a rule's patience never changes.
-        times = bisect_right(pressed, end, key=lambda one: one.until)
+        over = bisect_right(pressed, end, key=lambda wait: wait.until)
         ended = f"this rule's patience ran out at {seconds(end)}"
-        if not times:
+        if not over:
             return ended
-        last = pressed[times - 1]
+        last = pressed[over - 1]
         return f"{last.by} waited for it from {seconds(last.time)} on, and {ended}"
 
     def _recovered(self, rule: RuleView, time: float) -> float:
         """Return the share of its utility that a rule has recovered since its last run (L9)."""
         fired = self._history.fired.get(rule.name, [])
-        times = bisect_right(fired, time)
-        return min(1.0, (time - fired[times - 1]) / rule.cooldown) if rule.cooldown and times else 1.0
+        runs = bisect_right(fired, time)
+        return min(1.0, (time - fired[runs - 1]) / rule.cooldown) if rule.cooldown and runs else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
         """Return the first other rule that answered the group in a slot of `rule` by `time`, and its activation's

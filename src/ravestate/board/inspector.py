@@ -192,9 +192,9 @@ class Inspector:
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
         """Send answers to the page at once, and send new records about twenty times a second at most."""
         idle = IdleShare()
-        sent: bool | None = None  # whether the last frame said that the clock was stopped
+        stopped: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None
-        now, looked = asyncio.get_running_loop().time, -LISTED
+        now, listed_at = asyncio.get_running_loop().time, -LISTED
         while True:
             began = perf_counter()
             self._channel.woken.clear()
@@ -204,8 +204,8 @@ class Inspector:
             if session is not None and self._title_of(session) != title:
                 title = self._title_of(session)
                 await self._send(protocol.Renamed(title))
-            if session is not None and now() - looked >= LISTED:
-                looked = now()
+            if session is not None and now() - listed_at >= LISTED:
+                listed_at = now()
                 if (conversations := self._conversations(session)) != listed:
                     listed = conversations
                     await self._send(listed)
@@ -216,8 +216,8 @@ class Inspector:
             clock = source.clock()
             text = ""
             gap = False
-            if records or missed or clock[1] != sent:
-                sent = clock[1]
+            if records or missed or clock[1] != stopped:
+                stopped = clock[1]
                 seen += missed + len(records)
                 gap = missed > 0 or any(isinstance(record, Gap) for record in records)
                 data = [data_of(record) for record in records]

@@ -114,10 +114,10 @@ class Recorder:
         self._spare = spare
         self._idle_share = IdleShare()
         self._left = 0  # how many records the recorder may still take; the first record raises this number to `burst`
-        self._granted: float | None = None
+        self._granted: float | None = None  # the time at which `_left` was last computed; None at first
         self._spike = 0  # the number of the newest spike so far
-        self._gap: Gap | None = None
-        self._leave: Callable[[], None] = lambda: None
+        self._gap: Gap | None = None  # the gap that has no end yet
+        self._leave: Callable[[], None] = lambda: None  # stops listening
         self.records: deque[Record | Gap] = deque(maxlen=kept)
         """The newest records, oldest first."""
         self.last = 0

@@ -209,7 +209,7 @@ class _Inquiry:
         return ripe
 
     def _shut(self, rule: RuleView, attempt: Attempt, time: float) -> bool | None:
-        """Return whether a slot predicate of the clause was false at a time (seconds); None if the trace does not show."""
+        """Return whether a slot predicate of the clause was false at a time (seconds); None if that is unknown."""
         if self.opens is None:
             return None
         known = True

@@ -58,7 +58,7 @@ class RavestateProcessor(FrameProcessor):
         super().__init__(**options)
         self._utterances: asyncio.Queue[Utterance] = asyncio.Queue()
         self._conversation = Conversation(contexts_of(agent)(), self._utterances.put_nowait, "pipecat")
-        self._tasks: list[asyncio.Task[None]] = []  # until cleanup
+        self._tasks: list[asyncio.Task[None]] = []  # they run until `cleanup`
         self._taken: object = None  # the last message of the user that the agent has heard
         self._guessed = False  # whether the user's turn may go on after the last words
 

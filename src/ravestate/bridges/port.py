@@ -126,7 +126,7 @@ class Conversation:
             rawio.speaking.false.name: self._fall_silent,
         }
         await self.context.start(Hooks(listeners=listeners))
-        self._show_users(lambda users: {**users, self._user: None})
+        self._change_users(lambda users: {**users, self._user: None})
 
     async def end(self, *, at_once: bool = False) -> None:
         """Stop the agent, after its last answer and a farewell; with `at_once`, do not wait for these."""
@@ -137,7 +137,7 @@ class Conversation:
         try:
             if not at_once:
                 await self._quiet(LONGEST, rawio.output)
-                self._show_users(lambda users: {key: name for key, name in users.items() if key != self._user})
+                self._change_users(lambda users: {key: name for key, name in users.items() if key != self._user})
                 await self._quiet(FAREWELL)
                 grace = FAREWELL
         finally:
@@ -202,7 +202,7 @@ class Conversation:
                 quiet.cancel()
                 self._speak = speak
 
-    def _show_users(self, change: Callable[[Mapping[str, Any]], Mapping[str, Any]]) -> None:
+    def _change_users(self, change: Callable[[Mapping[str, Any]], Mapping[str, Any]]) -> None:
         if interloc.users.name in self.context.policy.slots:
             self.context.put(interloc.users, change(self.context.read(interloc.users)))
 

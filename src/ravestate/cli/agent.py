@@ -83,7 +83,7 @@ def check_values(agent: AgentSpec) -> None:
 
 
 def announce_platforms(agent: AgentSpec, command: str) -> None:
-    """Print which platforms have no user, because another one serves all users."""
+    """Print which platforms have no user, because another platform serves all users."""
     modules = with_required(agent.modules)
     servers = [module.name for module in modules if module.serve is not None]
     # The page of webio has a microphone of its own, for which it needs voiceio.

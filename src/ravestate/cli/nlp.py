@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import asyncio
 import dataclasses
 import json
 import sys
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 SHOWN = 5
 """The maximum number of intents in the table."""
+PATIENCE = 60.0
+"""Seconds to wait for a language model: nobody waits for an answer of the agent here."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,6 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="a name of the agent (may be repeated), as in the setting nlp.agent_names",
     )
+    parser.add_argument("--model", default="", metavar="NAME", help="a language model, as in the setting nlp.model")
+    parser.add_argument("--base-url", default="", metavar="URL", help="its server, as in the setting nlp.base_url")
     parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: show the scores of its intents")
     parser.add_argument(
         "-m",
@@ -54,6 +59,7 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.modules.meta.nlp import Settings
     from ravestate.modules.meta.nlp.analysis import MATCHERS, analyse
     from ravestate.modules.meta.nlp.pipeline import pipeline
+    from ravestate.modules.meta.nlp.reading import model_reader
 
     designed = _designed(options)
     for matcher in (*map(bundled_matcher, MATCHERS), *([designed] if designed else [])):
@@ -64,13 +70,20 @@ def run(options: argparse.Namespace) -> int:
             break
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
-    for number, text in enumerate(map(printable, texts)):  # without control codes for the terminal
-        seen = analyse(text, pipeline(options.pipeline), names, designed=designed)
-        scores = _scores(designed, seen)
-        if options.json:
-            print(json.dumps(_plain(text, seen, scores), ensure_ascii=False), flush=True)
-        else:
-            print(("\n" if number else "") + _table(seen, scores), flush=True)
+    reader = (
+        model_reader(options.model, options.base_url or Settings().base_url, None, PATIENCE) if options.model else None
+    )
+    with asyncio.Runner() as loop:
+        for number, text in enumerate(map(printable, texts)):  # without control codes for the terminal
+            reading = None if reader is None else loop.run(reader.read(text))
+            seen = analyse(text, pipeline(options.pipeline), names, designed=designed, reading=reading)
+            scores = _scores(designed, seen)
+            if options.json:
+                print(json.dumps(_plain(text, seen, scores), ensure_ascii=False), flush=True)
+            else:
+                print(("\n" if number else "") + _table(seen, scores), flush=True)
+        if reader is not None:
+            loop.run(reader.close())
     return 0
 
 

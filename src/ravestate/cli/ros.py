@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     echoing = actions.add_parser("echo", help="print the messages of a topic, one line of JSON for each")
     echoing.add_argument("topic", metavar="TOPIC", help="the topic's name, such as /chat")
     echoing.add_argument("--type", help="the type of its messages, if nobody publishes yet")
-    echoing.add_argument("-n", "--count", type=int, default=0, help="end after so many messages")
+    echoing.add_argument("-n", "--count", type=int, default=0, help="end after this many messages")
     for action in (checking, listing, echoing):
         action.add_argument(
             "--set", dest="sets", action="append", default=[], metavar="MODULE.KEY=VALUE",

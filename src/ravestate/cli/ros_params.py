@@ -15,7 +15,7 @@ PARAMETERS = "ros__parameters"
 SIMULATED = "use_sim_time"
 """The parameter of every node that says whether time is simulated; a setting of `ros1` and `ros2`."""
 OTHERS = ("qos_overrides", "start_type_description_service")
-"""The beginnings of parameters that ROS 2 gives to every node."""
+"""The beginnings of the names of parameters that ROS 2 gives to every node."""
 
 Found = list[tuple[str, Any]]
 

@@ -186,7 +186,7 @@ def _person(memory: Memory, name: str) -> Node:
 
     found = [one for one in memory.find("Person").result() if str(one.get("name", "")).casefold() == name.casefold()]
     if len(found) > 1:
-        raise RavestateError(f"memory knows {len(found)} people called {name}: tell them apart by another name")
+        raise RavestateError(f"memory knows {len(found)} people called {name}: use a name that only one person has")
     return found[0] if found else Node("Person", {"name": name})
 
 

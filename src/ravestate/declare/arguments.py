@@ -47,7 +47,7 @@ def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def check_name(name: object, what: str) -> None:
-    """Refuse an invalid `name`; the message begins with `what`, the declaration."""
+    """Refuse an invalid `name`; the message begins with `what`, which says what is declared."""
     if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
             f"{what}: {name!r} is not a name: use letters, digits, '_' and '-', beginning with a letter"
@@ -55,7 +55,7 @@ def check_name(name: object, what: str) -> None:
 
 
 def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None:
-    """Refuse invalid values of the options `keep` and `limit`; the message begins with `what`, the declaration."""
+    """Refuse invalid values of the options `keep` and `limit`; the message begins with `what`, the declared name."""
     if keep not in ("all", "latest"):
         raise DeclarationError(f"{what}: keep={keep!r}: write keep='all' or keep='latest'")
     if not isinstance(limit, int) or limit < 1:

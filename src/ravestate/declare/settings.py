@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """The name of a numeric setting, and the settings class that owns it; None means the rule's own module."""
+    """The name of a numeric setting, and its `owner`: a settings class, or None for that of the rule's own module."""
 
     name: str
     owner: type | None = None

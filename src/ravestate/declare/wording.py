@@ -12,7 +12,8 @@ CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as Python code for the file of the module `home`, whose own names are variables there."""
+    """Return a qualified name as Python code: ``rawio.output``, or ``output`` in the file of its own module
+    (`home`)."""
     parts = name.split(":")
     if parts[0] == "core":
         parts[0] = "rs"

@@ -32,7 +32,7 @@ def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[boo
 
 
 def topological(after: Sequence[Sequence[int]]) -> list[int]:
-    """Return the vertices in topological order. Leave out vertices on or behind a cycle.
+    """Return the vertices in topological order. Leave out each vertex that is on a cycle, or that a cycle leads to.
 
     `after` has the successors of each vertex.
     """

@@ -108,7 +108,7 @@ def _sweep(
 
 
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
-    """Sort the vertices that have neighbours by the mean place of these; vertices without neighbours stay.
+    """Sort the vertices that have neighbours by the mean place of their neighbours; the other vertices stay.
 
     With `flip`, vertices with equal means are reversed.
     """

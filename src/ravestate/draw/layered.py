@@ -183,7 +183,7 @@ class _Builder:
 
 
 def place_ports(graph: LayeredGraph) -> None:
-    """Place the ports of each side in the order of the vertices to which they lead. Order the layers before."""
+    """Place the ports of each side in the order of the vertices to which they lead; the layers must be in order."""
     place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:

@@ -2,7 +2,7 @@
 
 An activation is a clause plus the spikes that it has acquired. Once it has consent, it is a run of the rule. Every
 clause also has an activation in stand-by, which holds no spike yet. No object represents a stand-by: the engine creates
-the object for the first spike.
+an object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
@@ -96,16 +96,17 @@ class Activation:
     """A clause plus the spikes that it has acquired.
 
     Attributes:
-        id: A number that grows with each new activation. Only the trace, snapshots and explanations show it, because
-            it may depend on the tracer: with one, another activation with the same spikes may run.
+        id: A number that grows with each new activation. Only the trace, snapshots and explanations show it, because it
+            may depend on the tracer: with a tracer, a different activation may run with the same spikes.
         number: The number of its run in events and effects; 0 until it runs. Runs are numbered in the order of their
             start, so a tracer cannot change the number (L24, L25).
         state: The `State`, as a whole number.
         missing: The bits of the clause's needs without a spike.
         ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
-        newest: If it needs no consent: the number of its newest spike, when it became ready.
+        newest: If it needs no consent: the number of the newest spike that it held when it became ready.
         place: While it is ready and needs no consent: its place in the queue (``free.py``), if it has one of its own.
-        patience_ends: Group in which others wait for it, while it may never be ready → when its patience ends (seconds; L16).
+        patience_ends: Group in which others wait for it, although it may never become ready → when its patience ends
+            there (seconds; L16).
         refusal: While it waits: the reasons (``refusal.py``).
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
         groups: The groups in which the run took its slots when it began. They may have merged since.
@@ -141,7 +142,8 @@ class Activation:
         self.number = 0
         self.clause = clause
         self.state: int = GATHERING
-        # Most clauses have one need, and thousands of activations may wait: a sequence in each would slow the collector.
+        # Most clauses have one need, and thousands of activations may wait: a sequence in each would slow the garbage
+        # collector.
         self._only: Spike | None = None
         self._several: tuple[Spike | None, ...] = (None,) * len(clause.needs) if len(clause.needs) > 1 else ()
         self.missing = clause.all_bits
@@ -171,7 +173,7 @@ class Activation:
         return spike in self._several if self._several else spike is self._only
 
     def put(self, need: Need, spike: Spike | None) -> None:
-        """Make a spike, or None, the one that meets one of the clause's needs."""
+        """Set the spike that meets one of the clause's needs; None if no spike does any more."""
         if self._several:
             spikes = list(self._several)
             spikes[need.index] = spike

@@ -22,7 +22,7 @@ from ravestate.engine.line import Line
 from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.slots import Slots
-from ravestate.engine.stalemate import loose, stalemate
+from ravestate.engine.stalemate import no_longer_stuck, stalemate
 from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
 
@@ -30,8 +30,8 @@ BATCH: Final = 100
 """The maximum number of free activations that start in one go. Then the caller reports the events of these runs."""
 
 Turn = tuple[int, float, int, int, Activation]
-"""A place in the queue of activations that ask: the number of its oldest cause (a causal group), its sort key
-(`State.order`), and the activation."""
+"""A place in the queue of activations that ask: the number of the activation's oldest causal group, its sort key
+(`State.order`), and the activation itself."""
 
 
 class Agenda:
@@ -179,7 +179,7 @@ class Agenda:
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _ask(self, activation: Activation) -> bool:
-        """Ask for consent; return whether the activation has it. If not, it waits, and the next heads of benches queue."""
+        """Ask for consent; return whether the activation has it. If not, it waits, and its benches get new heads."""
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
@@ -230,7 +230,7 @@ class Agenda:
             if order != state.order(best):
                 heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
                 continue
-            freed = loose(best, stuck)
+            freed = no_longer_stuck(best, stuck)
             if not found.issuperset(freed):  # something has changed since these were found, so search them again
                 for other in freed:
                     stuck.discard(other)

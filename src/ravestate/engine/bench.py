@@ -1,4 +1,4 @@
-"""A bench: first spikes of a pair that wait together for their counterpart (``benches.py``)."""
+"""A bench: spikes that wait together for a second spike, their counterpart (``benches.py``)."""
 
 from __future__ import annotations
 

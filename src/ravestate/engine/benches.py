@@ -1,16 +1,18 @@
-"""Benches: first spikes of a pair that wait together for the second spike, their *counterpart*.
+"""Benches: spikes that wait together for a second spike, their *counterpart*.
 
-Suppose that a hundred first spikes wait when a counterpart arrives. The counterpart completes a hundred pairs. Only one
-pair runs, and the first spikes of the other pairs take the next counterpart (L12). So only the oldest pair gets an
-activation, the *head*. The other first spikes stay on the bench, and the whole bench takes the next counterpart.
+A clause with two needs takes a pair of spikes. Suppose that a hundred first spikes wait when a counterpart arrives. The
+counterpart completes a hundred pairs. Only one pair runs, and the first spikes of the other pairs take the next
+counterpart (L12). So only the oldest pair gets an activation, the *head*. The other first spikes stay on the bench, and
+the whole bench takes the next counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). Its activations wait for no rival, so a
 group refuses them only while a slot is taken there. If a group refuses the head, the engine makes a head of the next
 spike at once. The new head asks in the same round of consent.
 
-So older spikes ask first. Consent goes by the age of causal groups, which is the same order: no rule raises these
-signals, so each spike begins a group. Before a group merges, its spikes leave their benches. `Consent` treats each spike
-on a bench with a counterpart as a ready activation. Activations with less utility wait for it.
+So the pairs with older first spikes ask first. Consent goes by the age of causal groups, which is the same order: no
+rule raises these signals, so each spike begins a group. Before a group merges, its spikes leave their benches.
+`Consent` treats each spike on a bench with a counterpart as a ready activation. Activations with less utility wait for
+it.
 """
 
 from __future__ import annotations
@@ -52,7 +54,7 @@ class Benches:
             else:
                 self._lead(bench, partner)
 
-    def rise(self, spike: Spike) -> None:
+    def unbench(self, spike: Spike) -> None:
         """Create a spike's activations with its counterparts, because these pairs are about to lose a spike (L12)."""
         state = self.state
         for half in state.halves_of(spike) if state.benches else ():
@@ -68,7 +70,7 @@ class Benches:
             self.check(partner)
 
     def next_heads(self, refused: Activation) -> list[Activation]:
-        """Create the next head of each bench whose head, `refused`, has no consent. Return the new heads that may ask."""
+        """Create a new head for each bench whose head, `refused`, got no consent. Return the new heads that may ask."""
         state = self.state
         heads: list[Activation] = []
         for partner in refused.spikes:

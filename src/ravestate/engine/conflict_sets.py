@@ -2,10 +2,11 @@
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
 the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
-its run resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations for a
-tracer, and to retire or add a rule. It also unfolds if a rival may come between the clauses (`Consent.is_contested`).
-The number of each activation is fixed from the start, and no signal that an alternative raises can help a rival
-(`find_conflict_sets`). So it does not matter when a queue unfolds. An explanation unfolds nothing.
+its run resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations if there is
+a tracer, and when a rule retires or is added. It also unfolds if a rival may come between the clauses
+(`Consent.is_contested`). The number of each activation is fixed from the start, and no signal that an alternative
+raises can help a rival (`find_conflict_sets`). So it does not matter when a queue unfolds. An explanation unfolds
+nothing.
 """
 
 from __future__ import annotations

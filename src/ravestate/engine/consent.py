@@ -8,9 +8,9 @@ that a rule of the group may cause.
 If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience ends,
 the activation stops waiting for it. A rival gets its patience once in each group (L16).
 
-A clause without an activation may be a rival, too: its *stand-by*, which holds no spike. A *half* (``halves.py``) holds
-spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and `_judge_rival` judges all
-rivals.
+A clause without an activation may be a rival, too. Its *stand-by*, which holds no spike, is then the rival. A *half*
+(``halves.py``) holds spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and
+`_judge_rival` judges all rivals.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ class Consent:
         for member in (*living, None):
             if member is None:
                 if outside:
-                    break  # this activation takes the spike first, so the stand-by is no rival
+                    break  # an activation waits for the spike and takes it first, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_inert(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)

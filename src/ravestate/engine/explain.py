@@ -234,7 +234,7 @@ def words_of(record: Record, others: str = "", behind: str = "") -> str:
             return f"was ready and waited for {others or join(record.for_)}{latest(record.until)}"
         case Pressed():
             lacks = join(record.lacks)
-            return f"{record.by} waited for it; lacking {lacks}, it had patience until {seconds(record.until)}"
+            return f"lacked {lacks} while {record.by} waited for it; its patience lasted until {seconds(record.until)}"
         case Started():
             return "started"
         case Told():

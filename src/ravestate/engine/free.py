@@ -87,6 +87,6 @@ def _order(activation: Activation) -> tuple[int, int, int]:
 
 
 def _place(activation: Activation) -> Any:
-    """Give an activation a place of its own, in the same order."""
+    """Give an activation a place of its own, in the order of `_order`."""
     activation.place = (activation.newest, activation.clause.index, activation.id, activation)
     return activation.place

@@ -12,13 +12,13 @@ number of activations depends on the rule:
 - for a rule without a better rival (`Half.sole`): also one activation, but all first spikes share the counterpart
   (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses one of them
-- for a rule that was added while a spike of its signals was live: again one activation with each first spike. Each of
-  them may lose a spike and then take that older spike
+- for a rule that was added while a spike of its signals was live: again one activation with each first spike, because
+  each of them may lose a spike and then take that older spike
 
-To *unfold* an entry is to make its activations. All entries unfold for a tracer, and when a rule retires or is added.
-The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge each of its clauses by itself.
-The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no signal that
-their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
+To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
+added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge each of its clauses by
+itself. The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no
+signal that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
 """
 
 from __future__ import annotations

@@ -264,7 +264,7 @@ class Holdings:
         """Make the rule of a run give up the run's non-detached spikes for good, in all other activations of the rule."""
         rule = run.clause.rule
         for spike in run.stands_on:  # refuse all first: an activation that loses a spike takes another at once
-            self.benches.rise(spike)
+            self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:
             if spike in self.state.benches:
@@ -347,7 +347,7 @@ class Holdings:
         self.entries.remove(spike)
         for watch in state.watched_by.pop(spike, ()):
             watch.lose(spike)
-        self.benches.rise(spike)
+        self.benches.unbench(spike)
         for half in state.halves_of(spike):
             self.entries.drop(spike, half)
         if spike in state.benches:

@@ -135,7 +135,7 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return, as bits, the needs of a clause that activations without a spike of a group may meet from this group."""
+        """Return, as bits, the needs that a group may meet in a clause's activations without a spike of the group."""
         if clause.apart:
             return 0  # an activation of this clause takes all its spikes from one group
         reach = self._rules(group).keys()
@@ -233,7 +233,7 @@ class Horizon:
         return weakest
 
     def _seen(self, need: Need, group: Group, slots: SlotNumbers) -> Step:
-        """Return the strength with which anything may meet a detached need."""
+        """Return the strength with which a spike of any group may meet a detached need."""
         self.hopes[SEEN, need.signal.index] = 0
         spike = self.state.newest(need)
         if spike is not None:

@@ -193,7 +193,7 @@ class Parts:
             looking = [clause for clause in plan.clauses if clause.asks_detached]
             for need in (need for clause in looking for need in clause.needs if need.detached):
                 for spike in state.live.get(need.signal.index, ()):
-                    if spike.born + need.min_age > state.now:  # a spike sets these times at its birth for older rules
+                    if spike.born + need.min_age > state.now:  # for older rules, the spike's birth set these times
                         state.deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
 
     def _retire(self, rule: RulePlan) -> None:

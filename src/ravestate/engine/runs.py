@@ -150,7 +150,7 @@ class Runs:
                 f"rule {rule.name} resigned after it had written {written}: resign before the first write"
             )
         if rule.cooldown and fired:
-            self._tire(rule)
+            self._begin_recovery(rule)
         for clause in rule.until:
             self._end_watch(run, state.watches[clause].pop(run))
         if fired:
@@ -168,7 +168,7 @@ class Runs:
             failure = exception or RuleError(f"rule {rule.name} failed")
             state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run))
 
-    def _tire(self, rule: RulePlan) -> None:
+    def _begin_recovery(self, rule: RulePlan) -> None:
         """Note that a rule with a cooldown has run: the activations whose order this changes ask again (L9, L15)."""
         state = self.state
         if state.ran is NOTHING:
@@ -200,7 +200,7 @@ class Runs:
                 group.take(slot, None)
         for group in groups:
             for spike in list(group.entries) if state.benches else ():
-                self.holdings.benches.rise(spike)
+                self.holdings.benches.unbench(spike)
             for other in list(writers(group, rule.slots, state.causes)) if group.count > 1 else ():
                 if (
                     other is not run
@@ -239,7 +239,8 @@ def _roots(run: Activation) -> list[Group]:
 
 
 def _handles_error(run: Activation) -> bool:
-    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure raises no further one."""
+    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure does not raise
+    ``core:error`` again."""
     return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
 
 
@@ -249,5 +250,5 @@ def _endless(rules: Sequence[RulePlan]) -> str:
     whom = "each other" if len(rules) > 1 else "itself"
     return (
         f"an endless loop: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
-        ".min_age(seconds) behind a signal of the loop, so that time passes"
+        ".min_age(seconds) after a signal of the loop, so that time passes"
     )

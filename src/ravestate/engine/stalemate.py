@@ -55,7 +55,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
             return stuck
 
 
-def loose(one: Activation, stuck: Stuck) -> list[Activation]:
+def no_longer_stuck(one: Activation, stuck: Stuck) -> list[Activation]:
     """Return the members of a stalemate that wait for an activation outside it by now; oldest first.
 
     Only `one` and the members for which it waits, directly or through others, are searched.

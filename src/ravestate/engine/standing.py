@@ -18,7 +18,7 @@ DIGITS = 9
 """Digits of a second to which the time of a crossing is rounded, so that events of the same moment coincide."""
 
 INSTANT = 0.5e-9
-"""Seconds within which moments are the same: half of the last of these digits."""
+"""Moments that differ by less than this (seconds) are the same: half of the last of these digits."""
 
 
 class Standing:

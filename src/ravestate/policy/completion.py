@@ -2,7 +2,7 @@
 
 An *alternative* of a signal is a set of signals that together may cause it. An input, or a signal without causes, also
 has the empty alternative. A pathway of a clause is a set of signals. It holds the clause's own signals and, for each
-of its signals, one alternative of this signal.
+signal in the pathway, one alternative of that signal.
 
 A set of signals is an integer here. Bit *n* stands for the signal at *place* *n*; causes have places before their
 effects. Except in cycles, the signal of a set's highest bit causes no other signal of the set.

@@ -77,7 +77,7 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return the best clause of each rule that shares a root with the other rule; None without a conflict."""
+        """Return each rule's best clause among those that share a root with the other rule; None without a conflict."""
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)

@@ -61,7 +61,7 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_unrivalled(rules: Iterable[RulePlan]) -> None:
-    """Mark the clauses that go before all other writers of their slots. With a cooldown, the order may change."""
+    """Mark the clauses that always go before all other writers of their slots. A cooldown may change the order."""
     best: dict[int, Clause] = {}
     changing: set[int] = set()
     for rule in rules:
@@ -101,9 +101,9 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the halves of each signal, and the listeners in no conflict set and no half.
 
-    A half collects needs for one signal in clauses that have two needs. The first spike only changes which need such a
-    clause lacks, so a table of spikes is enough (``engine/halves.py``). As for a conflict set, none of the rule's
-    effects may help a rule that writes a slot.
+    A half collects the needs for one signal, from clauses that have two needs. The first spike only changes which need
+    such a clause lacks, so a table of spikes is enough (``engine/halves.py``). As for a conflict set, none of the
+    rule's effects may help a rule that writes a slot.
     """
     helpful = causes.helpful
     best = _best_writers(causes)

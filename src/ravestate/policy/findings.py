@@ -120,8 +120,8 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
                 "unreachable",
                 rule.name,
                 f"rule {rule.name} waits for an effect of rules that write {slots} before it, and a causal group allows "
-                "one write of a slot (L19): add .detached() to that signal, or detached=True to the rule that "
-                "causes it",
+                "only one write of a slot (L19): add .detached() to the signal that it waits for, or detached=True to "
+                "the rule that raises this signal",
             )
 
 
@@ -151,7 +151,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
             advice = (
                 "core:startup comes only once: if both should run, write rs.startup.detached()"
                 if once
-                else "give it one more signal, a greater weight, or give the other rule a cooldown"
+                else "give it one more signal or a greater weight, or give the other rule a cooldown"
             )
             yield Finding(
                 "never-wins",

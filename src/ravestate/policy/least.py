@@ -4,10 +4,10 @@ An *alternative* of a signal is a set of signals that together may cause it. A p
 alternative of each of its signals (`Completion`). Its *cost* is its information.
 
 The search begins with the clause's own signals. Each step takes the signal with the highest bit that lacks an
-alternative, and tries each alternative of this signal. Two sets may agree in all signals that still matter. Then all
-further steps are the same for both, so the search follows only the cheaper set. So independent choices do not multiply.
-The search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree, it takes
-one or two steps.
+alternative, and tries each alternative of this signal. Two sets may agree in all signals that further steps may reach.
+Then these steps are the same for both, so the search follows only the cheaper set. So independent choices do not
+multiply. The search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree,
+it takes one or two steps.
 
 If alternatives have causes in common, the search is a weighted set cover problem, for which no quick method is known.
 If a step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens
@@ -47,7 +47,7 @@ class Least:
         self._masks: dict[int, list[int]] = {}
         """Open signal → its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """Set of signals that still matter → the cost that its completion adds, and the signals that it adds."""
+        """Set of signals that further steps may reach → the cost and the signals that its completion adds."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])

@@ -201,9 +201,9 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """Needs for one signal in clauses that have two needs. A first spike gets no activation.
+    """Needs for one signal that the engine treats alike; each is one of its clause's two needs.
 
-    All needs that the engine would treat alike share one record.
+    A first spike gets no activation.
 
     Attributes:
         needs: The needs, in declaration order.

@@ -26,9 +26,9 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    It says when the function of a run has ended (`Functions.finish`). If a run does not end within `GRACE` seconds of its
-    cancellation, the run is dropped (`Functions.drop`). When the tasks in `cleaning` have ended, or their turns are over,
-    other effects follow (`Functions.go_on`).
+    This class calls `Functions.finish` when the function of a run has ended. If a run does not end within `GRACE`
+    seconds of its cancellation, the run is dropped (`Functions.drop`). When the tasks in `cleaning` have ended, or
+    their turns are over, other effects follow (`Functions.go_on`).
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, functions: Functions) -> None:
@@ -68,7 +68,7 @@ class AsyncRules:
             self._functions.finish(ctx, end.result, None)
 
     def _keep(self, task: EagerTask) -> None:
-        """Keep a spare task for the next function, unless a function has spoilt it."""
+        """Keep a spare task for the next function, unless a function has spoilt it (`EagerTask.spoilt`)."""
         if self._spare is None and not task.spoilt:
             self._spare = task
         else:

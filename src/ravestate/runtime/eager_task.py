@@ -28,14 +28,14 @@ KIND: Final = Done
 class EagerTask:
     """A spare task. Once it has adopted the coroutine of a rule, it is the rule's task; the timer measures each step.
 
-    The coroutine starts with the context variables `variables`. Its changes of these stay its own.
+    The coroutine starts with the context variables `variables`. No other code sees its changes to these variables.
 
     Attributes:
         task: The task.
         rule: The rule whose coroutine the task has adopted, if it has adopted one.
         driver: The generator that runs the coroutine (`drive`).
         first: The object that the adopted coroutine has yielded in its first step.
-        wake: Done when the task has adopted a coroutine.
+        wake: A future that is done once the task has adopted a coroutine.
         abandoned: Whether the task is to end although its coroutine does not end.
     """
 

@@ -39,8 +39,8 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
             "the wrapper of a decorator must be async, too"
         )
     return RuleError(
-        f"rule {rule.name} ({rule.origin}) returned {short(result)}; a rule returns nothing, rs.Resign(reason) or "
-        "rs.Retire(); write its result to a slot"
+        f"rule {rule.name} ({rule.origin}) returned {short(result)}; a rule may only return None, rs.Resign(reason) "
+        "or rs.Retire(); write its result to a slot"
     )
 
 

@@ -93,7 +93,7 @@ class Functions:
         """Return whether effects must wait: for a plain function in virtual time, or for rules that were just
         cancelled.
 
-        On a `halted` clock they do not wait for these rules.
+        While the clock is `halted`, effects do not wait for the cancelled rules.
         """
         if self._is_virtual and self.plain is not None and self.plain.runs:
             return True

@@ -12,7 +12,8 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. A replay must take them at the same points, where the engine decides."""
+    """The runner took the engine's effects. A replay must take them at the same points, because the engine decides
+    there."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,8 +84,8 @@ class PlainRules:
             self._warned = True
             holders = self._queue.holders()
             log.warning(
-                "plain functions wait for a worker thread: %s. All %d threads are taken by %s. Give a rule that may hang a "
-                "timeout=, or write async def",
+                "plain functions wait for a worker thread: %s. All %d threads are taken by %s. If a rule may hang, "
+                "write timeout=seconds or async def",
                 *(_listed(waiting), len(holders), _listed(holders)),
             )
         delay = STARVED if self._warned else STARVED - longest

@@ -1,4 +1,4 @@
-"""The spare task of a loop: all contexts that run on the loop share it, one at a time."""
+"""The spare task of a loop (``eager_task.py``): all contexts that run on the loop share it, one at a time."""
 
 from __future__ import annotations
 

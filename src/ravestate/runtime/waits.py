@@ -72,7 +72,8 @@ class Waits:
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until all activations outside `known` have ended, and no minimum age on ``rs.shutdown`` is pending.
+        """Wait until all activations outside `known` have ended, and no rule waits for a minimum age of
+        ``rs.shutdown``.
 
         A background rule among `known` may restart endlessly. Wait for its new run only if that run handles
         ``rs.shutdown``. Wait for at most `seconds`.

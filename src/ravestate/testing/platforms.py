@@ -25,7 +25,8 @@ PATIENCE = 60.0
 USERS = ("ada", "bob", "cleo", "dora", "emil")
 
 LAST = "the last message"
-"""The last message of each check. If the agent answers an earlier message twice, the extra answer arrives first."""
+"""The last message of each check. If the agent answers an earlier message twice, the extra answer comes before the
+answer to this one."""
 
 echo = rs.Module("echo", requires=(rawio,))
 """The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""

@@ -139,7 +139,7 @@ class _Selector(selectors.DefaultSelector):  # type: ignore[misc,valid-type]  # 
                 self._loop.stop_waiting()
                 raise TimeoutError(
                     f"{' and '.join(busy)} kept virtual time waiting for over {REAL_LIMIT:g} real seconds: a plain function "
-                    "takes real time; to wait in virtual time write async def and await ctx.sleep(seconds)"
+                    "takes real time; to wait in virtual time, write async def and await ctx.sleep(seconds)"
                 )
             return events
         self._loop.on_idle()

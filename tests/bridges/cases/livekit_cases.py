@@ -95,7 +95,7 @@ async def test_instructions_and_old_messages_are_not_the_users_words() -> None:
         assert [item.text_content for item in result.chat_items if isinstance(item, ChatMessage)] == ["You said new"]
 
 
-async def test_two_replies_asked_for_at_once_are_not_crossed() -> None:
+async def test_two_simultaneous_replies_are_not_mixed_up() -> None:
     async with session_with(agents.talker) as session:
         handles = [session.generate_reply(user_input=words) for words in ("count", "count again")]
         for handle in handles:
@@ -145,7 +145,7 @@ async def test_the_agent_knows_which_of_its_spoken_words_were_heard() -> None:
     assert loudspeaker.played == ["One, two, three.", "One, two,", "You heard 'One, two,'"]
 
 
-async def test_many_sessions_at_once_are_not_crossed() -> None:
+async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
     policy = rs.compile(agents.echo)
 
     async def talk(n: int) -> list[str]:
@@ -196,7 +196,7 @@ async def test_the_end_of_the_session_stops_the_agent() -> None:
         await context.next(rawio.output.changed)
 
 
-async def test_the_end_of_the_session_waits_for_no_words_that_nobody_would_hear() -> None:
+async def test_the_end_of_the_session_does_not_wait_for_unheard_words() -> None:
     slow, begun, said = rs.Module("slow", requires=[rawio]), asyncio.Event(), list[str]()
 
     @slow.rule(when=rs.startup, writes=rawio.output)
@@ -212,7 +212,7 @@ async def test_the_end_of_the_session_waits_for_no_words_that_nobody_would_hear(
 
 
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
-async def test_an_agent_comes_in_many_forms(form: str, tmp_path: Path) -> None:
+async def test_an_agent_may_be_given_in_many_forms(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"
     (tmp_path / "parrot.py").write_text("from agents import echo\n")
     file.write_text("modules: [./parrot.py]\n")

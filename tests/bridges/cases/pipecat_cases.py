@@ -171,7 +171,7 @@ async def test_an_interruption_while_the_pipeline_ends_lets_it_end() -> None:
     assert texts(down) == ["One, ", "two, "]
 
 
-async def test_several_utterances_that_wait_are_dropped_by_an_interruption() -> None:
+async def test_an_interruption_drops_all_waiting_utterances() -> None:
     down, _ = await run(
         agents.talker, said("wait"), after={"One, ": [said("count"), InterruptionFrame(), said("count")]}
     )
@@ -276,13 +276,13 @@ async def test_an_interruption_stops_the_voice_and_the_agent_knows_what_was_hear
     assert talk[1:] == [("assistant", "One."), ("user", "what did I hear?"), ("assistant", "You heard One.")]
 
 
-async def test_the_user_who_speaks_is_noticed() -> None:
+async def test_the_agent_notices_that_the_user_speaks() -> None:
     interim = InterimTranscriptionFrame("and n", user_id="ada", timestamp="now")
     down, _ = await run(agents.listener, UserStartedSpeakingFrame(), interim, said("and now?"))
     assert texts(down) == ["heard '', captions 'and n', speech 2"]
 
 
-async def test_a_guess_at_the_users_turn_is_heard_once_it_is_right() -> None:
+async def test_the_agent_hears_a_guess_at_the_users_turn_once_it_is_confirmed() -> None:
     guess = LLMContextFrame(LLMContext([{"role": "user", "content": "how are you?"}]), speculation=True)
     wrong = LLMContextFrame(LLMContext([{"role": "user", "content": "how"}]), speculation=True)
     confirmed = LLMContextUserTurnFrame(text="how are you?", timestamp="now")
@@ -293,7 +293,7 @@ async def test_a_guess_at_the_users_turn_is_heard_once_it_is_right() -> None:
 # ------------------------------------------------------------------------------------------- life
 
 
-async def test_the_agent_greets_and_sees_off_its_user() -> None:
+async def test_the_agent_greets_its_user_and_says_goodbye() -> None:
     down, _ = await run(agents.host)
     assert texts(down) == ["Welcome!", "Goodbye!"]
 
@@ -327,7 +327,7 @@ async def test_a_cancelled_pipeline_stops_the_agent() -> None:
         await context.next(rawio.output.changed)
 
 
-async def test_many_sessions_at_once_are_not_crossed() -> None:
+async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
     policy = rs.compile(agents.echo, agents.listener)
     talks = await asyncio.gather(*(run(policy, said(f"{n}"), said(f"{n}, {n}")) for n in range(40)))
     for n, (down, _) in enumerate(talks):
@@ -335,7 +335,7 @@ async def test_many_sessions_at_once_are_not_crossed() -> None:
 
 
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
-async def test_an_agent_comes_in_many_forms(form: str, tmp_path: Path) -> None:
+async def test_an_agent_may_be_given_in_many_forms(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"
     file.write_text("modules: [hibye]\n")
     forms: dict[str, AnyAgent] = {

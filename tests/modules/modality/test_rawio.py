@@ -23,7 +23,7 @@ def test_the_same_words_said_twice_are_two_utterances() -> None:
         assert sim.said == ["yes", "yes"]
 
 
-def test_say_from_another_thread_is_heard() -> None:
+def test_words_from_another_thread_are_heard() -> None:
     async def main() -> str:
         async with rs.Context(echo) as context:
             waiting = asyncio.ensure_future(context.next(rawio.output.changed, timeout=30))

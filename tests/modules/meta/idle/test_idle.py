@@ -55,7 +55,7 @@ def test_after_two_remarks_without_an_answer_the_agent_is_quiet_until_the_user_s
         assert sim.said[2:] == ["I see.", *["Are you still there?"] * 2]
 
 
-def test_how_many_remarks_the_agent_makes_in_a_row_is_a_setting() -> None:
+def test_a_setting_limits_the_remarks_in_a_row() -> None:
     with simulate(chatty, settings={"idle": {"remarks": 3}}) as sim:
         sim.advance(3600.0)
         assert len(sim.said) == 3
@@ -80,7 +80,7 @@ def test_activity_puts_boredom_off() -> None:
         assert sim.read(times) == pytest.approx((9.0,))
 
 
-def test_silence_bores_from_the_very_start() -> None:
+def test_the_silence_after_startup_bores_the_agent() -> None:
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.advance(12.0)
         assert sim.read(times) == pytest.approx((5.0, 10.0))
@@ -132,7 +132,7 @@ def test_a_wish_for_quiet_raises_hushed() -> None:
         assert sim.read(count) == 1
 
 
-def test_a_question_of_the_agents_has_more_time_for_its_answer() -> None:
+def test_the_user_has_more_time_to_answer_a_question_of_the_agent() -> None:
     curious = rs.Module("curious", requires=[rawio])
 
     @curious.rule(when=rawio.input.changed, writes=rawio.output)
@@ -207,13 +207,13 @@ def test_after_a_farewell_it_does_not_matter_how_fast_the_agent_answers() -> Non
         assert sim.read(bored) == 0
 
 
-def test_nothing_is_left_when_all_is_quiet() -> None:
+def test_no_activation_is_left_after_a_long_silence() -> None:
     with simulate(idle) as sim:
         sim.advance(60.0)
         assert sim.snapshot()["activations"] == []
 
 
-def test_nobody_in_sorrow_is_interrupted_for_twelve_utterances() -> None:
+def test_after_words_of_sorrow_the_agent_is_not_bored_for_twelve_utterances() -> None:
     bundled_matcher("feelings").load()
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.say("my grandmother died last week")

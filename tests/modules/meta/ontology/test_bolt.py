@@ -82,40 +82,40 @@ def proxy(bolt_server: dict[str, Any]) -> Iterator[Proxy]:
     proxy.close()
 
 
-def test_a_server_that_is_absent() -> None:
+def test_an_absent_server_is_reported() -> None:
     url = f"bolt://127.0.0.1:{free_ports(1)[0]}"
     said = failure(url=url, timeout=5)
     assert f"memory {url} cannot be reached" in said and "start the server" in said
 
 
-def test_a_wrong_password(bolt_server: dict[str, Any]) -> None:
+def test_a_wrong_password_is_reported(bolt_server: dict[str, Any]) -> None:
     said = failure(**{**bolt_server, "password": "wrong"})
     assert "refuses the user 'root': set RAVESTATE_ONTOLOGY_PASSWORD" in said
 
 
-def test_no_password(bolt_server: dict[str, Any]) -> None:
+def test_a_missing_password_is_reported(bolt_server: dict[str, Any]) -> None:
     said = failure(**{**bolt_server, "password": None})
     assert f"memory {bolt_server['url']}" in said
 
 
-def test_a_database_that_is_not_there(bolt_server: dict[str, Any]) -> None:
+def test_a_missing_database_is_reported(bolt_server: dict[str, Any]) -> None:
     said = failure(**{**bolt_server, "database": "nowhere"})
     assert "has no database 'nowhere'" in said and "--set ontology.database=NAME" in said
 
 
 @pytest.mark.parametrize("url", ["http://localhost:7687", "localhost", "", "bolt://", "bolt://localhost:port"])
-def test_an_address_that_is_none(url: str) -> None:
+def test_an_invalid_address_is_reported(url: str) -> None:
     assert "bolt://" in failure(url=url, timeout=5)
 
 
-def test_a_server_that_accepts_and_stalls() -> None:
+def test_a_server_that_accepts_and_stalls_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
         url = f"bolt://127.0.0.1:{silent.getsockname()[1]}"
         said = failure(url=url, timeout=0.2)
     assert f"memory {url}" in said and ("did not answer within 0.2 s" in said or "cannot be reached" in said)
 
 
-def test_a_server_that_speaks_something_else() -> None:
+def test_a_server_of_another_protocol_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
 
         def answer() -> None:
@@ -129,7 +129,7 @@ def test_a_server_that_speaks_something_else() -> None:
         thread.join()
 
 
-def test_a_server_that_stalls_on_the_way(bolt_server: dict[str, Any], proxy: Proxy, open_here: Open) -> None:
+def test_a_server_that_stalls_later_is_reported(bolt_server: dict[str, Any], proxy: Proxy, open_here: Open) -> None:
     memory = open_here(**{**bolt_server, "url": proxy.url, "timeout": 6.0})
     ada = memory.create("Person", name="Ada").result()
     proxy.flowing.clear()
@@ -139,7 +139,9 @@ def test_a_server_that_stalls_on_the_way(bolt_server: dict[str, Any], proxy: Pro
     assert memory.get(ada.id).result() == ada
 
 
-def test_a_server_that_hangs_up_is_called_again(bolt_server: dict[str, Any], proxy: Proxy, open_here: Open) -> None:
+def test_a_connection_that_the_server_closes_is_opened_again(
+    bolt_server: dict[str, Any], proxy: Proxy, open_here: Open
+) -> None:
     memory = open_here(**{**bolt_server, "url": proxy.url})
     ada = memory.create("Person", name="Ada").result()
     proxy.hang_up()
@@ -169,7 +171,7 @@ def test_the_password_may_come_from_the_environment(
     memory.close().result(60)
 
 
-def test_the_package_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "neo4j", None)
     said = failure(url="bolt://localhost:1", database=DATABASE)
     assert said == "ontology needs neo4j for the server bolt://localhost:1: pip install 'ravestate[neo4j]'"

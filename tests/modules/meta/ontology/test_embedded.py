@@ -260,7 +260,7 @@ def test_a_damaged_log_is_read_up_to_the_damage_and_kept(
             break
 
 
-def test_a_database_of_something_else_is_left_alone(tmp_path: Path) -> None:
+def test_a_database_of_another_program_is_left_alone(tmp_path: Path) -> None:
     import ladybug
 
     path = tmp_path / "other.lbug"
@@ -343,14 +343,14 @@ def test_a_failed_rewrite_still_forgets(
     assert not (tmp_path / "memory.lbug.new").exists()
 
 
-def test_the_file_is_the_users_alone(tmp_path: Path, open_here: Open) -> None:
+def test_only_the_user_may_read_the_file(tmp_path: Path, open_here: Open) -> None:
     path = tmp_path / "new" / "folder" / "memory.lbug"
     open_here(path=path)
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
 
 
-def test_the_package_is_named_where_it_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ladybug", None)
     assert failure(path=tmp_path / "x") == "ontology needs ladybug: pip install 'ravestate[ontology]'"
     assert list(tmp_path.iterdir()) == []

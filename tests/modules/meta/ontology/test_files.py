@@ -74,11 +74,11 @@ def test_a_file_set_aside_replaces_no_earlier_one(tmp_path: Path) -> None:
     assert files.logs() == [] and len(files.kept()) == 2
 
 
-def test_the_log_is_the_users_alone_from_the_first_byte(crashed: Path) -> None:
+def test_only_the_user_may_read_the_log_from_its_first_byte(crashed: Path) -> None:
     assert modes(crashed.parent) == {"memory.lbug": 0o600, "memory.lbug.wal": 0o600}
 
 
-def test_every_file_that_memory_creates_is_the_users_alone(
+def test_only_the_user_may_read_the_files_that_memory_creates(
     tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The check looks before and after each statement: ladybug keeps the mode of a file that is there already."""
@@ -116,7 +116,7 @@ def test_every_file_that_memory_creates_is_the_users_alone(
     assert set(seen.values()) == {0o600}, seen
 
 
-def test_files_of_an_earlier_version_become_the_users_alone(crashed: Path, open_here: Open) -> None:
+def test_files_of_an_earlier_version_become_readable_only_by_the_user(crashed: Path, open_here: Open) -> None:
     for file in crashed.parent.iterdir():
         file.chmod(0o644)
     open_here(path=crashed)

@@ -68,7 +68,7 @@ def test_none_matches_a_missing_value(memory: Memory) -> None:
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_any_text_is_a_value_and_nothing_else(memory: Memory, text: str) -> None:
+def test_any_text_is_stored_as_a_value(memory: Memory, text: str) -> None:
     other = memory.create("Person", name="other").result()
     node = memory.create("Person", name=text).result()
     assert node["name"] == text
@@ -125,7 +125,7 @@ def test_undeclared_names_are_refused(memory: Memory, type: str, properties: dic
     assert memory.export().result() == before
 
 
-def test_ensure_makes_one_and_finds_it_afterwards(memory: Memory) -> None:
+def test_ensure_creates_a_node_once_and_then_finds_it(memory: Memory) -> None:
     first = memory.ensure("City", name="Hannover").result()
     assert memory.ensure("City", name="Hannover").result() == first
     assert memory.ensure("Place", name="Hannover").result() == first
@@ -133,7 +133,7 @@ def test_ensure_makes_one_and_finds_it_afterwards(memory: Memory) -> None:
     assert len(memory.find("City").result()) == 2
 
 
-def test_update_sets_and_none_removes(memory: Memory) -> None:
+def test_update_sets_properties_and_none_removes_them(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada", age=36).result()
     assert dict(memory.update(ada, age=37, nickname="A").result().properties) == {
         "name": "Ada",
@@ -191,7 +191,7 @@ def test_unrelate_may_forget_the_other_node(memory: Memory) -> None:
     memory.relate(ada, "friend_of", kim).result()
     memory.relate(ada, "friend_of", bob).result()
     memory.unrelate(ada, "lives_in", london, forget=True).result()
-    assert memory.get(london.id).result() == london  # it is Bob's as well
+    assert memory.get(london.id).result() == london  # Bob lives there, too
     for friend in (kim, bob):
         memory.unrelate(ada, "friend_of", friend, forget=True).result()
     assert (memory.get(kim.id).result(), memory.get(bob.id).result()) == (
@@ -244,7 +244,7 @@ def test_a_relation_that_the_types_do_not_have_is_refused(memory: Memory) -> Non
     assert memory.relations(ada).result() == []
 
 
-# ------------------------------------------------------------------------------------ whole lives
+# ------------------------------------------------------------------------------------ merging and forgetting
 
 
 def test_duplicates_are_merged(memory: Memory) -> None:
@@ -306,7 +306,7 @@ def test_a_refused_merge_changes_nothing(memory: Memory) -> None:
     assert memory.export().result() == before
 
 
-def test_a_person_is_forgotten_with_everything_about_it(memory: Memory) -> None:
+def test_a_person_is_forgotten_with_everything_about_them(memory: Memory) -> None:
     def make(type: str, name: str, **more: Any) -> Node:
         return memory.create(type, name=name, **more).result()
 
@@ -351,7 +351,7 @@ def test_forget_keeps_nodes_that_others_need_even_in_a_ring(memory: Memory) -> N
     assert memory.find("Thing").result() == []
 
 
-# ------------------------------------------------------------------------------------ as a whole
+# ------------------------------------------------------------------------------------ documents and types
 
 
 def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_path: Path) -> None:
@@ -454,7 +454,7 @@ def test_operations_are_done_in_the_order_of_the_calls(memory: Memory) -> None:
     assert memory.find("Person").result()[0]["age"] == 49
 
 
-def test_several_operations_are_one(memory: Memory) -> None:
+def test_several_operations_together_are_one_transaction(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada").result()
 
     def befriend(graph: Graph) -> Node:
@@ -506,13 +506,13 @@ def test_a_newer_layout_is_left_alone(open_here: Open, place: dict[str, Any]) ->
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
     keeper = memory._worker
-    keeper.submit(lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 2", {})).result()
+    keeper.submit(lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 3", {})).result()
     memory.close().result()
-    with pytest.raises(PlatformError, match="is of format 2, and this version of ravestate knows up to 1"):
+    with pytest.raises(PlatformError, match=r"is of format 3, and this version of ravestate knows up to [12]:"):
         open_here(**place)
 
 
-def test_tidying_up_changes_nothing_that_is_known(memory: Memory) -> None:
+def test_tidy_changes_no_data(memory: Memory) -> None:
     ada, london = memory.create("Person", name="Ada").result(), memory.create("City", name="London").result()
     memory.relate(ada, "lives_in", london).result()
     before = memory.export().result()

@@ -15,7 +15,7 @@ def test_a_node_has_an_id_of_its_type_from_the_beginning_and_ids_grow() -> None:
     assert [node.id for node in nodes] == sorted({node.id for node in nodes})
 
 
-def test_a_changed_node_is_another_of_the_same_id() -> None:
+def test_a_changed_node_is_a_new_object_with_the_same_id() -> None:
     ada = Node("Person", {"name": "Ada"})
     older = ada.with_properties(age=36, name=None)
     assert older.id == ada.id and older != ada and hash(older) == hash(ada)
@@ -37,7 +37,7 @@ def test_a_node_never_changes() -> None:
         ada.type = "City"  # type: ignore[misc]
 
 
-def test_they_are_copied_and_pickled() -> None:
+def test_nodes_and_relations_can_be_copied_and_pickled() -> None:
     ada, london = Node("Person", {"born": date(1815, 12, 10)}), Node("City")
     relation = Relation(ada, "lives_in", london, {"since": date(1835, 1, 1)})
     for value in (ada, relation):

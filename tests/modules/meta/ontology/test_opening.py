@@ -43,7 +43,7 @@ def test_an_agents_name_is_no_path(agent: str) -> None:
         ontology.Settings(agent=agent)
 
 
-def test_a_users_home_may_be_written_short(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_path_may_begin_with_a_tilde(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     memory = open_memory(ontology.Settings(path=Path("~/m.lbug")))
     memory.opened().result(60)

@@ -32,7 +32,7 @@ def test_each_caller_gets_the_result() -> None:
     assert repr(Reply(Future(), "Memory.find")) == "<reply of Memory.find: pending>"
 
 
-def test_it_raises_the_error() -> None:
+def test_a_reply_raises_the_error() -> None:
     reply = Reply(done(PlatformError("no")), "Memory.find")
     with pytest.raises(PlatformError, match="no"):
         reply.result()
@@ -56,7 +56,7 @@ def test_waiting_may_end_before_the_operation() -> None:
     assert reply.result() == 3
 
 
-def test_virtual_time_waits_for_it_and_says_for_what() -> None:
+def test_virtual_time_waits_for_a_reply_and_names_the_operation() -> None:
     loop = VirtualLoop()
     future: Future[int] = Future()
     task = loop.create_task(wait(Reply(future, "Memory.find")))  # type: ignore[arg-type]

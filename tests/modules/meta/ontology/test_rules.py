@@ -59,7 +59,7 @@ def test_memory_outlives_the_agent(tmp_path: Path) -> None:
             assert sim.failures == [] and sim.now == 0.0
 
 
-def test_it_is_used_from_plain_functions_too(tmp_path: Path) -> None:
+def test_plain_functions_can_use_memory(tmp_path: Path) -> None:
     threads = rs.Module("threads", requires=[ontology])
     go = threads.signal("go")
     found = threads.slot("found", 0)
@@ -221,7 +221,7 @@ def test_a_write_without_memory_is_an_error(tmp_path: Path) -> None:
         assert rule == "desk:remember_guest" and "is not remembered: there is no memory" in str(error)
 
 
-def test_a_bound_slot_wants_its_module_to_require_ontology() -> None:
+def test_a_bound_slot_needs_a_module_that_requires_ontology() -> None:
     with pytest.raises(DeclarationError, match=r"write rs.Module\('alone', requires=\[ontology, ...\]\)"):
         ontology.bound(rs.Module("alone"), "guest", "Person")
 

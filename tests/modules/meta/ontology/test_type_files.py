@@ -39,7 +39,7 @@ def test_types_inherit_properties_and_relations(tmp_path: Path) -> None:
     types.check_end("Harbour", "sails_to", back=True)
 
 
-def test_a_later_file_adds(tmp_path: Path) -> None:
+def test_a_later_file_adds_to_the_types(tmp_path: Path) -> None:
     types = read(
         tmp_path,
         "Thing: {has: {name: text}}\nBoat: {is: Thing}\nPort:",
@@ -53,7 +53,7 @@ def test_a_later_file_adds(tmp_path: Path) -> None:
     assert types.relating("in").properties == {"since": "date"}
 
 
-def test_the_types_that_come_with_it_are_complete() -> None:
+def test_the_built_in_types_are_complete() -> None:
     types = types_of(ontology.Settings())
     assert {
         "Thing", "Agent", "Person", "Robot", "Animal", "Place", "City", "Country", "Organisation", "Company",
@@ -131,7 +131,7 @@ def test_files_do_not_contradict_each_other(tmp_path: Path) -> None:
         read(tmp_path, first, "Boat: {has: {name: integer}}")
 
 
-def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     (tmp_path / "types.yaml").touch()
     with pytest.raises(PlatformError, match=r"does not exist; did you mean 'types\.yaml'\?"):
         read_types([tmp_path / "typse.yaml"])

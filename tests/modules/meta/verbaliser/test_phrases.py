@@ -49,7 +49,7 @@ def test_a_file_is_read(tmp_path: Path) -> None:
     assert texts(found, "no", "no") == ["nei"]
 
 
-def test_any_kind_of_path_will_do(tmp_path: Path) -> None:
+def test_a_book_reads_any_kind_of_path(tmp_path: Path) -> None:
     book(tmp_path, BASE)
     file = tmp_path / "phrases0.yaml"
     assert PhraseBook.load([str(file)]).intents == PhraseBook.load([file]).intents
@@ -75,7 +75,7 @@ def test_the_default_language_is_a_choice(tmp_path: Path) -> None:
     assert texts(found, "farewell") == ["Goodbye!"]
 
 
-def test_a_later_file_replaces_and_adds(tmp_path: Path) -> None:
+def test_a_later_file_replaces_or_adds_phrases(tmp_path: Path) -> None:
     mine = "greet:\n  en: [Ahoy!]\n  de: !add [Moin!]\n  fr: !add Salut !\njoke: Ha."
     found = book(tmp_path, BASE, mine, "", "# nothing\n")
     assert texts(found, "greet") == ["Ahoy!"]
@@ -96,7 +96,7 @@ def test_a_book_can_be_made_of_values() -> None:
 # ----------------------------------------------------------------------------------------- choosing
 
 
-def test_the_same_chance_chooses_the_same() -> None:
+def test_the_same_seed_chooses_the_same_phrase() -> None:
     found = PhraseBook({"x": {"en": list("abcdef")}})
     first, second = (
         [found.choose("x", {}, rng).text for _ in range(9)] for rng in (random.Random(7), random.Random(7))
@@ -106,7 +106,7 @@ def test_the_same_chance_chooses_the_same() -> None:
 
 
 @given(st.lists(st.sampled_from("abc"), min_size=1), st.integers())
-def test_no_phrase_comes_twice_running_when_there_is_another(phrases: list[str], seed: int) -> None:
+def test_no_phrase_comes_twice_in_a_row_if_there_is_another(phrases: list[str], seed: int) -> None:
     found, rng, last = PhraseBook({"x": {"en": phrases}}), random.Random(seed), None
     for _ in range(10):
         chosen = found.choose("x", {}, rng, last)
@@ -143,7 +143,7 @@ def test_braces_can_be_said() -> None:
         ),
     ],
 )
-def test_impossible_intents(intent: str, parameters: dict[str, object], message: str) -> None:
+def test_an_impossible_intent_has_a_message(intent: str, parameters: dict[str, object], message: str) -> None:
     found = PhraseBook({"greet": {"en": ["Hi {name}!"]}, "only": {"fr": ["Oui."]}}, language="de-AT")
     with pytest.raises(RuleError, match=f"(?s){message}"):
         found.choose(intent, parameters, random.Random())
@@ -193,12 +193,12 @@ def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, message
         book(tmp_path, BASE, text)
 
 
-def test_a_file_nested_without_end(tmp_path: Path) -> None:
+def test_a_file_nested_without_end_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DeclarationError, match=r"phrases0.yaml"):
         book(tmp_path, "a: " + "[" * 100_000)
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
     book(tmp_path, BASE)
     with pytest.raises(PlatformError, match=r"phrases\.yaml' does not exist; did you mean 'phrases0.yaml'\?"):
         PhraseBook.load([tmp_path / "phrases.yaml"])
@@ -206,7 +206,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
         PhraseBook.load([tmp_path / "no" / "phrases.yaml"])
 
 
-def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=f"{re.escape(repr(str(tmp_path)))} cannot be read: "):
         PhraseBook.load([tmp_path])
     (tmp_path / "latin.yaml").write_bytes(b"a: caf\xe9")

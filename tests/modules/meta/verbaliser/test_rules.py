@@ -39,14 +39,14 @@ def failure(meant: object, **settings: Any) -> BaseException:
         return error
 
 
-def test_an_intent_is_worded() -> None:
+def test_the_verbaliser_says_a_phrase_for_an_intent() -> None:
     [farewell] = said("farewell")
     assert farewell in ("Goodbye!", "See you soon!")
     [greeting] = said(Intent("greet", {"name": "Ada"}))
     assert greeting in ("Hello!", "Hi there!", "Hello Ada!", "Hi Ada, good to see you!")
 
 
-def test_a_file_is_looked_for_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_relative_path_begins_at_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("here", "there"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "my.yaml").write_text(f"place: I am {name}.")
@@ -55,7 +55,7 @@ def test_a_file_is_looked_for_where_one_is(tmp_path: Path, monkeypatch: pytest.M
         assert said("place", phrases=["my.yaml"]) == [f"I am {name}."]
 
 
-def test_no_phrase_comes_twice_running_and_the_seed_decides() -> None:
+def test_no_phrase_comes_twice_in_a_row_and_the_seed_decides() -> None:
     first = said(*["think"] * 20)
     assert all(one != next_one for one, next_one in pairwise(first))
     assert len(set(first)) == 3
@@ -64,7 +64,7 @@ def test_no_phrase_comes_twice_running_and_the_seed_decides() -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_nor_does_it_if_all_is_meant_in_one_instant(seed: int) -> None:
+def test_no_phrase_comes_twice_in_a_row_for_intents_in_one_instant(seed: int) -> None:
     with simulate(verbaliser, seed=seed) as sim:
         for _ in range(4):
             sim.context.put(verbaliser.intent, "think")
@@ -116,7 +116,7 @@ def test_a_value_that_is_no_intent_is_refused(value: object) -> None:
         as_intent(value)
 
 
-def test_each_intent_that_comes_with_it_is_in_both_languages() -> None:
+def test_each_built_in_intent_has_phrases_in_both_languages() -> None:
     book = phrase_book(None, (), "en")
     for intent in book.intents:
         english, german = book.templates(intent, "en"), book.templates(intent, "de")

@@ -45,7 +45,7 @@ def test_the_agent_is_known_by_its_names(sentence: str, feeling: str | None) -> 
         "so very really " * 10_000,
     ],
 )
-def test_any_text_is_taken(text: str) -> None:
+def test_recognise_takes_any_text(text: str) -> None:
     assert recognise(text) in (None, "surprised", "happy", "affectionate")
 
 
@@ -84,7 +84,7 @@ def test_without_the_model_the_examples_count_and_other_words_say_what_to_instal
         recognise("I like you.")
 
 
-def test_the_package_offers_it() -> None:
+def test_the_package_offers_recognise() -> None:
     assert emotion.recognise("I love you.") == "affectionate"
 
 

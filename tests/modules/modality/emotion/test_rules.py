@@ -73,7 +73,7 @@ def test_neutral_words_raise_no_feeling(text: str) -> None:
         ("Good night!", "affectionate"),
     ],
 )
-def test_at_an_occasion_the_agent_feels_something_by_itself(text: str, feeling: str) -> None:
+def test_an_occasion_may_raise_a_spontaneous_feeling(text: str, feeling: str) -> None:
     with calm(**{feeling: 1.0}) as sim:
         sim.say(text)
         assert felt(sim) == [feeling]
@@ -98,14 +98,14 @@ def test_chance_decides_as_often_as_the_setting_says_and_repeats_with_the_seed()
     assert first != moved(2)
 
 
-def test_a_probability_is_none_above_1() -> None:
+def test_a_probability_above_1_is_refused() -> None:
     with pytest.raises(DeclarationErrors) as caught:
         simulate(emotion, settings={"emotion": {"shy": 1.5}})
     assert "emotion.shy = 1.5" in str(caught.value.exceptions[0])
 
 
 @pytest.mark.parametrize("seconds", [0.0, 3.0])
-def test_the_emoji_stands_behind_the_answer(seconds: float) -> None:
+def test_the_emoji_follows_the_answer(seconds: float) -> None:
     with calm(module(seconds=seconds)) as sim:
         sim.say("You are so clever!")
         sim.advance(10.0)
@@ -114,14 +114,14 @@ def test_the_emoji_stands_behind_the_answer(seconds: float) -> None:
         assert sim.said[1] in EMOJI["shy"]
 
 
-def test_without_an_answer_the_emoji_stands_alone() -> None:
+def test_without_an_answer_the_emoji_is_the_only_utterance() -> None:
     with calm() as sim:
         sim.say("You are so clever!")
         assert len(sim.said) == 1
         assert sim.said[0] in EMOJI["shy"]
 
 
-def test_emoji_are_a_setting() -> None:
+def test_a_setting_turns_the_emoji_off() -> None:
     with calm(module(), emoji=False) as sim:
         sim.say("You are so clever!")
         assert sim.said == ["Yes."]
@@ -197,7 +197,7 @@ def test_a_rule_that_answers_a_feeling_goes_before_small_talk() -> None:
         assert sim.said[2:] == ["Yes."]
 
 
-def test_the_moment_is_past_when_the_user_speaks_on() -> None:
+def test_no_emoji_appears_if_the_user_speaks_before_the_answer_ends() -> None:
     with calm(module(seconds=3.0)) as sim:
         sim.say("You are so clever!")
         sim.advance(1.0)
@@ -243,7 +243,7 @@ def test_hibyes_greeting_and_the_emoji_go_together() -> None:
         assert sim.said[1] in EMOJI["happy"]
 
 
-def test_it_is_not_cheerful_in_a_sad_stretch_of_the_talk() -> None:
+def test_the_agent_is_not_cheerful_after_sad_words() -> None:
     with calm(happy=1.0, surprised=1.0) as sim:
         sim.say("My father died last week.")
         for text in ("He made me laugh so often, and that was wonderful!", "Wow!", "Thanks.", "Why is that so?"):
@@ -256,14 +256,14 @@ def test_it_is_not_cheerful_in_a_sad_stretch_of_the_talk() -> None:
 
 
 @pytest.mark.parametrize("text", ["What is that to you?", "When does the train leave?", "What is 7 percent of 1300?"])
-def test_plain_questions_do_not_surprise_it(text: str) -> None:
+def test_plain_questions_do_not_surprise_the_agent(text: str) -> None:
     with simulate(emotion, seed=1) as sim:
         for _ in range(20):
             sim.say(text)
         assert "surprised" not in felt(sim)
 
 
-def test_it_disturbs_no_quiet() -> None:
+def test_an_emoji_does_not_put_boredom_off() -> None:
     bored = rs.Module("lonely", requires=[rawio, idle])
 
     @bored.rule(when=idle.bored, writes=rawio.output)
@@ -338,7 +338,7 @@ class Screen:
         self.lines += "\n"
 
 
-def test_on_the_console_it_follows_a_streamed_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_the_console_the_emoji_follows_a_streamed_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Screen()
     monkeypatch.setattr(conio.rules, "Console", lambda **_: Console(screen))
     with calm(conio, interloc, wildtalk) as sim:

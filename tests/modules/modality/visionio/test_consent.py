@@ -27,7 +27,7 @@ def chatter() -> Any:
     return module, speak
 
 
-def test_a_yes_to_another_question_is_no_leave(memory: Path) -> None:
+def test_a_yes_to_another_question_is_no_permission(memory: Path) -> None:
     stage, (module, speak) = Stage(), chatter()
     with agent(memory, module) as sim:
         stage.show(sim, "biden")
@@ -42,7 +42,7 @@ def test_a_yes_to_another_question_is_no_leave(memory: Path) -> None:
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_small_talk_does_not_answer_in_place_of_the_agents_word(memory: Path) -> None:
+def test_small_talk_does_not_answer_a_yes_or_a_wish_about_a_face(memory: Path) -> None:
     stage = Stage()
     settings = {
         "visionio": {"source": ""},

@@ -63,7 +63,7 @@ def test_a_video_gives_its_newest_picture_and_skips_older_ones(eye: Eye, clip: P
     run(watch())
 
 
-def test_a_video_begins_again_if_it_shall(eye: Eye, clip: Path) -> None:
+def test_a_video_begins_again_if_the_request_says_so(eye: Eye, clip: Path) -> None:
     async def watch() -> None:
         await eye.open(str(clip), loop=True)
         for at in (0.0, 3.0, 5.0, 8.5):

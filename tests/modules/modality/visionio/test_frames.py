@@ -33,7 +33,7 @@ def test_a_picture_from_another_thread_wakes_the_agent() -> None:
     assert "pixels" not in repr(frame)
 
 
-def test_messages_of_ros() -> None:
+def test_a_camera_takes_messages_of_ros() -> None:
     frames = Frames()
     frames.put_message(SimpleNamespace(format="jpeg", data=[1, 2]))
     frame = asyncio.run(frames.next())

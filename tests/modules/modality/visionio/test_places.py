@@ -15,7 +15,9 @@ def test_the_setting_comes_first(tmp_path: Path) -> None:
         places.eyes_python(tmp_path / "python")
 
 
-def test_then_the_environment_of_make_eyes_then_this_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_setting_the_environment_of_make_eyes_comes_first_and_then_this_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(places.sys, "prefix", str(tmp_path / ".venv"))
     monkeypatch.setattr(places, "user_folder", lambda _: tmp_path / "data")
     monkeypatch.setattr(places, "find_spec", lambda name: None if name == "dlib" else object())

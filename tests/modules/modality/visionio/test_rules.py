@@ -171,7 +171,7 @@ def test_a_face_vector_of_another_module_counts_as_well(memory: Path) -> None:
         assert present(sim) == ["Ada"] and "Ada" in sim.said[0]
 
 
-def test_a_flash_of_a_face_is_nobody(memory: Path) -> None:
+def test_a_face_that_is_seen_for_a_moment_is_no_visitor(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()
         stage.show(sim, "obama", seconds=0.4)
@@ -353,7 +353,7 @@ def test_a_person_whose_face_has_another_name_in_memory_says_so(memory: Path) ->
         assert remembered_now(sim) == {"Joe": 0, "Barack": 1}
 
 
-def test_a_name_that_was_only_told_is_denied_as_well(memory: Path) -> None:
+def test_a_user_can_take_back_a_name_that_they_have_told(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Joe")

@@ -40,7 +40,7 @@ def test_a_face_needs_vectors_until_enough_agree_and_then_now_and_again() -> Non
     assert needs_vector(tracks, 4.05)
 
 
-def test_a_face_that_is_badly_seen_gets_a_vector_each_second_in_the_end() -> None:
+def test_a_badly_visible_face_gets_only_one_vector_each_second_after_some_tries() -> None:
     tracks = Tracks()
     for number in range(TRIES):
         [(one, _)] = tracks.update([seen(1 if number else None, quality=0.1)], number / 10)

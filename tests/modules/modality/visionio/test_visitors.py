@@ -50,7 +50,7 @@ def test_a_visitor_keeps_the_best_vectors_that_differ() -> None:
     one = Visitor("a", ADA)
     for x, quality in ((0.0, 0.5), (0.01, 0.9), (0.3, 0.4), (0.5, 0.1), (0.9, 0.9)):
         one = one.met(face(x, quality=quality), least=0.3, threshold=0.5)
-    assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))  # 0.5 was seen badly, 0.9 is somebody else
+    assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))  # 0.5 was badly visible; 0.9 is another face
     assert one.good(0.5) == ((0.9, (0.01, 0.0)),)
     assert best([(0.1 * n, (float(n),)) for n in range(20)], 3) == (
         (0.1 * 19, (19.0,)),
@@ -70,7 +70,7 @@ def test_a_new_track_belongs_to_the_visitor_whom_memory_or_the_vectors_name() ->
     assert whose(here, face(3.0), Decision(None), 0.5) is None
 
 
-def test_tracks_places_and_absence() -> None:
+def test_the_visitor_of_a_track_the_nearest_visitor_and_absent_visitors_are_found() -> None:
     far = Visitor("f", ADA, seen=1.0, tracks=frozenset({1}))
     near = Visitor("n", BOB, seen=9.0, tracks=frozenset({2, 3}))
     here = {"f": far, "n": near}

@@ -139,7 +139,7 @@ def test_a_damaged_picture_in_a_folder_is_left_out(tmp_path: Path, caplog: pytes
     assert caplog.text.count("2.jpg") == 1
 
 
-def test_a_platforms_pictures(tmp_path: Path) -> None:
+def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> None:
     """Only the newest is looked at; a closed camera means that everybody has left."""
     frames = visionio.Frames()
     settings = {"visionio": {"source": ""}, "ontology": {"path": str(tmp_path / "m.lbug")}}
@@ -165,7 +165,7 @@ def test_a_platforms_pictures(tmp_path: Path) -> None:
         assert not sim.read(visionio.visitors) and sim.failures == []
 
 
-def test_the_users_camera(tmp_path: Path) -> None:
+def test_the_agent_looks_through_the_users_camera(tmp_path: Path) -> None:
     """The agent asks for pictures at its own pace, shows the faces on the page, and notices that the camera goes off."""
     user = UserCamera(photo("hanks").read_bytes())
     settings = {"visionio": {"source": "", "fps": 5}, "ontology": {"path": str(tmp_path / "m.lbug")}}
@@ -231,7 +231,7 @@ def test_a_rule_that_listens_to_poses_gets_them(tmp_path: Path) -> None:
     assert nobody is None
 
 
-def test_black_frames_of_a_video(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_black_pictures_of_a_video_are_reported(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     file = tmp_path / "black.mp4"
     make(
         """

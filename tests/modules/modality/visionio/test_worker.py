@@ -51,7 +51,7 @@ def test_a_look_computes_a_few_vectors_only() -> None:
     assert [face["vector"] is not None for face in found] == [True, True, False, False, False, False]
 
 
-def test_20_faces_in_one_picture(tmp_path: Path) -> None:
+def test_20_faces_in_one_picture_are_found(tmp_path: Path) -> None:
     """24 faces, of 46 to 66 pixels each in the picture that is searched."""
     file = tmp_path / "crowd.jpg"
     make(
@@ -83,7 +83,7 @@ def test_a_black_picture_is_dark_and_has_no_face(tmp_path: Path) -> None:
     assert look(photo("biden").read_bytes())["dark"] is False
 
 
-def test_raw_pixels(tmp_path: Path) -> None:
+def test_the_worker_reads_raw_pixels(tmp_path: Path) -> None:
     file = tmp_path / "raw"
     make("open(a[1], 'wb').write(cv2.cvtColor(cv2.imread(a[0]), cv2.COLOR_BGR2RGB).tobytes())", photo("hanks"), file)
     seen = eye().look_now(["faces"], {"thorough": True}, frame=Frame(file.read_bytes(), (112, 112)))
@@ -92,7 +92,7 @@ def test_raw_pixels(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["bgr8", "rgba8", "mono8"])
-def test_a_picture_of_ros(tmp_path: Path, encoding: str) -> None:
+def test_the_worker_reads_a_picture_of_ros(tmp_path: Path, encoding: str) -> None:
     """The rows have more bytes than their pixels."""
     file = tmp_path / "raw"
     make(

@@ -49,5 +49,5 @@ def test_a_mention_is_cut_out(text: str, rest: str) -> None:
 @pytest.mark.parametrize(
     ("text", "is_one"), [("👍", True), ("🇩🇪", True), ("👍🏽", True), ("☹️", True), ("a", False), ("🎈 ok", False)]
 )
-def test_an_emoji_alone(text: str, is_one: bool) -> None:
+def test_one_emoji_alone_is_recognised(text: str, is_one: bool) -> None:
     assert is_emoji(text) is is_one

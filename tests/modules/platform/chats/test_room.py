@@ -1,4 +1,4 @@
-"""Rooms: a context for each chat, put to rest and taken up again; faults; people."""
+"""Rooms: chats that rest and go on again, each with a context of its own; failures; people."""
 
 import asyncio
 import itertools
@@ -31,7 +31,7 @@ async def test_each_chat_has_a_context_of_its_own(tmp_path: Path) -> None:
 
 
 @in_virtual_time
-async def test_a_silent_chat_is_put_to_rest_and_taken_up_without_a_greeting(tmp_path: Path) -> None:
+async def test_a_silent_chat_rests_and_goes_on_without_a_greeting(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, rest=60.0) as opened:
         opened.receive([letter("one")])
@@ -195,7 +195,7 @@ async def test_a_failed_delivery_is_tried_again_in_order(tmp_path: Path) -> None
 
 
 @in_virtual_time
-async def test_the_wait_that_a_messenger_asks_for_concerns_one_chat(tmp_path: Path) -> None:
+async def test_a_wait_that_the_messenger_asks_for_delays_only_one_chat(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("too many messages", wait=30.0)]
     async with room(tmp_path, post) as opened:

@@ -25,7 +25,7 @@ def test_a_secret_is_replaced_in_messages_arguments_and_tracebacks(caplog: pytes
     assert "nothing to hide 1 2" in caplog.text
 
 
-def test_afterwards_the_log_is_as_before(caplog: pytest.LogCaptureFixture) -> None:
+def test_after_the_body_the_log_is_as_before(caplog: pytest.LogCaptureFixture) -> None:
     before = logging.getLogRecordFactory()
     with secret(TOKEN):
         pass

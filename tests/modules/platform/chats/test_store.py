@@ -39,7 +39,7 @@ def test_a_message_is_pending_until_it_is_done_and_its_key_is_known_afterwards(t
     assert not again.knows("b", message.person)
 
 
-def test_a_killed_process_leaves_what_it_kept_and_nothing_unfinished(tmp_path: Path) -> None:
+def test_a_killed_process_leaves_its_kept_messages_and_no_part_of_a_batch(tmp_path: Path) -> None:
     code = f"""
 import os, signal, sys
 sys.path.insert(0, {str(Path(__file__).parents[3])!r})
@@ -59,7 +59,7 @@ with store.batch():
     assert store.chats_to_send() == []
 
 
-def test_an_answer_goes_from_queued_over_begun_to_sent(tmp_path: Path) -> None:
+def test_an_answer_is_queued_then_begun_then_sent(tmp_path: Path) -> None:
     store = opened(tmp_path)
     entry = store.take(letter("one"))
     assert entry is not None
@@ -76,7 +76,9 @@ def test_an_answer_goes_from_queued_over_begun_to_sent(tmp_path: Path) -> None:
     assert not store.next("a").begun  # type: ignore[union-attr]
     store.sent(begun, "id 1")
     assert store.next("a").message.text == "second"  # type: ignore[union-attr]
-    assert [each.text for each in store.recorded(entry.n)] == ["first"]  # to compare, if the message is heard again
+    assert [each.text for each in store.recorded(entry.n)] == [
+        "first"
+    ]  # kept for a comparison if the agent hears the message again
     store.commit((), [entry])
     assert store.recorded(entry.n) == []
 
@@ -109,7 +111,7 @@ def test_a_message_that_kills_each_process_is_given_up_but_not_an_unheard_messag
         left.append([entry.message.text for entry in entries])
         store.hear(entries[0])
         if entries[0].message.text == "innocent":
-            store.unhear(entries[:1])  # the process ends in order
+            store.unhear(entries[:1])  # the process ends normally
     assert left == [["deadly", "innocent"]] * TRIES + [["innocent"]] * 2
 
 
@@ -180,7 +182,7 @@ def test_a_chat_that_moves_takes_its_messages_along(tmp_path: Path) -> None:
     assert (item.message.chat, item.begun) == ("b", False)
 
 
-def test_one_process_at_a_time_and_only_the_user_may_read(tmp_path: Path) -> None:
+def test_only_one_process_may_open_the_file_and_only_the_user_may_read_it(tmp_path: Path) -> None:
     store = opened(tmp_path)
     with pytest.raises(PlatformError, match="another agent uses it"):
         opened(tmp_path)

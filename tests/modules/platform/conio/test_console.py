@@ -136,7 +136,7 @@ def test_other_output_during_a_stream_gets_a_line_of_its_own() -> None:
     assert screen.log == ["stream Hello", "end", "show Look!", "stream  to", "stream  you!", "end"]
 
 
-def test_a_streamed_line_is_ended_at_the_end() -> None:
+def test_a_streamed_line_ends_when_the_console_closes() -> None:
     screen = Script()
 
     async def main() -> None:
@@ -197,7 +197,7 @@ def test_the_history_file_is_in_the_folder_for_state(monkeypatch: pytest.MonkeyP
 # -------------------------------------------------------------------------- in a process of its own
 
 
-def test_through_pipes(tmp_path: Path) -> None:
+def test_a_program_reads_and_writes_through_pipes(tmp_path: Path) -> None:
     run = subprocess.run(
         [sys.executable, "-c", ECHO, str(tmp_path / "history")],
         input=b"hello\ncaf\xe9\x00\n" + b"x" * 100_000 + b"\nlast",
@@ -227,7 +227,7 @@ def test_a_full_disk_is_a_failure_and_a_broken_pipe_is_none() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pipes of the shell")
-def test_a_reader_that_goes_is_a_clean_end(tmp_path: Path) -> None:
+def test_a_reader_that_goes_away_ends_the_console_cleanly(tmp_path: Path) -> None:
     run = subprocess.Popen(
         [sys.executable, "-c", ECHO, str(tmp_path / "history")],
         stdin=subprocess.PIPE,
@@ -266,7 +266,7 @@ def test_only_a_terminal_needs_preparation(monkeypatch: pytest.MonkeyPatch, is_t
 
 @pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
 @pytest.mark.parametrize(("keys", "ending"), [(b"\x04", "end of input"), (b"\x03", "interrupt"), (b"bye\r", "None")])
-def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
+def test_a_program_talks_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
     ours, theirs = os.openpty()
     history = tmp_path / "state" / "history"
     run = subprocess.Popen(
@@ -295,7 +295,7 @@ def test_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
         os.write(ours, b"helo\x1b[Dl\r")  # the cursor goes back, and a letter is added
         wait_for(b"'hello'")
         wait_for(b"mean?")
-        os.write(ours, b"\x1b[A\r")  # the line before
+        os.write(ours, b"\x1b[A\r")  # the up arrow brings the previous line
         wait_for(b"'hello'")
         os.write(ours, b"caf\xe9" + b"y" * 2000 + b"\r")
         wait_for(b"'caf")

@@ -128,7 +128,7 @@ def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     return terminal
 
 
-def test_afterwards_the_log_goes_where_it_went_before(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_after_the_chat_the_log_goes_where_it_went_before(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     terminal = on_terminal(monkeypatch)
     log, handler = logging.getLogger(), logging.StreamHandler(terminal)
     log.addHandler(handler)

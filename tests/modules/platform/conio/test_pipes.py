@@ -89,7 +89,7 @@ def test_input_that_is_closed_has_ended(tmp_path: Path) -> None:
     assert read(file) == []
 
 
-def test_a_line_is_given_as_soon_as_it_is_there(pipe: Callable[[], Pipe]) -> None:
+def test_a_line_is_returned_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
 
     async def main() -> None:

@@ -196,14 +196,14 @@ def test_the_end_of_input_ends_the_agent_after_a_farewell(keys: Keys, end: BaseE
     assert not sim.failures
 
 
-def test_a_user_who_leaves_in_order_hears_the_answer(keys: Keys) -> None:
+def test_a_user_who_ends_the_input_gets_the_last_answer(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("one two", EOFError())
         sim.advance(1.0)
         assert sim.said == ["one two", "Bye!"]
 
 
-def test_a_user_who_breaks_off_hears_no_answer(keys: Keys) -> None:
+def test_a_user_who_interrupts_gets_no_answer(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("one two", KeyboardInterrupt())
         sim.settle()

@@ -188,7 +188,7 @@ def test_other_prints_go_above_the_prompt_unless_they_are_redirected(
     assert sys.stdout is before and sys.stderr is stderr
 
 
-def test_a_terminal_that_is_gone_ends_it() -> None:
+def test_a_terminal_that_is_gone_ends_the_console() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
         await drawn(terminal)

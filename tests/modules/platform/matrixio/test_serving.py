@@ -50,7 +50,7 @@ def live(*names: str) -> Any:
 
 
 @live("Robin", "Ada")
-async def test_an_invited_agent_answers_also_what_came_before_it_joined(
+async def test_an_invited_agent_also_answers_messages_from_before_it_joined(
     tmp_path: Path, robin: Account, ada: Account
 ) -> None:
     room = await ada.room(robin.id)
@@ -169,9 +169,7 @@ async def test_a_group_is_answered_when_it_speaks_to_the_agent(
 
 
 @live("Robin", "Ada", "Bob")
-async def test_only_those_who_are_allowed_get_an_answer(
-    tmp_path: Path, robin: Account, ada: Account, bob: Account
-) -> None:
+async def test_only_allowed_people_get_an_answer(tmp_path: Path, robin: Account, ada: Account, bob: Account) -> None:
     async with running(robin, tmp_path, allow=(ada.id,)):
         theirs, ours = await bob.room(robin.id), await ada.room(robin.id)
         await bob.say(theirs, "Hello")
@@ -279,7 +277,7 @@ def test_events_that_cannot_be_kept_come_again(
     assert not failures
 
 
-# Synapse itself refuses worse ones.
+# Synapse itself refuses events that are even more malformed.
 MALFORMED: list[tuple[str, dict[str, Any]]] = [
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": 7}),
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": {"rel_type": "m.replace"}}),

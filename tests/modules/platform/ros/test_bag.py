@@ -58,7 +58,7 @@ def test_a_bag_played_twice_gives_the_same_decisions(tmp_path: Path, version: in
     assert runs[0] == runs[1]
 
 
-def test_a_bag_that_fits_nothing_is_refused_in_words(tmp_path: Path) -> None:
+def test_a_bag_that_fits_no_slot_is_refused_with_a_reason(tmp_path: Path) -> None:
     bag = record(tmp_path / "talk", 2)
     agent = rs.Module("agent", requires=[ros2])
     ros2.subscriber(agent, "camera", topic="/camera", type="sensor_msgs/Image")

@@ -82,7 +82,7 @@ def test_a_node_waits_for_its_bus_and_finds_it_again() -> None:
     asyncio.run(main())
 
 
-def test_other_types_and_addresses_are_refused_in_words(caplog: pytest.LogCaptureFixture) -> None:
+def test_wrong_types_and_addresses_are_refused_with_a_reason(caplog: pytest.LogCaptureFixture) -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
             one.subscribe("/chat", "std_msgs/Int32", print, qos=ALL)

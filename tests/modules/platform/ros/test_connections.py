@@ -76,7 +76,7 @@ def test_the_fault_of_one_channel_loses_no_message_of_another() -> None:
     run(main)
 
 
-def test_a_new_channel_has_the_latched_message_that_overtakes_it_and_no_older_one() -> None:
+def test_a_new_channel_gets_the_newest_latched_message_and_no_older_one() -> None:
     async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
         connections.add(reader.channel(1))
         theirs.send(wire(b"old"))
@@ -176,7 +176,7 @@ class Link:
                 return b""
 
 
-def test_a_late_subscriber_has_the_last_of_what_two_channels_latch() -> None:
+def test_a_late_subscriber_gets_the_last_message_that_two_channels_have_latched() -> None:
     async def main() -> None:
         node = Node("ros1", Types(1, Definitions([])), lambda _, handle, ready, __: Link(handle, ready))
         qos = quality(None, depth=5, latch=True)

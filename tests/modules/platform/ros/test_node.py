@@ -74,7 +74,7 @@ def test_the_latest_message_of_a_fast_topic_replaces_messages_that_wait(either: 
     either.run(main)
 
 
-def test_images_come_in_shared_memory_without_a_copy_of_ours(either: Network) -> None:
+def test_images_arrive_in_shared_memory_without_a_copy(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             got: list[Any] = []
@@ -211,7 +211,7 @@ def test_messages_pass_while_the_bridge_stands_still(ros1_network: Network) -> N
     ros1_network.run(main)
 
 
-def test_a_later_channel_has_what_a_publisher_has_latched(ros1_network: Network) -> None:
+def test_a_later_channel_gets_the_message_that_a_publisher_has_latched(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             got: list[Any] = []
@@ -229,7 +229,7 @@ def test_a_later_channel_has_what_a_publisher_has_latched(ros1_network: Network)
     ros1_network.run(main)
 
 
-def test_the_clock_of_a_simulation_arrives_where_rospy_would_follow_it(ros1_network: Network) -> None:
+def test_the_clock_of_a_simulation_arrives_even_if_rospy_would_follow_it(ros1_network: Network) -> None:
     async def main() -> None:
         async with opened(ros1_network.node()) as node:
             got: list[Any] = []

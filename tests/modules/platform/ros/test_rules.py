@@ -40,7 +40,9 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
                 start = context.now
                 times: list[float] = []
                 at(100)
-                await until(lambda: times.append(context.now) or times[-1:] == times[-2:-1])  # no message, no time
+                await until(
+                    lambda: times.append(context.now) or times[-1:] == times[-2:-1]
+                )  # without a message, time stands still
                 begun = context.now
                 assert begun >= start
                 context.emit(go)
@@ -58,7 +60,7 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
     asyncio.run(main())
 
 
-def test_the_clock_loses_no_time_while_it_changes_hands() -> None:
+def test_the_clock_loses_no_time_when_the_simulation_takes_it_over() -> None:
     class SlowContext:
         """A context on a slow machine: time passes with each look at the clock, until it is driven."""
 
@@ -132,7 +134,7 @@ def test_the_clock_of_a_real_simulation_at_ten_times_the_speed_and_halted(either
     either.run(main)
 
 
-def test_an_agent_without_ros_ends_with_what_to_install() -> None:
+def test_an_agent_without_ros_ends_with_an_error_that_says_what_to_install() -> None:
     agent = rs.Module("agent", requires=[ros2])
     ros2.publisher(agent, "chat", topic="/chat", type="std_msgs/String")
 
@@ -145,7 +147,7 @@ def test_an_agent_without_ros_ends_with_what_to_install() -> None:
     asyncio.run(main())
 
 
-def test_the_first_words_of_an_agent_leave_and_the_last_ones_too() -> None:
+def test_the_first_and_the_last_words_of_an_agent_are_published() -> None:
     agent = rs.Module("agent", requires=[ros2])
     chat = ros2.publisher(agent, "chat", topic="/chat", type="std_msgs/String")
 

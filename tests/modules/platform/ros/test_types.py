@@ -79,7 +79,7 @@ def test_ros_1_knows_types_by_their_checksums() -> None:
     assert types.ros1_definition("sensor_msgs/msg/Image")[1] == "060021388200f6f0f447d0fcd9c64743"
 
 
-def test_an_unknown_or_broken_definition_is_an_error_in_words(tmp_path: Path) -> None:
+def test_an_unknown_or_broken_definition_is_an_error_with_a_reason(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"no definition of std_msgs/msg/Strin: .*ros2.definitions"):
         Types(2).require("std_msgs/Strin")
     (tmp_path / "Bad.msg").write_text("int32 32 32")

@@ -87,7 +87,7 @@ class Server:
             "id": id, "title": "Club", "type": "supergroup" if id < -10**12 else "group"}  # fmt: skip
 
     def add(self, bot: str, chat: int, own: bool, **fields: Any) -> dict[str, Any]:
-        """Add a message to a chat; private chats and small groups have one count of ids, large groups their own."""
+        """Add a message to a chat; private chats and small groups share one numbering, large groups have their own."""
         id = self.count(bot, str(chat) if chat < -(10**12) else "messages")
         message = {"message_id": id, "date": int(time.time()), "chat": self.chat(chat), **fields}
         self.db.execute(

@@ -16,7 +16,7 @@ def run(*arguments: str, **environment: str) -> "subprocess.Popen[str]":
     )  # fmt: skip
 
 
-def test_without_a_token_it_says_how_to_get_one() -> None:
+def test_without_a_token_the_command_says_how_to_get_one() -> None:
     process = run()
     out, said = process.communicate(timeout=60)
     assert (process.returncode, out) == (1, "")
@@ -35,7 +35,7 @@ def test_a_wrong_token_is_named_but_not_shown(bot: Bot) -> None:
     assert "Traceback" not in said
 
 
-def test_it_announces_itself_and_ends_in_order(bot: Bot) -> None:
+def test_the_bot_announces_itself_and_ends_cleanly(bot: Bot) -> None:
     base = f"telegramio.base_url={bot.telegram.root}/bot"
     process = run("--set", base, RAVESTATE_TELEGRAMIO_TOKEN=bot.token)
     assert process.stdout is not None

@@ -76,7 +76,7 @@ def test_two_hundred_chats_outlive_kills_of_the_agent_and_of_the_server(own_tele
     asyncio.run(test())
 
 
-def test_an_agent_that_ends_in_order_leaves_nothing_behind(own_telegram: Telegram, tmp_path: Path) -> None:
+def test_an_agent_that_ends_cleanly_leaves_nothing_behind(own_telegram: Telegram, tmp_path: Path) -> None:
     bot = Bot(own_telegram)
 
     async def test() -> None:

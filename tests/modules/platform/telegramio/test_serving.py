@@ -84,7 +84,7 @@ def live(test: Callable[[Bot, Path], Coroutine[Any, Any, None]]) -> Callable[[Bo
 
 
 async def settled(bot: Bot) -> list[str]:
-    """Return the bot's messages, once a message that was sent last is answered."""
+    """Send a last message. Once it is answered, return the bot's messages."""
     said = await bot.said(0)
     await bot.say(99, "the last")
     return [each for each in await bot.said(len(said) + 1) if each != "99: the last"]
@@ -151,7 +151,7 @@ async def test_an_edited_message_changes_its_answer(bot: Bot, tmp_path: Path) ->
         assert await settled(bot) == ["7: I like tea"]
         await bot.say(7, "And coffee")
         await bot.said(3)
-        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # the conversation has moved on
+        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # this is no longer the last message
         assert await settled(bot) == ["7: I like tea", "7: And coffee"]
 
 
@@ -183,7 +183,7 @@ async def test_an_emoji_alone_becomes_a_reaction(bot: Bot, tmp_path: Path) -> No
 
 
 @live
-async def test_the_agent_feels_a_reaction(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_notices_a_reaction(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(7, "Hello")
         [said] = await bot.do("said", count=1)
@@ -284,7 +284,7 @@ async def test_a_long_answer_comes_in_parts(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_only_those_who_are_allowed_get_an_answer(bot: Bot, tmp_path: Path) -> None:
+async def test_only_allowed_people_get_an_answer(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path, allow=(7, "@User8", 99)):
         for chat in (9, 8, 7):
             await bot.say(chat, "Hello")

@@ -60,7 +60,7 @@ def wav(path: Path, pcm: bytes) -> Path:
 
 
 def word_errors(wanted: str, found: str) -> int:
-    """The words that are missing, wrong or too many."""
+    """Return the number of words that are missing, wrong or superfluous."""
     a, b = plain(wanted), plain(found)
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):

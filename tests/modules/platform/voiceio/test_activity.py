@@ -9,7 +9,7 @@ from ravestate.modules.platform.voiceio.activity import speech_spans
 
 
 @pytest.mark.parametrize("name", ["librivox/sense_and_sensibility_01_austen_64kb-0880.wav", "cards/001.wav"])
-def test_a_person_speaks(name: str) -> None:
+def test_speech_of_people_is_found(name: str) -> None:
     pcm = sound.decode(PEOPLE / name, 16000)
     spans = speech_spans(bytes(16000) + pcm + bytes(16000))
     assert 0.6 * sound.seconds(pcm, 16000) < sum(end - begin for begin, end in spans)
@@ -29,7 +29,7 @@ def music(length: float) -> bytes:
 
 
 @pytest.mark.parametrize("name", ["silence", "hiss", "loud hiss", "chords", "success", "error"])
-def test_nobody_speaks(name: str) -> None:
+def test_no_speech_is_found_in_other_sounds(name: str) -> None:
     pcm = {
         "silence": bytes(64000),
         "hiss": noise(3.0, 300),

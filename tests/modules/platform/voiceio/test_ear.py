@@ -114,7 +114,7 @@ def test_clipped_sound_is_noticed() -> None:
     assert (soft.clipped, loud.clipped) == (False, True)
 
 
-def test_blocks_of_any_size_do() -> None:
+def test_blocks_of_any_size_give_the_same_events() -> None:
     pcm = track((0.5, "What time is it?"), length=2.5)
 
     def events(size: int) -> list[str]:

@@ -9,7 +9,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules.platform.voiceio import models
 
 
-def test_a_download_that_fails_leaves_nothing_but_what_it_has_fetched(
+def test_a_download_that_fails_leaves_only_the_files_that_it_has_fetched(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(models, "folders", lambda: (tmp_path,))

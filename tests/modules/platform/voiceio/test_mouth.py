@@ -67,7 +67,7 @@ def test_the_pause_behind_a_word_is_no_part_of_it(seconds: float, heard: str) ->
     run(listen)
 
 
-def test_several_sentences_add_up() -> None:
+def test_the_heard_parts_of_several_sentences_add_up() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()

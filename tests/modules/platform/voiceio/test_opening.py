@@ -147,7 +147,7 @@ class Devices(WavLine):
         ("in.wav", "", None, False),
     ],
 )
-def test_files_and_devices_go_together(
+def test_a_file_and_a_device_can_be_combined(
     source: str,
     sink: str,
     devices: tuple[str, str] | None,

@@ -17,7 +17,7 @@ def test_a_tone_has_its_pitch(hertz: float) -> None:
     assert pitch(tone.astype("<i2")) == pytest.approx(hertz, rel=0.03)
 
 
-def test_noise_and_silence_have_none() -> None:
+def test_noise_and_silence_have_no_pitch() -> None:
     assert not any(pitches(sound.samples(noise(1.0, 3000))))
     assert not any(pitches(np.zeros(16000, np.int16)))
 
@@ -33,7 +33,7 @@ def test_a_low_and_a_high_voice_are_two_people() -> None:
     assert not is_another(*low)
 
 
-def test_a_person_is_one() -> None:
+def test_one_person_counts_as_one() -> None:
     pcm = sound.samples(sound.decode(PEOPLE / "librivox" / "sense_and_sensibility_01_austen_64kb-0870.wav", 16000))
     assert not is_another(pitches(pcm[: len(pcm) // 2]), pitches(pcm[len(pcm) // 2 :]))
 

@@ -376,7 +376,7 @@ def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeyp
         talk(file, out, storyteller(), settings=FAST, show=lose)
 
 
-def test_the_names_in_the_readme_are_there() -> None:
+def test_the_module_offers_the_names_in_its_readme() -> None:
     readme = (Path(voiceio.__file__).parent / "README.md").read_text(encoding="utf-8")
     names = re.findall(r"^\| `voiceio\.(\w+)", readme, re.MULTILINE)
     assert len(names) > 10 and set(names) <= set(voiceio.__all__)

@@ -19,7 +19,7 @@ def test_an_abbreviation_ends_no_sentence() -> None:
     ]
 
 
-def test_the_parts_make_the_whole() -> None:
+def test_the_sentences_together_are_the_whole_text() -> None:
     text = "One thing is sure! What else?\nA list: a, b. And an end"
     assert "".join(sentence for _, sentence in sentences(text, whole=True)) == text
 

@@ -21,7 +21,7 @@ def test_resampling_keeps_length_and_pitch(old: int, new: int) -> None:
     assert peak == pytest.approx(440, abs=4)
 
 
-def test_an_ogg_file_comes_back(tmp_path: Path) -> None:
+def test_an_ogg_file_can_be_written_and_read(tmp_path: Path) -> None:
     pcm = tone(24000, length=1.0)
     encoded = sound.encode_ogg(pcm, 24000)
     assert encoded[:4] == b"OggS" and b"OpusHead" in encoded[:100]

@@ -76,7 +76,7 @@ def test_german_has_words_of_its_own() -> None:
         "Uh-huh.",
     ],
 )
-def test_showing_that_one_listens_is_no_interruption(text: str) -> None:
+def test_a_sign_of_listening_is_a_back_channel(text: str) -> None:
     assert is_back_channel(text)
 
 
@@ -87,7 +87,7 @@ def test_an_interruption_is_no_back_channel(text: str) -> None:
     assert not is_back_channel(text)
 
 
-def test_the_agents_own_words_are_known() -> None:
+def test_the_agents_own_words_are_recognised() -> None:
     own = "Once there was a robot. It lived in a museum."
     assert is_echo("It lived in a museum.", own)
     assert is_echo("lived in the museum", own + " It lived in a")

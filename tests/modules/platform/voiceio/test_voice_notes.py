@@ -12,7 +12,7 @@ TINY = voiceio.Settings(model="tiny.en", voice="piper")
 TEXT = "It was a bright cold day in April, and the clocks were striking."
 
 
-def test_a_note_goes_there_and_back(tmp_path: Path) -> None:
+def test_the_words_of_a_synthesised_note_are_understood(tmp_path: Path) -> None:
     note = voiceio.synthesise(TEXT, TINY)
     assert note[:4] == b"OggS"
     found = voiceio.transcribe(note, TINY)

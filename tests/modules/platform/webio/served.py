@@ -20,7 +20,7 @@ class Served:
     """``with Served(port=0) as served``: an agent that says again what it hears.
 
     Args:
-        patience: The seconds that the server waits for silent clients, and for clients that do not read. Short, for
+        patience: The seconds that the server waits for silent clients, and for clients that do not read. Keep it short for
             quick tests.
         settings: The settings of ``webio``.
     """
@@ -51,7 +51,7 @@ class Served:
         self.end()
 
     def end(self, how: signal.Signals = signal.SIGINT) -> int:
-        """End it cleanly, and return its exit code."""
+        """End the process cleanly, and return its exit code."""
         if self.process.poll() is None:
             self.process.send_signal(how)
             try:

@@ -123,7 +123,7 @@ async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
 async def test_the_server_does_not_wait_for_a_client_without_a_request() -> None:
     with Served(patience=0.5) as served:
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
-        writer.write(b"GET / HTTP/1.1\r\nhost: 127.0.0.1\r\n")  # and no end
+        writer.write(b"GET / HTTP/1.1\r\nhost: 127.0.0.1\r\n")  # and the request never ends
         with contextlib.suppress(ConnectionResetError):
             assert await reader.read() == b""
         writer.close()
@@ -169,7 +169,7 @@ def everything(one: socket.socket) -> bytes:
 
 
 def until_closed(one: socket.socket) -> bytes:
-    """Return all that a WebSocket receives until it closes, in order or not."""
+    """Return all that a WebSocket receives until it closes, cleanly or not."""
     received = b""
     with contextlib.suppress(ConnectionResetError):
         while b"\x88" not in received and (more := one.recv(1000)):
@@ -200,7 +200,7 @@ def masked(text: str) -> bytes:
 
 
 @on_loop
-async def test_the_server_hangs_up_on_a_closed_client_that_does_not_go() -> None:
+async def test_the_server_hangs_up_on_a_client_that_does_not_close_its_end() -> None:
     with Served(patience=0.5) as served:
         open_before = served.files()
         with upgraded(served) as stubborn:
@@ -212,7 +212,7 @@ async def test_the_server_hangs_up_on_a_closed_client_that_does_not_go() -> None
 
 
 @on_loop
-async def test_any_bytes_on_the_line_are_survived() -> None:
+async def test_the_server_survives_any_bytes() -> None:
     with Served() as served:
         async with unharmed(served, megabytes=8):
             for junk in (b"\0" * 1000, b"GET / HTTP/9.9\r\n\r\n", b"A" * 100_000, b"\x81\xff" * 50):
@@ -228,7 +228,7 @@ async def test_any_bytes_on_the_line_are_survived() -> None:
 
 
 @on_loop
-async def test_invalid_frames_are_survived_and_do_not_fill_the_log() -> None:
+async def test_the_server_survives_invalid_frames_and_they_do_not_fill_the_log() -> None:
     no_text = b"\x81\x82\0\0\0\0\xff\xfe"
     unmasked = b"\x81\x02{}"
     reserved = b"\xf1\x80\0\0\0\0"

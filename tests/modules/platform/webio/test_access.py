@@ -15,12 +15,12 @@ TOKEN = "open sesame, please"
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "[::1]", "127.9.9.9"])
-def test_addresses_of_this_machine(host: str) -> None:
+def test_an_address_of_this_machine_is_local(host: str) -> None:
     assert is_local(host)
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.7", "museum.example", "", "localhost.evil.example"])
-def test_addresses_that_others_reach(host: str) -> None:
+def test_an_address_that_others_reach_is_not_local(host: str) -> None:
     assert not is_local(host)
 
 
@@ -35,7 +35,7 @@ def test_addresses_that_others_reach(host: str) -> None:
         ("127.0.0.1:8420", "https://chat.museum.example"),
     ],
 )
-def test_the_page_and_the_sites_that_may_embed_it_come_in(host: str, origin: str | None) -> None:
+def test_the_page_and_the_sites_that_may_embed_it_may_connect(host: str, origin: str | None) -> None:
     access = Access(Settings(origins=("https://chat.museum.example",)))
     assert access.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
 
@@ -55,7 +55,7 @@ def test_the_page_and_the_sites_that_may_embed_it_come_in(host: str, origin: str
         ("[", None),
     ],
 )
-def test_others_do_not(host: str, origin: str | None) -> None:
+def test_other_names_and_sites_are_refused(host: str, origin: str | None) -> None:
     access = Access(Settings(origins=("https://museum.example",)))
     refusal = access.refusal({"host": host} | ({"origin": origin} if origin else {}))
     assert refusal is not None
@@ -71,7 +71,7 @@ def test_others_do_not(host: str, origin: str | None) -> None:
         ("CHAT.museum.example:444", "https://chat.museum.example:444"),
     ],
 )
-def test_the_page_itself_looks_inside(host: str, origin: str | None) -> None:
+def test_the_page_itself_may_inspect_the_agent(host: str, origin: str | None) -> None:
     access = Access(Settings(origins=("https://museum.example",)))
     assert access.refusal_of_board({"host": host} | ({"origin": origin} if origin else {})) is None
 
@@ -107,7 +107,7 @@ def test_an_allowed_or_unnamed_site_is_no_foreign_embedder(headers: dict[str, st
     assert Access(Settings(origins=("https://museum.example",))).foreign_embedder(headers) is None
 
 
-def test_with_a_token_it_answers_to_any_name_but_not_to_any_page() -> None:
+def test_with_a_token_the_server_answers_to_any_name_but_not_to_any_site() -> None:
     access = Access(Settings(token=TOKEN))
     assert access.refusal({"host": "robot.lan", "origin": "http://robot.lan"}) is None
     assert access.refusal({"host": "robot.lan", "origin": "https://evil.example"}) is not None
@@ -118,7 +118,7 @@ def test_a_wrong_token_is_refused(token: str | None) -> None:
     assert not Access(Settings(token=TOKEN)).admits(token)
 
 
-def test_the_right_one_is_taken_and_none_is_needed_where_none_is_set() -> None:
+def test_the_right_token_is_accepted_and_without_a_token_in_the_settings_none_is_needed() -> None:
     assert Access(Settings(token=TOKEN)).admits(TOKEN)
     assert Access(Settings()).admits(None)
 
@@ -139,7 +139,7 @@ def test_a_text_that_is_no_origin_is_refused_as_a_setting(origin: str) -> None:
         Settings(origins=(origin,))
 
 
-def test_a_short_token_is_no_setting() -> None:
+def test_a_short_token_is_refused_as_a_setting() -> None:
     with pytest.raises(ValueError, match="write at least 12 characters"):
         Settings(token="secret")
 

@@ -7,7 +7,7 @@ from ravestate.modules.platform.webio.channel import Bucket
 
 
 @given(st.lists(st.floats(0, 10), min_size=1, max_size=60))
-def test_within_any_stretch_no_more_get_through_than_burst_and_rate_allow(gaps: list[float]) -> None:
+def test_in_any_span_of_time_burst_and_rate_bound_the_number_of_events(gaps: list[float]) -> None:
     bucket = Bucket(burst=5, rate=2.0, now=0.0)
     now, through = 0.0, []
     for gap in gaps:
@@ -24,7 +24,7 @@ def test_a_sender_within_the_limits_never_waits() -> None:
     assert [bucket.wait(t) for t in (0.0, 0.0, 0.0, 1.0, 2.0, 3.0)] == [0.0] * 6
 
 
-def test_refused_tokens_are_not_owed() -> None:
+def test_a_refused_event_uses_up_no_tokens() -> None:
     bucket = Bucket(burst=2, rate=1.0, now=0.0)
     assert [bucket.take(0.0) for _ in range(100)] == [True, True] + 98 * [False]
     assert [bucket.take(t) for t in (0.5, 1.0, 1.5, 2.0)] == [False, True, False, True]

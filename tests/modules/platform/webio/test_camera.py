@@ -1,4 +1,4 @@
-"""The camera over the WebSocket: pictures that the agent asks for, faces that it shows, and what clients do wrong."""
+"""The camera over the WebSocket: pictures that the agent asks for, faces that it shows, and mistakes of clients."""
 
 import contextlib
 from collections.abc import AsyncGenerator
@@ -105,7 +105,7 @@ async def test_the_window_that_turns_its_camera_on_takes_it_from_the_other() -> 
         show(other, 1)
         await other.next()
         assert session.context.read(pictures) == (JPEG,)
-        visit.tell("camera", on=False)  # it has none
+        visit.tell("camera", on=False)  # its camera is off already
         await past(0.1)
         assert session.context.read(rawio.camera) is not None
 

@@ -98,7 +98,7 @@ async def test_the_longest_text_is_taken_however_json_writes_it() -> None:
 
 
 @in_virtual_time
-async def test_a_frame_that_is_too_long_ends_it() -> None:
+async def test_a_frame_that_is_too_long_ends_the_connection() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -234,14 +234,14 @@ async def test_a_foreign_origin_is_refused_before_anything_is_said() -> None:
 
 
 @in_virtual_time
-async def test_a_site_that_may_embed_it_may_connect() -> None:
+async def test_a_site_that_may_embed_the_page_may_connect() -> None:
     site = "https://museum.example"
     async with page(origins=(site,)) as app, Visit(app, origin=site) as visit:
         assert (await visit.hello())["type"] == "welcome"
 
 
 @in_virtual_time
-async def test_a_script_that_is_said_is_text_as_any_other() -> None:
+async def test_a_script_in_a_message_is_plain_text() -> None:
     script = "</script><script>alert(1)</script>"
     async with page() as app, Visit(app) as visit:
         await visit.hello(name=script)

@@ -20,7 +20,7 @@ def test_messages_are_numbered_and_kept_in_order() -> None:
 
 
 @given(st.lists(st.text(max_size=30)), st.integers(0, 40))
-def test_it_stays_within_its_bounds_and_has_no_gap(texts: list[str], since: int) -> None:
+def test_a_history_stays_within_its_bounds_and_has_no_gap(texts: list[str], since: int) -> None:
     history = History(messages=5, characters=40)
     for text in texts:
         history.add("agent", text, 0)
@@ -39,7 +39,7 @@ def test_a_message_larger_than_the_whole_history_is_cut() -> None:
     assert [message.text for message in history.since(0)] == ["x" * 10]
 
 
-def test_messages_may_come_while_it_is_read() -> None:
+def test_messages_may_come_while_the_history_is_read() -> None:
     history = History(messages=2)
     history.add("agent", "one", 0)
     seen: list[int] = []

@@ -71,7 +71,7 @@ class Caller(asyncio.Transport):
         self.limits.data_received(data)
 
     async def send_slowly(self, data: bytes, rate: float) -> None:
-        """Send data at a rate of so many bytes a second, as far as the server reads it."""
+        """Send data at a rate (bytes per second), as far as the server reads it."""
         while data and self.hung_up is None:
             await past(1.0)
             if self.reads and self.hung_up is None:
@@ -118,7 +118,7 @@ async def test_a_steady_request_is_taken_however_long_it_takes() -> None:
 
 
 @in_virtual_time
-async def test_the_server_does_not_wait_for_a_request_that_hardly_comes() -> None:
+async def test_the_server_does_not_wait_for_a_very_slow_request() -> None:
     caller = Caller(Reader())
     caller.send(request(10**6))
     await caller.send_slowly(b"x" * 10**6, rate=100)
@@ -150,7 +150,7 @@ async def test_a_request_in_fits_and_starts_is_cut_off_if_it_is_too_slow() -> No
 
 
 @pytest.mark.parametrize(("share", "looks"), [(0.6, 3), (0.9, 10)])
-def test_the_less_is_missing_the_later_it_is_noticed(share: float, looks: int) -> None:
+def test_the_closer_a_client_is_to_the_lowest_rate_the_later_the_server_hangs_up(share: float, looks: int) -> None:
     @in_virtual_time
     async def test() -> None:
         caller = Caller(Reader())
@@ -187,7 +187,7 @@ async def test_the_server_does_not_hang_up_on_a_client_whose_request_it_reads_la
 
 
 @in_virtual_time
-async def test_the_server_hangs_up_on_a_client_that_sends_on_after_the_answer() -> None:
+async def test_the_server_hangs_up_on_a_client_that_keeps_sending_after_the_answer() -> None:
     caller = Caller(Refuser())
     caller.send(request(10**7))
     await caller.send_slowly(b"x" * 10**7, rate=2 * LOWEST_RATE)

@@ -99,7 +99,7 @@ async def test_the_position_is_what_the_window_reports() -> None:
 
 
 @in_virtual_time
-async def test_a_window_cannot_have_played_what_it_has_not_got() -> None:
+async def test_a_window_cannot_have_played_more_sound_than_it_got() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.play(tone(1.0))
@@ -109,7 +109,7 @@ async def test_a_window_cannot_have_played_what_it_has_not_got() -> None:
 
 
 @in_virtual_time
-async def test_it_is_drained_once_everything_has_been_played() -> None:
+async def test_a_line_is_drained_once_everything_has_been_played() -> None:
     line = PageLine()
     await line.drained()
     line.take(window := Speaker(line))
@@ -160,7 +160,7 @@ async def test_only_one_window_at_a_time_has_the_line_and_the_other_window_gets_
 
 
 @in_virtual_time
-async def test_without_a_window_words_are_read_so_their_sound_counts_as_played() -> None:
+async def test_without_a_window_sound_counts_as_played_because_the_visitor_reads_the_words() -> None:
     line = PageLine()
     line.play(tone(1.5))
     await line.drained()
@@ -170,7 +170,7 @@ async def test_without_a_window_words_are_read_so_their_sound_counts_as_played()
 
 
 @in_virtual_time
-async def test_a_window_that_plays_nothing_loses_it() -> None:
+async def test_a_window_that_plays_nothing_loses_the_line() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     listening = asyncio.create_task(anext(line.blocks()))

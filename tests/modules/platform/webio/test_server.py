@@ -56,11 +56,11 @@ def test_an_unknown_path_is_not_found(served: Served, path: str) -> None:
     assert httpx.get(f"http://{served.host}{path}").status_code == 404
 
 
-def test_nothing_may_be_sent_to_the_page(served: Served) -> None:
+def test_a_post_to_the_page_is_refused(served: Served) -> None:
     assert httpx.post(f"http://{served.host}/", content=b"x").status_code == 405
 
 
-def test_scripts_and_frames_are_kept_in_bounds(served: Served) -> None:
+def test_headers_restrict_scripts_and_frames(served: Served) -> None:
     for path in ("/", "/nothing", "/assets/chat.js"):
         headers = httpx.get(f"http://{served.host}{path}").headers
         policy = headers["content-security-policy"]
@@ -71,7 +71,7 @@ def test_scripts_and_frames_are_kept_in_bounds(served: Served) -> None:
         assert headers["x-content-type-options"] == "nosniff"
 
 
-def test_a_name_that_was_made_to_point_here_is_refused(served: Served) -> None:
+def test_a_foreign_host_name_that_points_here_is_refused(served: Served) -> None:
     answer = httpx.get(f"http://{served.host}/", headers={"host": "evil.example"})
     assert answer.status_code == 403
     assert "this page is not known as 'evil.example'" in answer.text
@@ -92,7 +92,7 @@ async def test_a_foreign_origin_is_refused() -> None:
 
 
 @on_loop
-async def test_at_its_end_the_visitors_get_a_message_and_no_error_is_printed() -> None:
+async def test_when_the_server_ends_the_visitors_get_a_message_and_no_error_is_printed() -> None:
     with Served() as served:
         async with served.connect() as visit, served.connect() as silent:
             await hello(visit)
@@ -108,7 +108,7 @@ async def test_at_its_end_the_visitors_get_a_message_and_no_error_is_printed() -
         assert served.errors == ""
 
 
-def test_a_second_signal_ends_it_at_once_and_a_term_in_order() -> None:
+def test_sigterm_ends_the_server_cleanly() -> None:
     with Served() as served:
         assert served.end(signal.SIGTERM) == 0
         assert served.errors == ""
@@ -201,7 +201,7 @@ def test_an_address_of_another_machine_is_reported(host: str) -> None:
         rs.run(parrot, webio, settings={"webio": {"host": host, "port": 0, "token": TOKEN}})
 
 
-def test_it_can_be_mounted_in_an_application() -> None:
+def test_the_page_can_be_mounted_in_an_application() -> None:
     from starlette.applications import Starlette
     from starlette.routing import Mount
     from starlette.testclient import TestClient
@@ -274,7 +274,7 @@ def test_the_documented_client_is_answered(
     assert set(said) <= {"hi", "Hello!"}  # the greeting may come in between
 
 
-def test_the_documented_client_says_when_nobody_is_there(
+def test_the_documented_client_says_when_no_server_listens(
     ask: Callable[[str], subprocess.CompletedProcess[str]],
 ) -> None:
     with socket.socket() as nobody:  # bound, but it does not listen

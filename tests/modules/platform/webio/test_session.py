@@ -1,4 +1,4 @@
-"""A conversation apart from its messages: writing, the agent's name, the reasons for its end."""
+"""The parts of a conversation other than its messages: writing, the agent's name, the reasons for its end."""
 
 import asyncio
 
@@ -53,7 +53,7 @@ def now() -> float:
 
 
 @in_virtual_time
-async def test_the_agent_notices_that_its_visitor_is_writing_and_no_other() -> None:
+async def test_only_the_agent_of_the_visitor_who_writes_notices_the_writing() -> None:
     async with page(watcher) as app, Visit(app) as ada, Visit(app) as bob:
         await ada.hello()
         await bob.hello()
@@ -71,7 +71,7 @@ async def test_the_agent_talks_to_a_silent_visitor() -> None:
 
 
 @in_virtual_time
-async def test_while_the_visitor_is_writing_nobody_is_bored() -> None:
+async def test_while_the_visitor_is_writing_the_agent_is_not_bored() -> None:
     async with page(parrot, bored) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -109,7 +109,7 @@ async def test_a_visitor_who_writes_after_the_farewell_is_not_heard() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_who_speaks_after_the_farewell_learns_that_it_is_not_heard() -> None:
+async def test_a_visitor_who_speaks_after_the_farewell_learns_that_nobody_hears_them() -> None:
     async with page(parrot) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -119,16 +119,16 @@ async def test_a_visitor_who_speaks_after_the_farewell_learns_that_it_is_not_hea
         assert {
             "type": "error",
             "code": "over",
-            "text": "the conversation is ending: nothing more is heard",
+            "text": "the conversation is ending, so it takes no more words",
             "id": "a",
         } in frames
         assert [frame["text"] for frame in frames if frame["type"] == "message"] == ["Bye!"]
 
 
 @in_virtual_time
-async def test_the_page_is_called_as_the_agent_calls_itself_and_by_its_new_name_later() -> None:
+async def test_the_page_shows_the_agents_name_and_later_its_new_name() -> None:
     async with page(named) as app, Visit(app) as visit:
-        assert (await visit.hello())["agent"] == "Ravestate"  # it is just being born
+        assert (await visit.hello())["agent"] == "Ravestate"  # no rule has named the agent yet
         assert await visit.next() == {"type": "renamed", "agent": "Robin"}
         visit.say("Elske", id="a")
         frames = [await visit.next() for _ in range(3)]
@@ -137,7 +137,7 @@ async def test_the_page_is_called_as_the_agent_calls_itself_and_by_its_new_name_
         async with Visit(app) as again:
             assert (await again.hello(session=visit.session, last=2))["agent"] == "Elske"
             visit.tell("bye")
-            assert (await again.next())["type"] == "ended"  # it gets no name that it already has
+            assert (await again.next())["type"] == "ended"  # the page has the name already, so no `renamed` comes first
         async with Visit(app) as other:
             await other.hello()
             assert await other.next() == {"type": "renamed", "agent": "Robin"}  # a conversation of its own
@@ -182,7 +182,7 @@ def test_any_name_of_the_agent_is_shown_as_a_name(name: str, shown: str) -> None
 
 
 @in_virtual_time
-async def test_a_title_that_is_set_stands_whatever_the_agent_calls_itself() -> None:
+async def test_the_setting_title_overrides_the_agents_own_name() -> None:
     async with page(named, title="Ravestate") as app, Visit(app) as visit:
         assert (await visit.hello())["agent"] == "Ravestate"
         visit.say("Elske", id="a")

@@ -104,7 +104,7 @@ async def test_a_visitor_learns_whether_their_text_was_taken() -> None:
         await visit.messages(1)
         (session,) = app.state.sessions
         assert session.hear("a", "one")
-        assert session.hear("a", "one")  # it was
+        assert session.hear("a", "one")  # it was taken
         assert not session.leaving
         visit.tell("bye")
         await visit.frames("ended")
@@ -143,7 +143,7 @@ async def test_a_client_that_claims_more_than_there_is_gets_everything() -> None
 
 
 @in_virtual_time
-async def test_a_conversation_is_kept_for_a_while_and_then_ends_in_order() -> None:
+async def test_a_conversation_is_kept_for_a_while_and_then_ends_cleanly() -> None:
     async with page(keeper, keep=60.0) as app:
         async with Visit(app) as visit:
             await visit.hello(name="Ada")
@@ -153,7 +153,7 @@ async def test_a_conversation_is_kept_for_a_while_and_then_ends_in_order() -> No
         async with Visit(app) as again:
             assert (await again.hello(session=visit.session))["resumed"]
             await past(100.0)
-            assert chronicle == ["+Ada"]  # somebody looks on
+            assert chronicle == ["+Ada"]  # a window is still open
         await past(59.9)
         assert chronicle == ["+Ada"]
         await past(1.0)
@@ -265,7 +265,7 @@ async def test_the_number_of_windows_of_a_conversation_is_limited() -> None:
 
 
 @in_virtual_time
-async def test_when_all_is_over_nothing_is_left() -> None:
+async def test_conversations_that_have_ended_leave_nothing_behind() -> None:
     async with page(keep=0.0) as app:
         for _ in range(5):
             async with Visit(app) as visit:

@@ -20,7 +20,7 @@ def setting() -> tuple[float, tuple[int, int, int]]:
 OURS = (pytest.approx(SWITCH), COLLECT)
 
 
-def test_the_settings_are_as_before_once_every_user_of_them_has_left() -> None:
+def test_the_settings_are_restored_when_the_last_body_ends() -> None:
     before = setting()
     first, second = contextlib.ExitStack(), contextlib.ExitStack()
     first.enter_context(low_latency())
@@ -32,7 +32,7 @@ def test_the_settings_are_as_before_once_every_user_of_them_has_left() -> None:
     assert setting() == before
 
 
-def test_the_settings_are_as_before_after_a_failure_too() -> None:
+def test_the_settings_are_restored_after_a_failure() -> None:
     before = setting()
     with pytest.raises(OSError, match="the disk"), low_latency():
         raise OSError("the disk")
@@ -40,7 +40,7 @@ def test_the_settings_are_as_before_after_a_failure_too() -> None:
 
 
 @on_loop
-async def test_a_server_keeps_pace() -> None:
+async def test_a_server_tunes_the_interpreter_while_it_runs() -> None:
     before = setting()
     async with Server(Agent(parrot, webio, settings={"webio": {"port": 0}})):
         assert setting() == OURS

@@ -1,4 +1,4 @@
-"""A spoken conversation over the WebSocket: sound both ways, captions, the part that was heard, and what clients do wrong."""
+"""A spoken conversation over the WebSocket: sound both ways, captions, the part that was heard, and mistakes of clients."""
 
 import asyncio
 import contextlib
@@ -210,12 +210,12 @@ async def test_the_last_window_that_turns_its_microphone_on_has_the_sound() -> N
         await second.until("sound")
         await past(0.0)
         types = [frame["type"] for frame in await caller.rest()]
-        assert types.count("message") == 2  # it sees the words
+        assert types.count("message") == 2  # this window still gets the words
         assert "sound" not in types
 
 
 @in_virtual_time
-async def test_a_lost_connection_stops_the_sound_and_a_new_one_gets_what_comes_then() -> None:
+async def test_a_lost_connection_stops_the_sound_and_a_new_one_gets_the_later_sound() -> None:
     async with calling() as (app, caller):
         caller.speak()
         await caller.until("sound")
@@ -287,7 +287,7 @@ async def test_heard_words_of_a_growing_utterance_mark_the_message_that_it_becom
 
 
 @in_virtual_time
-async def test_an_input_from_elsewhere_shows_as_the_visitors_words_and_their_own_only_once() -> None:
+async def test_input_from_elsewhere_shows_as_the_visitors_words_and_typed_words_show_once() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -298,7 +298,7 @@ async def test_an_input_from_elsewhere_shows_as_the_visitors_words_and_their_own
         assert sorted(await visit.messages(4)) == ["agent: typed", "agent: typed", "user: typed", "user: typed"]
 
 
-# ------------------------------------------------------------------------------------ what clients do wrong
+# ------------------------------------------------------------------------------------ mistakes of clients
 
 
 @in_virtual_time

@@ -1,4 +1,4 @@
-"""A goal that makes no sense is refused where it is declared, with a hint."""
+"""A faulty goal raises an error at its declaration, and the message says what to write."""
 
 from typing import Any
 
@@ -35,7 +35,7 @@ number = guide.slot("number", 3)
         ({"say": "a", "unless": asked}, r"contains a signal: write unless=slot\.holds"),
     ],
 )
-def test_faulty_goals(arguments: dict[str, Any], message: str) -> None:
+def test_a_faulty_goal_is_refused(arguments: dict[str, Any], message: str) -> None:
     module = rs.Module("guide", requires=[agenda])
     with pytest.raises(rs.DeclarationError, match=message):
         agenda.goal(module, "goal", **arguments)
@@ -57,7 +57,7 @@ def test_negation_follows_de_morgan() -> None:
     assert str(either) == "guide:lit.holds(not_bool) & guide:number.holds(not_bool)"
 
 
-def test_watching_detaches_every_constraint_and_keeps_the_rest() -> None:
+def test_watching_detaches_every_signal_and_keeps_ages_and_predicates() -> None:
     condition = watching(asked & lit.true.min_age(2) & number.holds(bool) | lit.false)
     assert str(condition) == (
         "guide:asked.max_age(None).detached() & guide:lit:true.min_age(2.0).detached() & guide:number.holds(bool) | "

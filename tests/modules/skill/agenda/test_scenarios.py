@@ -1,4 +1,4 @@
-"""Agents with several goals, in virtual time: their order, and what interrupts them."""
+"""Agents with several goals, in virtual time: the order of the goals, and their interruptions."""
 
 from itertools import pairwise
 
@@ -10,7 +10,7 @@ from ravestate.modules.skill.agenda import Goal, GoalState
 from ravestate.testing import Simulation, simulate
 
 PATIENT = {"idle": {"remarks": 100}}
-"""Pursue goals however long the user is silent."""
+"""Settings of an agent that pursues goals however long the user is silent."""
 AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"bored_after": 5.0, "answer_time": 0.0, "remarks": 100}}
 
 
@@ -19,7 +19,7 @@ def agent(name: str = "guide") -> rs.Module:
 
 
 def with_times(sim: Simulation, seconds: float) -> list[tuple[int, str]]:
-    """Return what is said within a few seconds, with the second of each."""
+    """Let some seconds pass, and return the second and the text of each utterance."""
     heard: list[tuple[int, str]] = []
     for _ in range(int(seconds)):
         before = len(sim.said)
@@ -40,7 +40,7 @@ def chatter(seconds: float = 0.0) -> rs.Module:
     return talk
 
 
-def test_a_goal_is_pursued_when_the_user_is_bored_and_done_when_it_was_said() -> None:
+def test_a_goal_is_pursued_after_a_silence_and_done_once_its_text_is_said() -> None:
     guide = agent()
     goal = agenda.goal(guide, "ice_cream", say="Do you know my ice cream?")
     with simulate(guide) as sim:
@@ -55,7 +55,7 @@ def test_a_goal_is_pursued_when_the_user_is_bored_and_done_when_it_was_said() ->
         assert len(sim.said) == 1
 
 
-def test_goals_have_their_turns_by_priority_and_with_a_gap() -> None:
+def test_goals_are_pursued_by_priority_with_a_gap_between_them() -> None:
     guide = agent()
     for name, priority in (("low", 0.5), ("high", 2.0), ("middle", 1.0)):
         agenda.goal(guide, name, say=name, priority=priority)
@@ -67,7 +67,7 @@ def test_goals_have_their_turns_by_priority_and_with_a_gap() -> None:
     assert all(later - sooner >= 20 for sooner, later in pairwise(times))
 
 
-def test_a_goal_rests_for_its_cool_down_and_others_have_their_turn_meanwhile() -> None:
+def test_while_a_goal_rests_for_its_cool_down_other_goals_are_pursued() -> None:
     guide = agent()
     never = guide.signal("never")
     agenda.goal(guide, "game", say="A game?", priority=2.0, cooldown=60, done=never, tries=3)
@@ -97,7 +97,7 @@ def test_each_try_says_the_next_text_and_after_the_last_the_goal_is_dropped() ->
         assert len(sim.said) == 3
 
 
-def test_a_goal_waits_for_its_precondition_and_leaves_its_turn_to_others() -> None:
+def test_while_a_goal_waits_for_its_precondition_other_goals_are_pursued() -> None:
     guide = agent()
     open_ = guide.flag("open", input=True)
     sold_out = guide.flag("sold_out", True, input=True)
@@ -115,7 +115,7 @@ def test_a_goal_waits_for_its_precondition_and_leaves_its_turn_to_others() -> No
         assert sim.said == ["Lovely weather.", "An ice cream?"]
 
 
-def test_a_goal_whose_signal_must_have_come_waits_for_it() -> None:
+def test_a_goal_with_a_signal_as_precondition_waits_for_the_signal() -> None:
     guide = agent()
     greeted = guide.signal("greeted")
     agenda.goal(guide, "name", say="What is your name?", when=greeted.max_age(None).detached())
@@ -142,7 +142,7 @@ def test_success_ends_a_goal_whenever_it_comes(moment: float) -> None:
         assert sim.explain(goal.rule).retired
 
 
-def test_the_users_words_may_be_the_success_but_only_in_answer() -> None:
+def test_words_of_success_count_only_after_the_goal_was_pursued() -> None:
     guide = agent()
     goal = agenda.goal(guide, "game", say="A game?", done="yes|sure", refused="no|not", cooldown=30)
     with simulate(guide, chatter()) as sim:
@@ -178,7 +178,7 @@ def test_words_that_come_too_late_are_no_answer() -> None:
         assert goal.state(sim).status == "pursued"
 
 
-def test_success_for_two_goals_at_once() -> None:
+def test_one_signal_may_end_two_goals_at_once() -> None:
     guide = agent()
     goals = [
         agenda.goal(guide, name, say=name, done=rawio.input.changed.where(lambda text: text == "both"))
@@ -207,7 +207,7 @@ def test_an_answer_to_a_goal_may_have_a_rule_of_its_own() -> None:
         assert sim.said[-1] == "I see."
 
 
-def test_while_the_user_talks_nothing_is_pursued() -> None:
+def test_while_the_user_talks_no_goal_is_pursued() -> None:
     guide = agent()
     agenda.goal(guide, "game", say="A game?")
     with simulate(guide, chatter(seconds=2.0)) as sim:
@@ -219,7 +219,7 @@ def test_while_the_user_talks_nothing_is_pursued() -> None:
         assert sim.said[-1] == "A game?"
 
 
-def test_while_the_talk_has_a_topic_nothing_is_pursued() -> None:
+def test_while_the_conversation_has_a_topic_no_goal_is_pursued() -> None:
     guide = agent()
     agenda.goal(guide, "game", say="A game?")
     with simulate(guide) as sim:
@@ -232,7 +232,7 @@ def test_while_the_talk_has_a_topic_nothing_is_pursued() -> None:
         assert sim.said == ["A game?"]
 
 
-def test_the_user_interrupts_a_goal_that_is_being_worded_and_it_comes_again() -> None:
+def test_a_goal_that_the_user_interrupts_while_its_text_is_made_is_tried_again() -> None:
     guide = agent()
 
     async def tell(ctx: rs.RuleContext) -> str:
@@ -253,7 +253,7 @@ def test_the_user_interrupts_a_goal_that_is_being_worded_and_it_comes_again() ->
     assert not sim.failures
 
 
-def test_a_goal_that_is_reached_while_it_is_being_worded_is_not_said() -> None:
+def test_a_goal_that_is_reached_while_its_text_is_made_is_not_said() -> None:
     guide = agent()
     told = guide.signal("told")
 
@@ -270,7 +270,7 @@ def test_a_goal_that_is_reached_while_it_is_being_worded_is_not_said() -> None:
         assert goal.state(sim).status == "done"
 
 
-def test_a_goal_that_waits_for_somebody_better_yields_to_the_user() -> None:
+def test_a_goal_that_waits_for_a_rival_yields_to_the_user() -> None:
     guide = agent()
     slow = rs.Module("slow", requires=[idle, rawio])
     ready = slow.signal("ready")
@@ -288,7 +288,7 @@ def test_a_goal_that_waits_for_somebody_better_yields_to_the_user() -> None:
         assert sim.said == ["I see."]
 
 
-def test_a_text_may_be_made_of_what_is_known() -> None:
+def test_a_function_may_make_the_text_from_slots() -> None:
     guide = agent()
     name = guide.slot("name", "Ada")
     agenda.goal(guide, "game", say=lambda ctx: f"{ctx[name]}, shall we play?", reads=name)
@@ -297,7 +297,7 @@ def test_a_text_may_be_made_of_what_is_known() -> None:
         assert sim.said == ["Ada, shall we play?"]
 
 
-def test_an_intent_is_worded_by_the_verbaliser_and_excludes_others_just_as_well() -> None:
+def test_a_goal_with_an_intent_is_worded_by_the_verbaliser_and_excludes_other_remarks() -> None:
     guide = agent()
     agenda.goal(guide, "wonder", intent="unknown", priority=2.0)
     agenda.goal(guide, "weather", say="Lovely weather.")
@@ -317,7 +317,7 @@ def test_an_intent_is_worded_by_the_verbaliser_and_excludes_others_just_as_well(
         assert "Lovely weather." in sim.said
 
 
-def test_a_user_who_is_silent_for_long_is_left_alone_in_the_end() -> None:
+def test_the_agent_drops_all_goals_if_the_user_stays_silent() -> None:
     guide = agent()
     never = guide.signal("never")
     for name in ("one", "two", "three"):
@@ -362,7 +362,7 @@ def test_two_contexts_of_one_policy_share_nothing() -> None:
         assert "agenda:extra" not in other.context.policy.rules
 
 
-def test_a_goal_is_seen_by_explain_check_and_graph() -> None:
+def test_explain_check_and_graph_show_a_goal() -> None:
     guide = agent()
     agenda.goal(guide, "game", say="A game?", priority=2.0, done="yes", refused="no")
     policy = rs.compile(guide)
@@ -378,12 +378,12 @@ def test_a_goal_is_seen_by_explain_check_and_graph() -> None:
     with simulate(policy) as sim:
         sim.advance(8.0)
         assert "finished" in str(sim.explain("guide:game"))
-        sim.advance(22.0)  # a question has its time for an answer, and goals have a gap
+        sim.advance(22.0)  # the user has time to answer the question, and then the gap between goals must pass
         assert "it was pursued" in str(sim.explain("guide:game"))
         assert "rests for another" in str(sim.explain("guide:game"))
 
 
-def test_an_emoji_is_no_reason_to_hold_back() -> None:
+def test_an_emoji_does_not_delay_a_goal() -> None:
     guide = agent()
     agenda.goal(guide, "game", say="A game?")
     with simulate(guide, emotion, chatter(), settings={"agenda": {"gap": 10.0}}) as sim:
@@ -392,7 +392,7 @@ def test_an_emoji_is_no_reason_to_hold_back() -> None:
         assert [sim.said[0], *sim.said[2:]] == ["I see.", "A game?"]
 
 
-def test_it_returns_what_one_may_ask_for_its_state() -> None:
+def test_goal_returns_an_object_with_the_name_of_its_rule() -> None:
     guide = agent()
     goal = agenda.goal(guide, "game", say="A game?", done="yes")
     assert isinstance(goal, Goal)

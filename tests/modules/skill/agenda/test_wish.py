@@ -14,7 +14,7 @@ def agent(*wishes: dict[str, Any], **settings: Any) -> Simulation:
     return simulate(agenda, settings={"agenda": {"goals": wishes, **settings}, "idle": {"remarks": 100}})
 
 
-def test_goals_of_words_alone_are_pursued_like_any_other() -> None:
+def test_goals_from_the_settings_are_pursued_like_goals_in_code() -> None:
     with agent(
         {"name": "ice_cream", "say": "Do you know my ice cream?"},
         {"name": "game", "say": ["A game?", "Come on!"], "priority": 2, "done": "yes|sure", "tries": 2},
@@ -46,19 +46,21 @@ def test_goals_of_words_alone_are_pursued_like_any_other() -> None:
         ({"name": "a", "say": "x", "wish": 1}, "no such setting"),
     ],
 )
-def test_faulty_wishes_are_refused_before_anything_runs(wish: dict[str, Any], message: str) -> None:
+def test_a_faulty_goal_in_the_settings_is_refused_before_the_agent_runs(wish: dict[str, Any], message: str) -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
         agent(wish)
     assert any(message in str(fault) for fault in caught.value.exceptions)
 
 
-def test_two_goals_of_one_name_are_refused() -> None:
+def test_two_goals_with_one_name_are_refused() -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
         agent({"name": "a", "say": "x"}, {"name": "a", "say": "y"})
     assert "two goals are named 'a'" in str(caught.value.exceptions[0])
 
 
-def test_a_name_that_a_rule_has_is_reported_and_the_agent_lives(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_goal_with_the_name_of_a_rule_is_reported_and_the_agent_keeps_running(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     with (
         caplog.at_level(logging.CRITICAL, "ravestate"),
         agent({"name": "take_initiative", "say": "x"}) as sim,

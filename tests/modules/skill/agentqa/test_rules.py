@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from ravestate.language.chat import Message
 from ravestate.modules import (
     agentqa,
     emotion,
@@ -25,7 +26,6 @@ from ravestate.modules import (
 )
 from ravestate.modules.meta.verbaliser.intents import Intent
 from ravestate.modules.skill.agentqa import Router
-from ravestate.modules.skill.wildtalk.backend import Message
 from ravestate.testing import Simulation, simulate
 
 pytestmark = pytest.mark.usefixtures("router")  # the model is loaded, and the topics are learnt

@@ -1,4 +1,4 @@
-"""One pipeline and one set of examples for all tests."""
+"""The pipeline and the examples, loaded once for all tests of charades."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole games in virtual time. A script has one line for each event, and then the names of the agent's phrases."""
+"""Whole games in virtual time. A script has a line for each event, and a line with the phrases that must follow."""
 
 from __future__ import annotations
 
@@ -55,7 +55,8 @@ def run(sim: Simulation, script: str) -> None:
     """Run a script.
 
     ``> text``: the user says it. ``wait N``: N seconds pass. ``see NAME``: an activity is recognised. ``typing``: the user types.
-    After the event, ``= names`` lists what the agent says, and ``~ feeling`` what it feels last.
+    ``body on``: a body comes into view. ``= names`` checks the names of the phrases that the agent has said since the last
+    check, and ``~ feeling`` checks its latest feeling.
     """
     said = len(sim.said)
     for number, raw in enumerate(script.strip().splitlines()):
@@ -83,7 +84,7 @@ def run(sim: Simulation, script: str) -> None:
     assert [phrase(text) for text in sim.said[said:]] == []
 
 
-def test_a_first_guess_that_is_right() -> None:
+def test_the_first_guess_is_right() -> None:
     with agent() as sim:
         run(
             sim,
@@ -115,7 +116,7 @@ def test_a_first_guess_that_is_right() -> None:
         assert not sim.read(agenda.topics)
 
 
-def test_a_second_guess_and_another_round() -> None:
+def test_the_second_guess_is_right_and_another_round_follows() -> None:
     with agent() as sim:
         run(
             sim,
@@ -180,7 +181,7 @@ def test_an_unknown_movement_is_named_and_learnt() -> None:
         assert (game.user, game.agent) == (1, 0)
 
 
-def test_two_wrong_guesses_and_the_answer_at_once() -> None:
+def test_after_two_wrong_guesses_the_user_names_the_activity_at_once() -> None:
     with agent() as sim:
         run(
             sim,
@@ -228,7 +229,7 @@ def test_other_questions_are_answered_and_the_game_goes_on() -> None:
         assert said("yes") == ["right"]
 
 
-def test_silence_counts_down_then_asks_again_then_ends_the_game() -> None:
+def test_silence_starts_the_countdown_then_repeats_the_question_then_ends_the_game() -> None:
     with agent() as sim:
         run(
             sim,
@@ -255,7 +256,7 @@ def test_silence_counts_down_then_asks_again_then_ends_the_game() -> None:
         assert not sim.read(charades.game).is_on
 
 
-def test_an_unclear_answer_is_asked_again_and_then_counts_as_no() -> None:
+def test_the_agent_asks_again_after_an_unclear_answer_and_takes_a_second_one_as_no() -> None:
     with agent() as sim:
         run(
             sim,
@@ -279,7 +280,7 @@ def test_an_unclear_answer_is_asked_again_and_then_counts_as_no() -> None:
         )
 
 
-def test_nothing_seen_twice_leads_to_a_riddle() -> None:
+def test_the_agent_offers_a_riddle_if_it_twice_sees_nothing() -> None:
     with agent() as sim:
         run(
             sim,
@@ -360,12 +361,12 @@ def test_a_bored_user_is_offered_the_game() -> None:
         assert not sim.read(charades.game).is_on
 
 
-def test_small_talk_about_boredom_leaves_the_offer_to_the_game() -> None:
+def test_small_talk_lets_the_game_answer_a_bored_user() -> None:
     with simulate(charades, wildtalk, settings={"emotion": {"emoji": False}, "wildtalk": {"backend": "listen"}}) as sim:
         run(sim, "> I'm bored\n= offer\n> yes\n= begin")
 
 
-def test_waiting_calls_the_countdown_off_and_typing_holds_the_reminder_back() -> None:
+def test_wait_cancels_the_countdown_and_typing_delays_the_reminder() -> None:
     with agent() as sim:
         run(
             sim,
@@ -390,7 +391,7 @@ def test_waiting_calls_the_countdown_off_and_typing_holds_the_reminder_back() ->
 
 
 def voice(seconds: float) -> rs.Module:
-    """Return a module that speaks, as a loudspeaker does: each utterance takes some seconds, one after another."""
+    """Return a module that speaks one utterance after another, each for some seconds, as a loudspeaker does."""
     module = rs.Module("voice", requires=[rawio])
     ends = module.slot("ends", 0.0)
 
@@ -405,7 +406,7 @@ def voice(seconds: float) -> rs.Module:
     return module
 
 
-def test_by_voice_the_agent_watches_when_its_last_word_has_sounded() -> None:
+def test_a_speaking_agent_watches_after_its_last_word_has_been_heard() -> None:
     with agent(voice(1.6)) as sim:
         run(
             sim,
@@ -417,7 +418,7 @@ def test_by_voice_the_agent_watches_when_its_last_word_has_sounded() -> None:
             = begin COUNTDOWN
             """,
         )
-        assert sim.read(charades.game).step == "counting"  # "3..., 2..., 1..., Go!" sounds for longer
+        assert sim.read(charades.game).step == "counting"  # the voice takes longer than the countdown
         sim.advance(1.0)
         assert sim.read(charades.game).step == "counting"
         while sim.read(charades.game).step == "counting":
@@ -428,7 +429,7 @@ def test_by_voice_the_agent_watches_when_its_last_word_has_sounded() -> None:
         assert "swimming" in sim.said[-1]
 
 
-def test_a_voice_that_is_cut_does_not_hold_the_game_up() -> None:
+def test_the_game_goes_on_after_the_user_interrupts_the_voice() -> None:
     with agent(voice(100.0)) as sim:
         run(sim, "> let's play charades\n= begin")
         sim.put(rawio.heard, sim.said[-1][:10])  # the user interrupts
@@ -492,7 +493,7 @@ def test_the_game_ends_when_the_last_user_leaves() -> None:
         assert not [text for text in sim.said[before:] if phrase(text) in ("lapsed", "back_choosing", "count")]
 
 
-def test_an_agent_with_a_body_shows_its_riddle() -> None:
+def test_an_agent_with_a_body_performs_its_riddle() -> None:
     shown: list[str] = []
     body = rs.Module("body", requires=[charades])
 
@@ -530,8 +531,8 @@ def test_every_question_can_be_repeated() -> None:
         assert sim.said == []
 
 
-def test_stop_ends_the_game_beside_modules_that_answer_it_themselves() -> None:
-    """The agent is really quiet after its promise."""
+def test_stop_ends_the_game_even_if_another_module_answers_stop() -> None:
+    """The first "stop" ends the game, and only the second makes the agent promise to be quiet."""
     loud = rs.Module("loud", requires=[rawio, idle])
 
     @loud.rule(when=idle.hushed, writes=rawio.output, weight=20.0)

@@ -1,4 +1,4 @@
-"""The game with the real recogniser: poses come in, and the agent guesses and learns."""
+"""The game with the real recogniser: from poses, the agent guesses known activities and learns new ones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("reader")
 
 
 def act(sim: Simulation, poses: Sequence[activity.Pose]) -> None:
-    """Perform before the camera until the agent has watched."""
+    """Send poses until the agent stops watching."""
     start, index, length = sim.now, 0, poses[-1].at
     while sim.read(charades.game).step in ("counting", "watching"):
         pose = poses[index % len(poses)]

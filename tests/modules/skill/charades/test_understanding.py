@@ -1,4 +1,4 @@
-"""The user's words during the game are understood as the right moves. None of these sentences is an example."""
+"""The game understands the user's words as the right moves. None of these sentences is an example in its files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ravestate.modules.skill.charades.understanding import understand
 pytestmark = pytest.mark.usefixtures("reader")
 
 FLOOR = 0.95
-"""The least share of sentences that must be understood as written here."""
+"""The share of these sentences that the game must understand, at least."""
 
 ROWS = """
 off      | let's play charades                 | wanted

@@ -1,4 +1,4 @@
-"""fillers fills a pause, and never answers in place of another rule."""
+"""The module `fillers` says a filler in a pause, and never takes the place of an answer."""
 
 import pytest
 
@@ -27,7 +27,7 @@ async def talk(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = "talk"
 
 
-def test_a_long_wait_is_filled_once_and_the_answer_comes_all_the_same() -> None:
+def test_a_long_wait_gets_one_filler_and_then_the_answer() -> None:
     with simulate(fillers, slow) as sim:
         sim.say("What is that?")
         sim.advance(0.9)
@@ -38,7 +38,7 @@ def test_a_long_wait_is_filled_once_and_the_answer_comes_all_the_same() -> None:
         assert sim.said[1:] == ["answer"]
 
 
-def test_a_short_wait_is_not_filled() -> None:
+def test_a_short_wait_gets_no_filler() -> None:
     patient = {"idle": {"impatient_after": 4.0}, "fillers": {"unanswered_after": 4.0}}
     with simulate(fillers, slow, settings=patient) as sim:
         sim.say("It rains.")
@@ -58,7 +58,7 @@ def test_a_filler_neither_interrupts_speech_nor_follows_the_answer() -> None:
         assert sim.said == ["answer"]
 
 
-def test_an_answer_of_which_nothing_is_heard_yet_is_a_pause_although_nobody_waits() -> None:
+def test_a_slow_answering_rule_gets_a_filler_although_no_other_rule_waits() -> None:
     model = rs.Module("model", requires=[rawio])
 
     @model.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), until=rawio.input.changed)
@@ -79,7 +79,7 @@ def test_an_answer_of_which_nothing_is_heard_yet_is_a_pause_although_nobody_wait
         assert sim.said[1:] == ["thought"]
 
 
-def test_one_filler_is_enough_for_a_pause_that_goes_on_for_another_reason() -> None:
+def test_a_pause_gets_one_filler_even_if_two_causes_ask_for_one() -> None:
     with simulate(fillers, slow) as sim:
         sim.say("What is that?")
         sim.advance(1.5)
@@ -106,8 +106,8 @@ async def think(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
-def test_an_answer_that_takes_too_long_is_not_denied() -> None:
-    """The agent says that it is still at work; "I have no answer" would be wrong, as the answer follows."""
+def test_the_agent_admits_a_delay_while_a_late_answer_may_still_come() -> None:
+    """The agent says that it is still working. "I have no answer" would be wrong, because the answer still comes."""
     with simulate(fillers, model, settings={"fillers": {"answer_within": 15.0}}) as sim:
         sim.say("60")
         sim.advance(2.1)
@@ -120,7 +120,7 @@ def test_an_answer_that_takes_too_long_is_not_denied() -> None:
         assert sim.said[2:] == ["thought"]
 
 
-def test_a_late_answer_that_never_comes_is_lost_in_words() -> None:
+def test_the_agent_apologises_if_a_late_answer_never_comes() -> None:
     with simulate(fillers, model) as sim:
         sim.say("-60")
         sim.advance(100.0)
@@ -129,7 +129,7 @@ def test_a_late_answer_that_never_comes_is_lost_in_words() -> None:
         assert len(sim.said) == 3
 
 
-def test_if_every_rule_resigns_after_a_filler_the_agent_says_so() -> None:
+def test_the_agent_apologises_if_every_rule_resigns_after_a_filler() -> None:
     with simulate(fillers, model) as sim:
         sim.say("-4")
         sim.advance(10.0)
@@ -139,14 +139,14 @@ def test_if_every_rule_resigns_after_a_filler_the_agent_says_so() -> None:
         assert len(sim.said) == 2
 
 
-def test_an_answer_after_a_filler_is_not_lost() -> None:
+def test_an_answer_after_a_filler_needs_no_apology() -> None:
     with simulate(fillers, model) as sim:
         sim.say("10")
         sim.advance(100.0)
         assert sim.said[1:] == ["thought"]
 
 
-def test_the_users_next_words_take_the_place_of_the_answer() -> None:
+def test_after_new_words_no_answer_to_the_earlier_words_is_expected() -> None:
     with simulate(fillers, model) as sim:
         sim.say("60")
         sim.advance(10.0)
@@ -155,7 +155,7 @@ def test_the_users_next_words_take_the_place_of_the_answer() -> None:
         assert sim.said[1:] == ["thought"]
 
 
-def test_words_soon_after_a_filler_are_not_left_in_silence() -> None:
+def test_new_words_soon_after_a_filler_get_a_sign_of_delay() -> None:
     with simulate(fillers, model) as sim:
         sim.say("1000")
         sim.advance(2.1)
@@ -166,7 +166,7 @@ def test_words_soon_after_a_filler_are_not_left_in_silence() -> None:
         assert sim.said[1] in LATE
 
 
-def test_words_soon_after_a_filler_whose_answer_comes_are_not_lost() -> None:
+def test_new_words_soon_after_a_filler_get_their_answer_without_an_apology() -> None:
     with simulate(fillers, model) as sim:
         sim.say("1000")
         sim.advance(2.1)
@@ -175,7 +175,7 @@ def test_words_soon_after_a_filler_whose_answer_comes_are_not_lost() -> None:
         assert sim.said[1:] == ["thought"]
 
 
-def test_an_empty_answer_is_none() -> None:
+def test_an_empty_text_does_not_count_as_an_answer() -> None:
     mute = rs.Module("mute", requires=[rawio])
 
     @mute.rule(when=rawio.input.changed, writes=rawio.output)
@@ -191,7 +191,7 @@ def test_an_empty_answer_is_none() -> None:
 
 
 def reader(seconds: float, *, worded: bool = False, detached: bool = False) -> rs.Module:
-    """Return a module that reads the words for some seconds; a rule resigns, and then another answers."""
+    """Return a module with three slow rules: the first raises a signal, the second resigns, the third answers."""
     module = rs.Module("reader", requires=[rawio, verbaliser])
     read = module.signal("read")
 
@@ -224,7 +224,7 @@ def reader(seconds: float, *, worded: bool = False, detached: bool = False) -> r
 @pytest.mark.parametrize("worded", [False, True])
 @pytest.mark.parametrize("detached", [False, True])
 def test_no_apology_comes_before_an_answer(seconds: float, worded: bool, detached: bool) -> None:
-    """A slow reading, a rule that resigns first, an intent that is worded later: the answer may still come."""
+    """Slow understanding, a rule that resigns or an intent without words yet are no reason to apologise."""
     with simulate(fillers, reader(seconds, worded=worded, detached=detached)) as sim:
         sim.say("What?")
         sim.advance(200.0)
@@ -246,8 +246,8 @@ async def ponder(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @pytest.mark.parametrize("first", ["10", "30"])
-def test_the_answer_to_the_first_words_is_none_to_the_second(first: str) -> None:
-    """After the filler for the second words, the user expects an answer, but no rule has one."""
+def test_the_answer_to_the_first_words_does_not_answer_the_second(first: str) -> None:
+    """After the filler for their second words, the user expects an answer. No rule has one, so the agent apologises."""
     with simulate(fillers, both) as sim:
         sim.say(first)
         sim.advance(5.9)
@@ -258,7 +258,7 @@ def test_the_answer_to_the_first_words_is_none_to_the_second(first: str) -> None
         assert len([text for text in sim.said if text in SORRY]) == 1
 
 
-def test_no_apology_for_words_that_others_replace() -> None:
+def test_no_apology_for_words_after_which_the_user_says_more() -> None:
     with simulate(fillers, both) as sim:
         sim.say("-10")
         sim.advance(3.0)
@@ -267,7 +267,7 @@ def test_no_apology_for_words_that_others_replace() -> None:
         assert sim.said[1:] == ["after 1"]
 
 
-def test_a_rule_that_waits_at_the_start_is_no_reason_to_fill() -> None:
+def test_a_rule_that_waits_at_startup_triggers_no_filler() -> None:
     module = rs.Module("early", requires=[rawio])
     never = module.signal("never")
 
@@ -306,4 +306,4 @@ def test_an_old_answer_does_not_end_the_wait_for_the_next() -> None:
         sim.say("second?")
         sim.advance(70.0)
         after = sim.said[sim.said.index("first answer") + 1 :]
-        assert after  # the agent may fill the pause, or admit a delay or a loss, but is not silent
+        assert after  # a filler, the notice of a delay, or an apology

@@ -8,11 +8,11 @@ import pytest
 
 import ravestate as rs
 from ravestate.errors import DeclarationErrors, PlatformError
+from ravestate.language.chat import Message, Progress
 from ravestate.modules import genqa, rawio, wildtalk
 from ravestate.modules.skill.genqa import Answer, Answerer, places
 from ravestate.modules.skill.genqa.document import Document, Passage
 from ravestate.modules.skill.genqa.index import Index, IndexedFile
-from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.testing import simulate
 
 talk = rs.Module("talk", requires=[rawio])

@@ -1,4 +1,4 @@
-"""hibye says hello and goodbye, once each, and leaves everything else to other modules."""
+"""The module `hibye` says hello and goodbye, once each, and answers nothing else."""
 
 import pytest
 
@@ -38,7 +38,7 @@ def test_a_user_hears_hello_on_coming_and_goodbye_on_leaving(seed: int) -> None:
         assert only(sim) in phrases("farewell")
 
 
-def test_a_name_that_is_known_may_be_said() -> None:
+def test_a_greeting_may_contain_the_known_name() -> None:
     said: set[str] = set()
     for seed in range(20):
         with simulate(hibye, seed=seed) as sim:
@@ -49,7 +49,7 @@ def test_a_name_that_is_known_may_be_said() -> None:
 
 
 def test_a_user_whom_a_platform_recognises_is_greeted_by_name() -> None:
-    """When they come, or when they have been present without a name."""
+    """The platform may recognise a user as they come, or while they are present without a name."""
     ada = interloc.Recognised("Ada", Node("Person", {"name": "Ada"}))
     for seed in range(5):
         with simulate(hibye, seed=seed) as sim:
@@ -62,7 +62,7 @@ def test_a_user_whom_a_platform_recognises_is_greeted_by_name() -> None:
             assert only(sim) in phrases("recognised", name="Ada")
 
 
-def test_hello_and_goodbye_are_answered_before_anybody_else_talks() -> None:
+def test_the_answer_to_hello_and_goodbye_takes_precedence_over_small_talk() -> None:
     with simulate(hibye, chatter) as sim:
         sim.say("Hello!")
         assert only(sim) in phrases("hello")
@@ -72,13 +72,13 @@ def test_hello_and_goodbye_are_answered_before_anybody_else_talks() -> None:
         assert sim.said[2:] == ["chatter"]
 
 
-def test_two_users_are_greeted_each() -> None:
+def test_each_of_two_users_is_greeted() -> None:
     with simulate(hibye) as sim:
         sim.put(interloc.users, {"one": None, "two": None})
         assert len(sim.said) == 2
 
 
-def test_it_speaks_the_language_of_the_context() -> None:
+def test_the_phrases_are_in_the_language_of_the_setting() -> None:
     german = PhraseBook.load([hibye.__path__[0] + "/phrases.yaml"], "de")
     with simulate(hibye, settings={"verbaliser": {"language": "de-AT"}}) as sim:
         sim.say("Hallo")
@@ -121,7 +121,7 @@ def test_a_user_who_goes_to_bed_hears_good_night(text: str, intent: str) -> None
 
 
 @pytest.mark.parametrize("text", ["I'm at the end of my rope", "the moon is out", "they let him go"])
-def test_other_ends_are_no_farewell(text: str) -> None:
+def test_other_sentences_about_ends_and_leaving_are_no_farewell(text: str) -> None:
     with simulate(hibye) as sim:
         sim.say(text)
         assert sim.said == []

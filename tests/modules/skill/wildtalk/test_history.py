@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ravestate.language.chat import Message
 from ravestate.modules._text import printable
-from ravestate.modules.skill.wildtalk.backend import Message
 from ravestate.modules.skill.wildtalk.history import EXAMPLES, PERSONA, History
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from ravestate.errors import PlatformError
+from ravestate.language.chat import Message
 from ravestate.modules.skill.wildtalk import llama_process
-from ravestate.modules.skill.wildtalk.backend import Message
 from ravestate.modules.skill.wildtalk.llama import LlamaBackend, bundled_model, checked_model
 from ravestate.modules.skill.wildtalk.llama_process import LlamaProcess, ModelKey
 

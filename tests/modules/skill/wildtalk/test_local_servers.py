@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from modules.skill.wildtalk.stand_ins import Quiet, serving
-from ravestate.modules.skill.wildtalk import local_servers, openai
+from ravestate.language import openai
+from ravestate.modules.skill.wildtalk import local_servers
 from ravestate.modules.skill.wildtalk.local_servers import LocalServer, chat_models, find_servers
 
 

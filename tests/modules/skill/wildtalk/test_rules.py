@@ -11,13 +11,14 @@ import pytest
 
 import ravestate as rs
 from ravestate.errors import DeclarationErrors, PlatformError
+from ravestate.language.chat import Message, Progress
+from ravestate.language.openai import OpenAIBackend
 from ravestate.modules import rawio, wildtalk
 from ravestate.modules.skill.wildtalk import rules
-from ravestate.modules.skill.wildtalk.backend import Message, PendingBackend, Progress
 from ravestate.modules.skill.wildtalk.choosing import Choice, choose
 from ravestate.modules.skill.wildtalk.listening import ListeningBackend
 from ravestate.modules.skill.wildtalk.llama import LlamaBackend
-from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+from ravestate.modules.skill.wildtalk.pending import PendingBackend
 from ravestate.modules.skill.wildtalk.rules import KEPT, make_backend
 from ravestate.modules.skill.wildtalk.transformers import TransformersBackend
 from ravestate.testing import Simulation, simulate

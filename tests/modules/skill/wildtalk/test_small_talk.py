@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import ravestate as rs
+from ravestate.language.chat import Message, Progress
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio, wildtalk
-from ravestate.modules.skill.wildtalk.backend import Message, Progress
 from ravestate.modules.skill.wildtalk.listening import ListeningBackend, State
 from ravestate.modules.skill.wildtalk.listening.state import Game
 from ravestate.modules.skill.wildtalk.names import overheard

@@ -15,8 +15,8 @@ from typing import Any
 import pytest
 
 from ravestate.errors import PlatformError
+from ravestate.language.chat import Message
 from ravestate.modules.skill.wildtalk import transformers as file
-from ravestate.modules.skill.wildtalk.backend import Message
 from ravestate.modules.skill.wildtalk.transformers import TransformersBackend, cut, transcript
 
 TALK = [Message("system", "You are a robot."), Message("user", "Hello!\nHow are you?")]

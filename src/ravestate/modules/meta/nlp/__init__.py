@@ -24,6 +24,7 @@ from .names import (
     normal,
     pos,
     question,
+    reader,
     tags,
     text,
     tokens,
@@ -32,14 +33,17 @@ from .names import (
 )
 from .phrase import Phrase
 from .question_word import QuestionWord
+from .reading import ModelReader, Reading
 from .statement import Statement, Triple
 
 __all__ = [
     "Analysis",
     "Entity",
     "Match",
+    "ModelReader",
     "Phrase",
     "QuestionWord",
+    "Reading",
     "Settings",
     "Statement",
     "Triple",
@@ -58,6 +62,7 @@ __all__ = [
     "normal",
     "pos",
     "question",
+    "reader",
     "rules",
     "tags",
     "text",

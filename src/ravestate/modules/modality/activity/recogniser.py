@@ -32,15 +32,15 @@ RIDGE = 0.05
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""The advantage of a taught activity in prior probability: twice the log likelihood, per feature."""
+"""The head start of a taught activity over the others, in units of the cost: twice the log likelihood per feature."""
 LIMIT = 4.0
 """The greatest distance from a taught activity: the mean squared deviation of the features."""
 REMEMBERED = 64
 """The number of inverse matrices to keep. Each set of visible features needs one matrix."""
-SECOND = 3
+RUNNERS_UP = 3
 """The maximum number of next best names."""
 FAR = 3.0
-"""The greatest distance of a next best activity, as a multiple of the limit. Within it, the movement looks similar."""
+"""The greatest distance of a next best activity, as a multiple of the limit. Farther activities look too different."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class Starter:
     centre: NDArray[Any]
     """(features,): the values to subtract from features, to normalise them."""
     size: NDArray[Any]
-    """(features,): the values by which to divide the features after that."""
+    """(features,): the values by which to divide the features after the subtraction."""
     usual: NDArray[Any]
     """(features,): the deviations of an average activity."""
     correlation: NDArray[Any]
@@ -169,7 +169,8 @@ class Recogniser:
     def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
         """Learn an activity from the features of a demonstration, and the features of its mirror image.
 
-        Demonstrations may use the left or the right hand: the recogniser takes the side that is nearer to the others.
+        Demonstrations may use the left or the right hand. The recogniser takes the side that is nearer to the other
+        demonstrations.
         """
         np, group = self._np, self._taught.setdefault(name, [])
         both = [(side - self.starter.centre) / self.starter.size for side in sides]
@@ -216,7 +217,7 @@ class Recogniser:
         others = sorted(
             ((other, p) for other, p in probability.items() if other in reachable - {name, ""}),
             key=lambda pair: -pair[1],
-        )[:SECOND]
+        )[:RUNNERS_UP]
         return Recognition(name, probability[name], tuple(others), name, away)
 
     def _arrange(self) -> None:
@@ -238,24 +239,24 @@ class Recogniser:
         The cost is twice the negative log likelihood per feature.
         """
         np = self._np
-        there = ~np.isnan(features)
-        key = there.tobytes()
+        visible = ~np.isnan(features)
+        key = visible.tobytes()
         if key not in self._inverses:
             if len(self._inverses) >= REMEMBERED:
                 self._inverses.clear()
-            self._inverses[key] = np.linalg.inv(self.starter.correlation[np.ix_(there, there)])
-        deviations = self._deviations[:, there]
-        away = np.nan_to_num((features[there] - self._means[:, there]) / deviations)
-        count = int(there.sum())
+            self._inverses[key] = np.linalg.inv(self.starter.correlation[np.ix_(visible, visible)])
+        deviations = self._deviations[:, visible]
+        away = np.nan_to_num((features[visible] - self._means[:, visible]) / deviations)
+        count = int(visible.sum())
         distance = np.einsum("ci,ij,cj->c", away, self._inverses[key], away) / count
         return distance, distance + 2 * np.log(deviations).sum(axis=1) / count - self._favour, count
 
 
 def _mean(group: NDArray[Any]) -> NDArray[Any]:
     np = numpy()
-    there = ~np.isnan(group)
-    total = np.where(there, group, 0.0).sum(axis=0)
-    return np.where(there.any(axis=0), total / np.maximum(there.sum(axis=0), 1), np.nan)
+    visible = ~np.isnan(group)
+    total = np.where(visible, group, 0.0).sum(axis=0)
+    return np.where(visible.any(axis=0), total / np.maximum(visible.sum(axis=0), 1), np.nan)
 
 
 def numpy() -> Any:

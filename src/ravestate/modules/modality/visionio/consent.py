@@ -36,22 +36,27 @@ async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
     if not ctx.settings.ask:
         return rs.Resign("visionio.ask is off")
     memory = ctx[ontology.memory]
-    one = next(
-        (one for one in ctx[visitors].values() if one.item and not one.faces and one.good(ctx.settings.quality)), None
+    visitor = next(
+        (
+            visitor
+            for visitor in ctx[visitors].values()
+            if visitor.item and not visitor.faces and visitor.good(ctx.settings.quality)
+        ),
+        None,
     )
-    if one is None or memory is None:
+    if visitor is None or memory is None:
         return rs.Resign("there is nobody to ask, or no memory")
     if _open(ctx) is not None:
         return rs.Resign("the agent has asked somebody else")
-    ctx[visitors].add(one.key, replace(one, faces=True))
+    ctx[visitors].add(visitor.key, replace(visitor, faces=True))
     try:
-        present = await memory.together(lambda graph: people.has_faces(graph, one.node))
+        present = await memory.together(lambda graph: people.has_faces(graph, visitor.node))
     except RavestateError as error:
         return rs.Resign(f"memory failed: {error}")
     if present:
         return rs.Resign("memory has their face")
-    ctx[asking] = Question(one.key, ctx.now)
-    ctx[verbaliser.intent] = Intent("ask_leave", {"name": one.name}, __package__)
+    ctx[asking] = Question(visitor.key, ctx.now)
+    ctx[verbaliser.intent] = Intent("ask_leave", {"name": visitor.name}, __package__)
     return None
 
 
@@ -102,29 +107,29 @@ PRIORITY = 20.0
 async def store(ctx: rs.RuleContext) -> None:
     """Store the vectors of a person who agrees."""
     settings: Settings = ctx.settings
-    one, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
-    meant, name = "no_memory", one.name if one else None
-    vectors = one.good(settings.quality) if one else ()
-    if one is None or not vectors:
-        meant = "not_seen"
+    visitor, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
+    reply, name = "no_memory", visitor.name if visitor else None
+    vectors = visitor.good(settings.quality) if visitor else ()
+    if visitor is None or not vectors:
+        reply = "not_seen"
     elif name is None:
-        meant = "no_name"
+        reply = "no_name"
     elif memory is not None:
         try:
-            node, _ = await memory.together(lambda graph: people.keep(graph, one.node, vectors, settings.most))
+            node, _ = await memory.together(lambda graph: people.keep(graph, visitor.node, vectors, settings.most))
         except RavestateError as error:
             ctx.log.error("%s", error)
         else:
-            ctx[visitors].add(one.key, replace(one, node=node, known=True, faces=True))
-            meant = "kept"
-    ctx[verbaliser.intent] = Intent(meant, {"name": name}, __package__)
+            ctx[visitors].add(visitor.key, replace(visitor, node=node, known=True, faces=True))
+            reply = "kept"
+    ctx[verbaliser.intent] = Intent(reply, {"name": name}, __package__)
 
 
 @module.rule(when=refused, writes=REPLIES, detached=True, weight=PRIORITY + 1)
 async def respect(ctx: rs.RuleContext) -> None:
     """Accept that a person does not want the agent to remember their face."""
-    one = ctx[visitors].get(ctx.payload(refused))
-    ctx[verbaliser.intent] = Intent("not_kept", {"name": one.name if one else None}, __package__)
+    visitor = ctx[visitors].get(ctx.payload(refused))
+    ctx[verbaliser.intent] = Intent("not_kept", {"name": visitor.name if visitor else None}, __package__)
 
 
 @module.rule(
@@ -136,23 +141,23 @@ async def respect(ctx: rs.RuleContext) -> None:
 )
 async def forget(ctx: rs.RuleContext) -> None:
     """Remove a person's faces from memory. This works without a camera if the only user is a person in memory."""
-    one, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
-    person, users = one.node if one is not None else None, list(ctx[interloc.users].values())
+    visitor, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
+    person, users = visitor.node if visitor is not None else None, list(ctx[interloc.users].values())
     if person is None and len(users) == 1 and isinstance(users[0], interloc.Recognised):
         person = users[0].node
-    meant = "not_seen"
+    reply = "not_seen"
     if person is not None:
         try:
             removed = 0 if memory is None else await memory.together(lambda graph: people.forget_faces(graph, person))
-            meant = "forgotten" if removed else "had_none"
+            reply = "forgotten" if removed else "had_none"
         except RavestateError as error:
             ctx.log.error("%s", error)
-            meant = "no_memory"
+            reply = "no_memory"
         else:
             ctx[history] = ()
-            if one is not None:
-                ctx[visitors].add(one.key, replace(one, faces=True, vectors=()))  # do not ask again
-    ctx[verbaliser.intent] = Intent(meant, {"name": person and person.get("name")}, __package__)
+            if visitor is not None:
+                ctx[visitors].add(visitor.key, replace(visitor, faces=True, vectors=()))  # do not ask again
+    ctx[verbaliser.intent] = Intent(reply, {"name": person and person.get("name")}, __package__)
 
 
 @module.rule(
@@ -162,24 +167,24 @@ async def forget_person(ctx: rs.RuleContext) -> None:
     """Treat visitors whom memory has forgotten as strangers."""
     memory = ctx[ontology.memory]
     ctx[history] = ()
-    for one in ctx[visitors].values():
-        if one.known and (memory is None or await memory.get(one.node.id) is None):
-            stranger = replace(one, node=ontology.Node("Person"), known=False, faces=True, vectors=())
-            ctx[visitors].add(one.key, stranger)
+    for visitor in ctx[visitors].values():
+        if visitor.known and (memory is None or await memory.get(visitor.node.id) is None):
+            stranger = replace(visitor, node=ontology.Node("Person"), known=False, faces=True, vectors=())
+            ctx[visitors].add(visitor.key, stranger)
 
 
 @module.rule(when=left.max_age(None).detached(), reads=ontology.memory, background=True)
 async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
     """After a visit, store a new vector of a person who agreed earlier, because faces change."""
     settings: Settings = ctx.settings
-    one, memory = ctx.payload(left), ctx[ontology.memory]
-    vectors = one.good(max(0.7, settings.quality))[:1]
-    if memory is None or not one.known or one.mistaken or not vectors:
+    visitor, memory = ctx.payload(left), ctx[ontology.memory]
+    vectors = visitor.good(max(0.7, settings.quality))[:1]
+    if memory is None or not visitor.known or visitor.mistaken or not vectors:
         return rs.Resign("there is nothing to file")
 
     def file(graph: ontology.Graph) -> None:
-        if people.has_faces(graph, one.node):
-            people.keep(graph, one.node.with_properties(), vectors, settings.most)
+        if people.has_faces(graph, visitor.node):
+            people.keep(graph, visitor.node.with_properties(), vectors, settings.most)
 
     try:
         await memory.together(file)

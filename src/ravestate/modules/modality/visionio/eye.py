@@ -107,7 +107,7 @@ class Eye:
 
     def close(self) -> None:
         """Close the camera. The worker ends with its last user."""
-        if self._process.busy:  # with a look of this or another stream; the loop must not wait
+        if self._process.busy:  # a look of this or another stream is running, and the loop must not wait for its end
             threading.Thread(target=self._close, name="visionio-close", daemon=True).start()
         else:
             self._close()

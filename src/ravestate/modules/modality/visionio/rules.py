@@ -128,12 +128,12 @@ async def mark_faces(ctx: rs.RuleContext) -> rs.Resign | None:
     """Show the user the faces in their pictures, with the names that the agent knows."""
     if (user := ctx[rawio.camera]) is None:
         return rs.Resign("the user has turned their camera off")
-    sighting, here = ctx.payload(sighted), ctx[visitors]
+    sighting, all_visitors = ctx.payload(sighted), ctx[visitors]
     width, height = sighting.look.size
     faces: list[rawio.Face] = []
     for track, _ in sighting.faces:
-        one = of_track(here, track.number)
-        person = track.person if one is None else one.node
+        visitor = of_track(all_visitors, track.number)
+        person = track.person if visitor is None else visitor.node
         x, y, w, h = track.box
         name = str(person.get("name") or "") if person is not None else ""
         faces.append(rawio.Face((x / width, y / height, w / width, h / height), name))
@@ -196,43 +196,43 @@ async def track(ctx: rs.RuleContext) -> None:
         seen = (*ctx[history], face)[-settings.history :]
         ctx[history] = seen
         decision = decide(seen, face, sure=settings.sure, quality=settings.quality)
-    here = dict(ctx[visitors])
-    one = of_track(here, face.track)
-    if one is not None and decision is not None:
-        one = _reconsidered(ctx, one, face, decision)
-    if one is None and decision is not None:
-        one = whose(here, face, decision, settings.threshold) or await _arrival(ctx, decision)
-        if decision.person is not None and not one.known:
-            one = _recognised(ctx, one, decision.person)
-    if one is not None:
-        if one.linked:
-            ctx[met] = ctx[met] | {one.key}
-        ctx[visitors].add(one.key, one.met(face, least=settings.quality, threshold=settings.threshold))
+    all_visitors = dict(ctx[visitors])
+    visitor = of_track(all_visitors, face.track)
+    if visitor is not None and decision is not None:
+        visitor = _reconsidered(ctx, visitor, face, decision)
+    if visitor is None and decision is not None:
+        visitor = whose(all_visitors, face, decision, settings.threshold) or await _arrival(ctx, decision)
+        if decision.person is not None and not visitor.known:
+            visitor = _recognised(ctx, visitor, decision.person)
+    if visitor is not None:
+        if visitor.linked:
+            ctx[met] = ctx[met] | {visitor.key}
+        ctx[visitors].add(visitor.key, visitor.met(face, least=settings.quality, threshold=settings.threshold))
 
 
-def _reconsidered(ctx: rs.RuleContext, one: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
+def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
     """Return the visitor of a track after new vectors; None if the track now belongs to somebody else."""
     settings: Settings = ctx.settings
     person = decision.person
-    if person is None or person.id == one.node.id or person.id in one.mistaken:
-        alike = person is not None or not one.vectors or not decision.vectors
-    elif not one.known:
-        return _recognised(ctx, one, person)
+    if person is None or person.id == visitor.node.id or person.id in visitor.mistaken:
+        alike = person is not None or not visitor.vectors or not decision.vectors
+    elif not visitor.known:
+        return _recognised(ctx, visitor, person)
     else:
         alike = False
     # Memory may know this face under another name than the visitor's.
-    if alike or any(one.resembles(vector, settings.threshold) for vector in decision.vectors):
-        return one
-    ctx[visitors].add(one.key, replace(one, tracks=one.tracks - {face.track}))
+    if alike or any(visitor.resembles(vector, settings.threshold) for vector in decision.vectors):
+        return visitor
+    ctx[visitors].add(visitor.key, replace(visitor, tracks=visitor.tracks - {face.track}))
     return None
 
 
 async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
     """Return a new visitor. Add them to the present users, unless a platform has already added them."""
-    users, here, now = ctx[interloc.users], ctx[visitors], ctx.now
+    users, all_visitors, now = ctx[interloc.users], ctx[visitors], ctx.now
     person = decision.person
     others = [key for key in users if not key.startswith(KEY)]
-    key = next((key for key in others if len(others) == 1 and key not in here), None)
+    key = next((key for key in others if len(others) == 1 and key not in all_visitors), None)
     if key is not None:
         item = users[key]
         name = person.get("name") if person is not None else None
@@ -242,21 +242,21 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
             if await _is_new_face(ctx, key, user):
                 ctx.emit(named, user)
                 return Visitor(key, user, known=True, since=now, seen=now, linked=True)
-        if before is not None and (person is None or person.id != before):  # another person sits down
+        if before is not None and (person is None or person.id != before):  # another person has taken this user's place
             users.remove(key)
             node = person or ontology.Node("Person")
             known = person is not None
             return Visitor(key, node, known, since=now, seen=now, linked=True, faces=known, moving=True)
         if person is not None and before is None and item not in (None, name):
-            key = None  # according to the platform, its user is somebody else
+            key = None  # the platform says that its user is somebody else
     node = person or ontology.Node("Person")
     if key is None:
-        key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *here) if k.startswith(KEY)), default=0)}"
-        one = Visitor(key, node, person is not None, since=now, seen=now, faces=person is not None)
-        users.add(key, one.item)
-        return one
-    one = Visitor(key, ontology.Node("Person"), since=now, seen=now, linked=True)
-    return one if person is None else _recognised(ctx, one, person)
+        key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *all_visitors) if k.startswith(KEY)), default=0)}"
+        visitor = Visitor(key, node, person is not None, since=now, seen=now, faces=person is not None)
+        users.add(key, visitor.item)
+        return visitor
+    visitor = Visitor(key, ontology.Node("Person"), since=now, seen=now, linked=True)
+    return visitor if person is None else _recognised(ctx, visitor, person)
 
 
 async def _is_new_face(ctx: rs.RuleContext, key: str, node: ontology.Node) -> bool:
@@ -271,13 +271,13 @@ async def _is_new_face(ctx: rs.RuleContext, key: str, node: ontology.Node) -> bo
         return False
 
 
-def _recognised(ctx: rs.RuleContext, one: Visitor, person: ontology.Node) -> Visitor:
+def _recognised(ctx: rs.RuleContext, visitor: Visitor, person: ontology.Node) -> Visitor:
     """Return a visitor as a person in memory, and report the person to the other modules."""
-    one = replace(one, node=person, known=True, faces=True)
-    if one.item is not None and not one.moving:
-        ctx[interloc.users].add(one.key, one.item)
-        ctx.emit(interloc.recognised, rs.Entry(one.key, one.item))
-    return one
+    visitor = replace(visitor, node=person, known=True, faces=True)
+    if visitor.item is not None and not visitor.moving:
+        ctx[interloc.users].add(visitor.key, visitor.item)
+        ctx.emit(interloc.recognised, rs.Entry(visitor.key, visitor.item))
+    return visitor
 
 
 @module.rule(
@@ -289,11 +289,11 @@ def _recognised(ctx: rs.RuleContext, one: Visitor, person: ontology.Node) -> Vis
 async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
     """Add a platform's user again as another person, after the other modules have finished with the previous person."""
     key = ctx.payload(interloc.users.removed).key
-    one = ctx[visitors].get(key)
-    if one is None or not one.moving:
+    visitor = ctx[visitors].get(key)
+    if visitor is None or not visitor.moving:
         return rs.Resign("nobody takes the place of this user")
-    ctx[visitors].add(key, replace(one, moving=False))
-    ctx[interloc.users].add(key, one.item)
+    ctx[visitors].add(key, replace(visitor, moving=False))
+    ctx[interloc.users].add(key, visitor.item)
     return None
 
 
@@ -301,20 +301,20 @@ async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
 async def leave(ctx: rs.RuleContext) -> rs.Resign | None:
     """Note people who have left, and drop the vectors of their faces."""
     settings: Settings = ctx.settings
-    now, here = ctx.payload(looked).time, dict(ctx[visitors])
-    absent = gone(here, now, settings.gone_after)
-    present = {number for one in here.values() if one not in absent for number in one.tracks}
+    now, all_visitors = ctx.payload(looked).time, dict(ctx[visitors])
+    absent = gone(all_visitors, now, settings.gone_after)
+    present = {number for visitor in all_visitors.values() if visitor not in absent for number in visitor.tracks}
     before = ctx[history]
     kept = tuple(face for face in before if face.track in present or now - at(face) <= settings.gone_after)
     if len(kept) < len(before):
         ctx[history] = kept
     elif not absent:
         return rs.Resign("nobody has left")
-    for one in absent:
-        ctx[visitors].remove(one.key)
-        if not one.linked:
-            ctx[interloc.users].remove(one.key)
-        ctx.emit(left, one)
+    for visitor in absent:
+        ctx[visitors].remove(visitor.key)
+        if not visitor.linked:
+            ctx[interloc.users].remove(visitor.key)
+        ctx.emit(left, visitor)
     return None
 
 
@@ -332,41 +332,41 @@ async def leave(ctx: rs.RuleContext) -> rs.Resign | None:
 async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
     """Keep the node of a visitor whose name another module has learnt, and raise `named`."""
     key = ctx.payload(interloc.users.changed).key
-    here = ctx[visitors]
-    one, item = here.get(key), ctx[interloc.users].get(key)
-    if one is None:
+    all_visitors = ctx[visitors]
+    visitor, item = all_visitors.get(key), ctx[interloc.users].get(key)
+    if visitor is None:
         return rs.Resign("the agent does not see this user")
     if not item:
-        if one.known:  # the visitor is not the person whom the agent recognised
+        if visitor.known:  # the visitor is not the person whom the agent recognised
             ctx[history] = ()
-            mistaken = one.mistaken | {one.node.id}
-            stranger = replace(one, node=ontology.Node("Person"), known=False, faces=False, mistaken=mistaken)
+            mistaken = visitor.mistaken | {visitor.node.id}
+            stranger = replace(visitor, node=ontology.Node("Person"), known=False, faces=False, mistaken=mistaken)
             ctx[visitors].add(key, stranger)
-            await _take_away(ctx, one)
+            await _take_away(ctx, visitor)
         return None
-    node = item.node if isinstance(item, interloc.Recognised) else one.node.with_properties(name=str(item))
-    if one.known and node.id == one.node.id:
+    node = item.node if isinstance(item, interloc.Recognised) else visitor.node.with_properties(name=str(item))
+    if visitor.known and node.id == visitor.node.id:
         return rs.Resign("the agent knows this person")
     wrong = None
-    if one.faces and one.known:
-        strangers = [other for other in here.values() if not other.known]
+    if visitor.faces and visitor.known:
+        strangers = [other for other in all_visitors.values() if not other.known]
         if len(strangers) == 1:  # the name must be that of the only person whom the agent does not know
-            one = strangers[0]
+            visitor = strangers[0]
         else:
-            wrong, one = one, replace(one, mistaken=one.mistaken | {one.node.id})
-    ctx[visitors].add(one.key, replace(one, node=node, known=True, faces=False))
+            wrong, visitor = visitor, replace(visitor, mistaken=visitor.mistaken | {visitor.node.id})
+    ctx[visitors].add(visitor.key, replace(visitor, node=node, known=True, faces=False))
     if wrong is not None:
         await _take_away(ctx, wrong)
     ctx.emit(named, node)
     return None
 
 
-async def _take_away(ctx: rs.RuleContext, one: Visitor) -> None:
+async def _take_away(ctx: rs.RuleContext, visitor: Visitor) -> None:
     """Remove a visitor's face from the person with whom the agent confused them, so that it does not happen again."""
-    memory, vectors = ctx[ontology.memory], [vector for _, vector in one.vectors]
+    memory, vectors = ctx[ontology.memory], [vector for _, vector in visitor.vectors]
     if memory is None:
         return
     try:
-        await memory.together(lambda graph: people.take_away(graph, one.node, vectors))
+        await memory.together(lambda graph: people.take_away(graph, visitor.node, vectors))
     except RavestateError as error:
         ctx.log.error("%s", error)

@@ -32,7 +32,7 @@ class Visitor:
         vectors: Their best vectors of this visit, each with its quality, best first.
         linked: Whether they are a user whom a platform has added.
         faces: Whether memory has their face, or the agent has asked them. Otherwise the agent may ask.
-        mistaken: The ids of other people with a similar face, whom the agent must not take them for.
+        mistaken: The ids of other people in memory. The agent must not mistake this visitor for them.
         moving: Whether they take the place of a platform's user. The agent removes that user for a moment.
     """
 
@@ -90,7 +90,7 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said the question. Its next words end the question, because a yes may answer them.
+        said: Whether the agent has said the question. The agent's next words end it: a yes may then answer those.
     """
 
     key: str
@@ -144,27 +144,29 @@ def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, th
 
     A person whose face was lost for a moment gets a new track. Memory or the vectors show that it is the same visitor.
     """
-    for one in visitors.values():
-        if decision.person is not None and one.node.id == decision.person.id:
-            return one
-    near = [one for one in visitors.values() if one.resembles(face.vector, threshold)]
-    near = [one for one in near if decision.person is None or not one.known]
-    return min(near, key=lambda one: min(dist(face.vector, v) for _, v in one.vectors), default=None)
+    for visitor in visitors.values():
+        if decision.person is not None and visitor.node.id == decision.person.id:
+            return visitor
+    near = [visitor for visitor in visitors.values() if visitor.resembles(face.vector, threshold)]
+    near = [visitor for visitor in near if decision.person is None or not visitor.known]
+    return min(near, key=lambda visitor: min(dist(face.vector, v) for _, v in visitor.vectors), default=None)
 
 
 def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
     """Return the visitor who has a track."""
-    return next((one for one in visitors.values() if track in one.tracks), None)
+    return next((visitor for visitor in visitors.values() if track in visitor.tracks), None)
 
 
 def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
     """Return the visitor to whom the agent talks: the visitor with the largest face. If it sees nobody, return None."""
     sizes = {face.track: face.box[2] * face.box[3] for face in history}
     return max(
-        visitors.values(), key=lambda one: max((sizes.get(track, 0) for track in one.tracks), default=0), default=None
+        visitors.values(),
+        key=lambda visitor: max((sizes.get(track, 0) for track in visitor.tracks), default=0),
+        default=None,
     )
 
 
 def gone(visitors: Mapping[str, Visitor], now: float, after: float) -> list[Visitor]:
     """Return the visitors whose faces have not been seen for `after` seconds."""
-    return [one for one in visitors.values() if now - one.seen > after]
+    return [visitor for visitor in visitors.values() if now - visitor.seen > after]

@@ -32,7 +32,7 @@ class Attempts:
         self._failures = 0
 
     async def fail(self, why: object, wait: float = 0.0) -> None:
-        """Log a failure, and wait before the next attempt. If the messenger has set a time, wait for `wait` seconds."""
+        """Log a failure, and wait before the next attempt: for `wait` seconds if the messenger asks for a wait."""
         level = logging.WARNING if self._failures == TOLD else logging.INFO
         self._log.log(level, "%s: %s; trying again", self._what, why)
         seconds = wait or back_off(self._failures)

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from .room import Room
 
 GRACE = 0.05
-"""The seconds for which an answer waits for the end of the agent's work, so that one transaction stores both."""
+"""The seconds for which an answer waits for the agent to finish, so that one transaction can also mark the message."""
 
 TURN = 1.0
-"""The seconds for which a message waits for the answer to the previous message. It may interrupt slow answers."""
+"""The seconds for which a message waits for the answer to the previous message. Then it may interrupt that answer."""
 
 FAREWELL = 10.0
 """The maximum number of seconds for a greeting, and for a farewell."""
@@ -128,7 +128,7 @@ class Chat:
                 self._end(finished=not self._room.closing)
             finally:
                 self._end(finished=False)
-                self._mute = True  # a chat is put to rest in silence
+                self._mute = True  # the agent does not say goodbye when a chat rests
 
     async def _answered(self, seconds: float) -> bool:
         """Wait up to `seconds` for the agent's answers to all that it has heard. Return whether it has answered all."""
@@ -195,7 +195,7 @@ class Chat:
         elif kind in ("picture", "voice"):
             await self._open_file(context, entry)
         elif kind == "edit" and self._room.store.answer_to(entry) is None:
-            pass  # the conversation has moved on
+            pass  # the edited message was not the last one: ignore the edit
         elif message.text.strip():
             context.put(rawio.input, printable(message.text))
 

@@ -18,10 +18,10 @@ SLOW = 0.5
 """The seconds of work after which the chat shows that the agent is writing."""
 
 SHOWN = 4.0
-"""The seconds for which a chat shows that the agent is writing. Messengers show it for five."""
+"""The seconds after which a chat shows again that the agent is writing. Messengers show it for five seconds."""
 
 GROWTH = 1.0
-"""The minimum number of seconds between two views of a growing answer. Messengers allow about one a second."""
+"""The minimum number of seconds between two updates of a growing answer. Messengers allow about one a second."""
 
 
 class Draft:

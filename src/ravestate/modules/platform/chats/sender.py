@@ -19,7 +19,7 @@ SHOWN = 2.0
 """The maximum number of seconds for which a message waits for a request that shows its draft."""
 
 BURST = 0.15
-"""After a pause, the unused turns of this many seconds may come at once. At a rate of 25, the first second has 28."""
+"""The seconds of unused turns that may come at once after a pause. A rate of 25 allows 28 turns in the first second."""
 
 
 class Pace:

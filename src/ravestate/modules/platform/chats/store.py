@@ -159,7 +159,7 @@ class Store:
         return entry
 
     def unhear(self, entries: Iterable[Entry]) -> None:
-        """Undo the count of `hear` for messages, because the process ends in order instead of crashing."""
+        """Undo the count of `hear` for messages, because the process ends normally instead of crashing."""
         with self._transaction():
             for entry in entries:
                 self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
@@ -242,7 +242,7 @@ class Store:
             for cause, _ in row:
                 if item.message.kind in ("text", "voice", "edit"):
                     self._db.execute("UPDATE inbox SET answer = ? WHERE n = ? AND answer = ''", (id, cause))
-            if row and row[0][1] is not None:  # the answer is compared if the message is heard again after a crash
+            if row and row[0][1] is not None:  # after a crash, the chat compares new answers with this one
                 self._db.execute("UPDATE outbox SET state = 'sent' WHERE n = ?", (item.n,))
             else:
                 self.drop(item)
@@ -255,7 +255,7 @@ class Store:
     # ------------------------------------------------------------------------------------ chats, people and notes
 
     def knows(self, chat: str, person: Person) -> bool:
-        """Return whether the agent has finished with a message of this person in this chat before."""
+        """Return whether the agent has already handled a message of this person in this chat."""
         return bool(self._all("SELECT 1 FROM people WHERE chat = ? AND id = ?", chat, person.id))
 
     def forget(self, chat: str) -> None:

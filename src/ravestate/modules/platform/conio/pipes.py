@@ -22,7 +22,7 @@ class Pipes:
     interactive = False
 
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
-        """Make a console; it reads nothing yet. For a closed stream, write None.
+        """Make a console; it reads nothing yet. Pass None for a closed stream.
 
         It reads at most `longest_line` bytes of a line, and leaves out the rest.
         """

@@ -163,7 +163,7 @@ class Terminal:
 
 
 def _full_row(text: str, width: int) -> tuple[str, str]:
-    """Return the first row of a text that is too long, with less than `width` columns, and the rest of the text."""
+    """Split a text that is too long for one row. Return its first row (less than `width` columns), and the rest."""
     used = end = 0
     for end, character in enumerate(text):  # noqa: B007  # used after the loop
         used += get_cwidth(character)

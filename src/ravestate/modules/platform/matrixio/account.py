@@ -39,7 +39,7 @@ POLL = 30_000  # the milliseconds for which the server holds a request for event
 ANSWER = 20.0  # the seconds to wait for an answer to a request
 PAGE = 100  # the number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
-JOINS = 12  # the number of refusals, within about six minutes, after which the agent does not try to join a room again
+JOINS = 12  # the number of refusals after which the agent stops trying to join a room: about six minutes
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -159,15 +159,15 @@ class Inlet:
             room = self._client.rooms.get(id)
             if room is not None and (since is not None or self._invited(events)):
                 messages += self._read(room, events)
-        nobody = Person(self._client.user_id)
+        agent = Person(self._client.user_id)
         for id in rooms.leave:
-            messages.append(Incoming(key=f"left {answer.next_batch} {id}", chat=id, id="", kind="left", person=nobody))
+            messages.append(Incoming(key=f"left {answer.next_batch} {id}", chat=id, id="", kind="left", person=agent))
         for id, invitation in rooms.invite.items():
             self._invite(id, invitation.invite_state)
         self._room.receive(messages, ("since", answer.next_batch))
 
     async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
-        """Return the events that the server left out of an answer, because there are too many.
+        """Return the events that the server left out of an answer, because there were too many.
 
         Raises:
             OSError: The server does not send them now. Keep the position, so that the same answer comes again.
@@ -204,11 +204,11 @@ class Inlet:
 
     def _invite(self, room: str, state: Iterable[Any]) -> None:
         me = self._client.user_id
-        hosts = [e.sender for e in state if isinstance(e, InviteMemberEvent) and e.state_key == me]
-        if self._settings.allows(room, *hosts):
+        inviters = [e.sender for e in state if isinstance(e, InviteMemberEvent) and e.state_key == me]
+        if self._settings.allows(room, *inviters):
             self._accept(room)
         else:
-            self._room.warn(room, f"is not joined: {', '.join(hosts)} is not in matrixio.allow")
+            self._room.warn(room, f"is not joined: {', '.join(inviters)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
         """Join a room in a task. The server reports an invitation only once, so keep it until the agent has joined."""

@@ -27,4 +27,4 @@ class Settings(ChatSettings):
 module = rs.Module("matrixio", requires=(rawio, interloc), settings=Settings, serve=serve)
 
 chat, command = connect(module)
-"""The slot with the chat of this context, and the signal for the commands ``/start`` and ``/help``."""
+"""The slot with the chat of this context, and the signal for the commands ``!start`` and ``!help``."""

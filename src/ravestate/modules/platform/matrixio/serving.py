@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 async def serve(agent: Agent) -> None:
-    """Serve the agent in the rooms of its Matrix account, until cancelled; then end the conversations in order.
+    """Serve the agent in the rooms of its Matrix account, until cancelled; then end the conversations cleanly.
 
     Raises:
         PlatformError: The account is missing or refused, or a package is missing.

@@ -92,7 +92,7 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
     link: str = ctx.settings.link
     others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
     if others and not ctx[here]:
-        return f"this user comes by {others[0]}, and the robot is not theirs"
+        return f"the user of this context is on {others[0]}, and the robot has a context of its own"
     if link != "bus":
         node = ctx[ros1.node if link == "ros1" else ros2.node]
         if node is None:
@@ -108,6 +108,7 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
 
 
 def _nowhere() -> Place:
+    """Raise an error: a node on the bus must not look for a bridge's program."""
     raise PlatformError("the bus has no program")
 
 
@@ -244,6 +245,7 @@ async def send_gesture(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 async def _careful(ctx: rs.RuleContext, act: Any) -> None:
+    """Await an act of the robot; log a failure."""
     try:
         await act
     except PlatformError as error:

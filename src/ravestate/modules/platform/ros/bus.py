@@ -119,7 +119,7 @@ class Bus:
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
-        """Pass on an answer to the caller."""
+        """Pass on the answer to the call with the number `own` on the bus to its caller."""
         call = self._calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)

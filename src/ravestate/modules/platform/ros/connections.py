@@ -56,7 +56,7 @@ class Connections:
                 asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
-        """Give a channel no more messages. After its last channel, the connections of a topic end."""
+        """Give a channel no more messages. When a topic has no channel left, the topic's connections end."""
         readers = self._readers[channel.name]
         readers.remove(channel)
         if not readers:

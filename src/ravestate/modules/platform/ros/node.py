@@ -104,8 +104,8 @@ class Node:
         """Topic → the last message, if a channel latches it."""
         self._numbers = itertools.count(1)
         self._calls = Calls(title, types)
-        self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)
-        self._told: set[str] = set()
+        self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)  # frames without a link
+        self._told: set[str] = set()  # texts that the log has got
         self._preparing: asyncio.Future[Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -297,7 +297,7 @@ class Node:
             raise PlatformError(f"{self.title}: {reason}") from None
 
     async def close(self) -> None:
-        """End all channels and the link, in order."""
+        """Send the last messages, then end the link and all channels."""
         for task in self._tasks:
             task.cancel()
         with contextlib.suppress(TimeoutError):
@@ -311,6 +311,7 @@ class Node:
     # ------------------------------------------------------------------------------- frames from the link
 
     def _bind_all(self) -> None:
+        """Open all channels on a new link. Then send the latched messages and the frames that waited for the link."""
         frames = self._frames
         assert frames is not None  # the link has just become ready
         self._told.clear()  # log a fault again if it comes back

@@ -19,7 +19,7 @@ CHILDREN = Path(__file__).with_name("children")
 ROS1_MEND = "ROS 1 needs rospy: apt-get install python3-rospy ros-core, or name the Python that has it in ros1.python"
 ROS2_MEND = (
     "ROS 2 needs rclpy: source your ROS 2 installation, or `make ros`, or pip install ros-rclpy ros-rmw-fastrtps-cpp "
-    "ros-std-msgs in an environment and name its Python in ros2.python. For topics alone, pip install cyclonedds does"
+    "ros-std-msgs in an environment and name its Python in ros2.python. For topics alone, pip install cyclonedds is enough"
 )
 
 

@@ -1,4 +1,4 @@
-"""A bridge process: it starts at the first use, starts again if it dies, and ends in order."""
+"""A bridge process: it starts at the first use, starts again if it dies, and ends cleanly."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BACK_OFF = (0.1, 0.3, 1.0, 3.0)
 """The seconds until a new process replaces a dead process, by the number of processes that never became ready."""
 
 ENDING = 3.0
-"""The maximum number of seconds for a process to end in order."""
+"""The maximum number of seconds that a process may take to end cleanly."""
 
 
 class BridgeProcess:

@@ -30,7 +30,7 @@ MOST = 100  # the maximum number of updates in an answer
 PATIENCE = 10  # the seconds for which the bot waits for a late answer to a request for updates
 ANSWER = 20.0  # the seconds to wait for the answer to any other request
 CONFLICTS = 4  # the number of conflicts in a row after which the bot gives up: another program polls the same bot
-SETTLED = 60.0  # the seconds after which the bot no longer gives up: the other program came later, and should give up
+SETTLED = 60.0  # after this many seconds, the bot never gives up: a program that came later should give up instead
 CONFLICT_WAIT = 2.0  # the seconds to wait after a conflict: after a crash, the server still holds the old request
 SECRET = "x-telegram-bot-api-secret-token"
 

@@ -19,7 +19,7 @@ from .requests import FloodError
 
 UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)  # errors before a request is sent
 AHEAD = 40  # the number of ids among which to look for a message whose attempt had no answer
-KNOWN = 1000  # the number of newest message ids that the carrier remembers for each count
+KNOWN = 1000  # the number of newest message ids that the carrier remembers for each numbering
 DRAFT = 1  # the id of the draft in each chat, which has at most one draft at a time
 BIGGEST = 20 * 1024 * 1024  # the bytes of the largest file that the server delivers
 REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
@@ -45,17 +45,17 @@ class TelegramCarrier:
         self.rate = rate
         self.current = asyncio.Event()
         """Set once the bot has the messages that came before its start."""
-        # The known message ids, by the chat that counts its own ids, or "" for the bot's common count.
+        # The known message ids. The key is a chat with a numbering of its own, or "" for the bot's common numbering.
         self._ids: defaultdict[str, deque[int]] = defaultdict(lambda: deque(maxlen=KNOWN))
 
     def note(self, chat: str, id: str) -> None:
         """Note the id of a message that has come or gone."""
         if id.isdecimal():
-            self._ids[_count(chat)].append(int(id))
+            self._ids[_numbering(chat)].append(int(id))
 
     def trace(self, chat: str) -> str:
         """Return the newest message id before an attempt."""
-        return str(max(self._ids[_count(chat)], default=""))
+        return str(max(self._ids[_numbering(chat)], default=""))
 
     def can_react(self, emoji: str) -> bool:
         """Return whether Telegram has a reaction of this emoji."""
@@ -100,7 +100,7 @@ class TelegramCarrier:
         if not message.trace:
             return None
         await self.current.wait()
-        known = self._ids[_count(message.chat)]
+        known = self._ids[_numbering(message.chat)]
         id, left = int(message.trace), AHEAD
         while left > 0:
             id += 1
@@ -141,8 +141,8 @@ class TelegramCarrier:
             await self._bot.send_chat_action(chat, ChatAction.TYPING)
 
 
-def _count(chat: str) -> str:
-    """Return the name of the count to which a chat's message ids belong. Supergroups and channels count separately."""
+def _numbering(chat: str) -> str:
+    """Return the key of the numbering that a chat's message ids belong to. Supergroups and channels have their own."""
     return chat if chat.startswith("-100") else ""
 
 

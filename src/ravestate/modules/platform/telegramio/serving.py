@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 async def serve(agent: Agent) -> None:
-    """Serve the agent to the users of its Telegram bot, until cancelled; then end the conversations in order.
+    """Serve the agent to the users of its Telegram bot, until cancelled; then end the conversations cleanly.
 
     Raises:
         PlatformError: The token is missing or wrong, another program polls the bot, or a package is missing.

@@ -49,7 +49,7 @@ class Activity:
 
 
 def speech_spans(pcm: bytes, above: float = 0.5, gap: float = 0.5) -> list[tuple[float, float]]:
-    """Return begin and end (seconds) of each span of speech in a sound (16 kHz). Pauses below `gap` do not count."""
+    """Return begin and end (seconds) of each span of speech in a sound (16 kHz). A pause below `gap` ends no span."""
     judge, found = Activity(), list[tuple[float, float]]()
     sound = samples(pcm)
     for at in range(0, len(sound) - CHUNK + 1, CHUNK):

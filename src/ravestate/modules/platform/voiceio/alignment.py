@@ -71,7 +71,7 @@ def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -
                     best[to] = cost, (written, said)
     times: dict[int, float] = {}
     at = rows, columns
-    if at not in best:  # the two lengths differ too much, so distribute the words evenly
+    if at not in best:  # the numbers of written and spoken words differ too much, so distribute the words evenly
         for row in range(rows if columns else 0):
             times[row] = spoken[row * columns // rows][0]
         return _filled(text, places, times, length)

@@ -76,7 +76,7 @@ class DeviceLine:
                 self._streams[-1].start()
             except (sound.PortAudioError, ValueError) as error:
                 if again and what == "loudspeaker":
-                    self.stop()  # nobody hears it; the next sound looks for the loudspeaker again
+                    self.stop()  # drop the sound that nobody would hear; the next sound looks for the loudspeaker again
                     continue
                 self._shut()
                 raise PlatformError(

@@ -22,7 +22,7 @@ BEFORE = 12
 ONSET = 2
 """The number of successive chunks of speech that make an onset. A click is shorter."""
 STAY = 0.7
-"""The share of the threshold of speech above which a chunk continues the speech."""
+"""The factor that lowers the threshold of speech while the user speaks, so that soft chunks continue the speech."""
 ARTICULATE = 3
 """The number of articulate chunks since the onset that prove speech, rather than a hum or a cough."""
 LONG = 16
@@ -30,12 +30,12 @@ LONG = 16
 LONGEST = 60.0
 """The longest turn (seconds). A longer turn is taken in parts."""
 CLIPPED = 0.02
-"""The share of samples at the limit above which a second of speech counts as clipped."""
+"""A second of speech counts as clipped if more than this share of its samples have the greatest value."""
 
 COMPARED = round(2.0 * IN_RATE / CHUNK)
 """The number of chunks on each side of a pause, for the comparison of two voices: 2 s."""
 SEARCHED = round(8.0 * IN_RATE / CHUNK)
-"""The number of last chunks of a turn in which the ear looks for a change of the voice: 8 s."""
+"""The number of chunks at the end of a turn in which the ear looks for a change of the voice: 8 s."""
 
 Event = Literal["onset", "articulate", "another", "pause"]
 
@@ -98,13 +98,15 @@ class Ear:
         self._pause = round(pause * IN_RATE / CHUNK)
         self._canceller = canceller
         self._leak = Leak()
-        self._frames = bytearray()
-        self._far = bytearray()
-        self._clean = bytearray()
-        self._before: deque[bytes] = deque(maxlen=BEFORE)
-        self._lately: deque[bool] = deque(maxlen=ONSET)
-        self._in_a_row = self._silent = self._spoken = self._articulate = self._at_limit = 0
-        self._sure = False
+        self._frames = bytearray()  # microphone sound that fills no frame of the canceller yet
+        self._far = bytearray()  # the loudspeaker's sound of the same time
+        self._clean = bytearray()  # sound without echo that fills no chunk yet
+        self._before: deque[bytes] = deque(maxlen=BEFORE)  # the last chunks before a turn
+        self._lately: deque[bool] = deque(maxlen=ONSET)  # whether the last chunks are articulate
+        self._in_a_row = self._silent = 0  # the numbers of successive chunks of speech and of silence
+        self._spoken = self._articulate = 0  # the numbers of all chunks and of articulate chunks since the onset
+        self._at_limit = 0  # the number of clipped samples in this second of speech
+        self._sure = False  # whether the event ``articulate`` has come since the onset
 
     def feed(self, block: bytes, now: float, far: bytes = b"", *, agent_speaks: bool = False) -> Iterator[Event]:
         """Take a block of sound; yield the events in it.
@@ -204,7 +206,7 @@ class Ear:
             self.turn.continued = first, now, self.turn.end
 
     def _pitch(self) -> float | None:
-        """Return the pitch of the newest chunk, together with the end of the chunk before it."""
+        """Return the pitch of the newest chunk. The end of the chunk before it takes part in the measurement."""
         assert self.turn is not None
         lately = samples(b"".join(self.turn.chunks[-2:]))[-NEEDED:]
         return pitch(lately) if len(lately) == NEEDED else None

@@ -54,12 +54,15 @@ class Leak:
 
     def __init__(self) -> None:
         self.share = FIRST
-        self._far: deque[float] = deque(maxlen=MEMORY)
+        """The expected share of the loudspeaker's power in the cleaned sound."""
+        self._far: deque[float] = deque(maxlen=MEMORY)  # the power of the loudspeaker's last frames
         self._near_sound: NDArray[np.float32] = np.zeros(NEAR, np.float32)
         self._far_sound: NDArray[np.float32] = np.zeros(FAR, np.float32)
-        self._strength: float | None = None
-        self._unlike, self._limit = 0.0, DOUBTFUL
-        self._frame = self._alike = 0
+        self._strength: float | None = None  # the measured strength of the echo before cleaning
+        self._unlike = 0.0  # the (weighted) number of frames without an echo since the last echo
+        self._limit = DOUBTFUL  # the number of such frames after which the line counts as free of echo
+        self._frame = 0  # the number of frames with sound on both sides
+        self._alike = 0  # the number of comparisons in a row that found an echo
         self.echoes = False
         """Whether an echo has been found, so that the microphone's sound needs cleaning."""
 

@@ -1,4 +1,4 @@
-"""The certainty and the strength of an echo of the loudspeaker's sound in a microphone's sound."""
+"""Functions that find an echo of the loudspeaker in a microphone's sound, and measure its strength."""
 
 from __future__ import annotations
 

@@ -24,8 +24,8 @@ HEARD = 0.5
 FAINT = 0.1
 """The share of a word's greatest level below which the end of the word counts as a pause after it."""
 DRIFT = 0.06
-"""The echo's reference advances with the microphone's sound. If it is this far (seconds) from the play-out, it
-jumps."""
+"""How far (seconds) the echo's reference may drift from the play-out before it jumps there. The reference is the
+loudspeaker's sound for the echo canceller. It advances with the microphone's sound."""
 LEAD = 4.0
 """The seconds of sound in the loudspeaker's queue above which the mouth synthesises no more text."""
 KEPT = 30.0
@@ -82,7 +82,7 @@ class Speech:
 
 @dataclass(slots=True)
 class _Queued:
-    """A sentence in the loudspeaker's queue; its sound begins at `start` on the line's scale of played seconds."""
+    """A sentence in the loudspeaker's queue. Its sound begins when the line has played `start` seconds."""
 
     start: float
     spoken: Spoken
@@ -113,8 +113,9 @@ class Mouth:
         self._end = 0.0
         self._held_at: float | None = None
         self._released = asyncio.Event()
-        self._track: list[tuple[float, bytes]] = []
-        self._at = self._before = 0.0
+        self._track: list[tuple[float, bytes]] = []  # start (played seconds) and PCM of each sound, for `reference`
+        self._at = 0.0  # the position of the reference (played seconds)
+        self._before = 0.0  # the position of the line at the last call of `reference`
 
     @property
     def held(self) -> bool:
@@ -228,7 +229,7 @@ class Mouth:
     # ------------------------------------------------------------------------------- the echo's reference
 
     def reference(self, size: int) -> bytes:
-        """Return the sound (PCM at `IN_RATE`) that the loudspeaker played in the last `size` bytes of microphone sound."""
+        """Return the sound (PCM at `IN_RATE`) that played while the microphone recorded its last `size` bytes."""
         now, length = self.line.played, size / 2 / IN_RATE
         advances, self._before = now > self._before + 1e-6, now
         if not advances:

@@ -52,7 +52,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
-        return rs.Resign("this user has no line: their platform brings one in rawio.sound")
+        return rs.Resign("the user's platform has no line in rawio.sound now")
     if line is not None and ctx.payload(rawio.sound.changed) is None:
         return rs.Resign("a line came at once, and another run of this rule opens it")
 
@@ -105,7 +105,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     talk = ctx[conversation]
     if talk is None or not settings.captions:
-        return rs.Resign("captions are off")
+        return rs.Resign("captions are off, or the line is closed")
     while True:
         await ctx.sleep(settings.captions)
         if (turn := talk.ear.turn) is None or talk.recogniser.busy:
@@ -367,7 +367,7 @@ async def fill_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say a filler when the answer takes long."""
     settings: Settings = ctx.settings
     if not settings.filler_after or not settings.fillers or (talk := ctx[conversation]) is None:
-        return rs.Resign("fillers are off")
+        return rs.Resign("fillers are off, or the line is closed")
     from .mouth import Speech
 
     await ctx.sleep(settings.filler_after)

@@ -66,7 +66,7 @@ class Synthesiser:
             )
         else:
             raise PlatformError(
-                "voiceio needs Piper for this voice: `make voice` sets it up, or name its Python in piper"
+                "voiceio needs Piper for this voice: `make voice` sets it up, or name its Python in voiceio.piper"
             )
 
     @property

@@ -24,8 +24,8 @@ UNFINISHED = 0.3
 are."""
 
 ANOTHER = 0.03
-"""Candidates for the last word after which a sentence goes on, such as *my*, count together. From this probability on,
-the turn may not be over."""
+"""The turn may not be over if the last word may be one after which a sentence goes on, such as *my*. This is the least
+probability of all such candidates together."""
 UNCLEAR = 0.3
 """If no candidate has this probability, the last word is unclear, for example because it breaks off."""
 
@@ -154,7 +154,7 @@ def is_demand(text: str, language: str = "en") -> bool:
 
 
 def is_echo(text: str, spoken: str) -> bool:
-    """Return whether at least three recognised words are a part of the agent's own words.
+    """Return whether at least three words were recognised, and most of them are the agent's own words in a row.
 
     Example:
         >>> is_echo("lived in a museum", "Once there was a robot. It lived in a museum.")

@@ -41,7 +41,7 @@ HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 class Connection:
     """Carries the protocol over one WebSocket that is not accepted yet.
 
-    The path of the board is `inside`. For `title`, `suggestions`, `note` and `privacy`, see `Settings`.
+    `inside` is the path of the board. For `title`, `suggestions`, `note` and `privacy`, see `Settings`.
     """
 
     def __init__(
@@ -161,7 +161,7 @@ class Connection:
     def _take(self, frame: frames.ClientFrame, session: Session) -> None:
         if isinstance(frame, frames.Say):
             if not session.hear(frame.id, frame.text):
-                raise ProtocolError("over", "the conversation is ending: nothing more is heard", frame.id)
+                raise ProtocolError("over", "the conversation is ending, so it takes no more words", frame.id)
         elif isinstance(frame, frames.Ping):
             self._reply(frames.Pong())
         elif isinstance(frame, frames.Microphone | frames.Played | frames.Hush):
@@ -171,7 +171,7 @@ class Connection:
         elif isinstance(frame, frames.Bye):
             self._sessions.leave(session, Ending.BYE)
         else:
-            raise ProtocolError("malformed", "hello is said once, at the beginning")
+            raise ProtocolError("malformed", "send hello only once, at the beginning")
 
     def _take_sound(self, frame: frames.Microphone | frames.Played | frames.Hush, session: Session) -> None:
         if not session.hears:
@@ -234,7 +234,7 @@ class Connection:
                 await self._send(frames.Caption(caption))
             marks, marked = session.history.marks_since(marked), session.history.marked
             for mark in marks:
-                if mark.n <= last:  # a later message carries its mark
+                if mark.n <= last:  # a message that is not sent yet will carry its own mark
                     await self._send(mark)
             await self._write_sound(session)
             await self._write_sight(session)

@@ -20,7 +20,7 @@ from websockets.exceptions import InvalidState
 TIMEOUT = 10.0  # the seconds that a client has to send its request, and then again to read the answer
 
 LOWEST_RATE = 8 * 1024
-"""The lowest rate at which a client may send a request (bytes per second). It may fall behind by `TIMEOUT` seconds."""
+"""The least rate at which a client may send a request (bytes per second). A client may fall behind by `TIMEOUT` seconds."""
 
 STALL_TIMEOUT = 20.0  # the seconds for which a client of a WebSocket may leave data unread
 
@@ -67,9 +67,9 @@ class LimitedHTTP(H11Protocol):
         super().data_received(data)
 
     def _from_same_address(self) -> int:
-        here = self.client[0] if self.client else None
-        addresses = (cast("Any", other).client for other in self.connections)
-        return sum(1 for address in addresses if address and address[0] == here)
+        own = self.client[0] if self.client else None
+        clients = (cast("Any", connection).client for connection in self.connections)
+        return sum(1 for client in clients if client and client[0] == own)
 
     def _refuse(self, why: str) -> None:
         self.connections.discard(self)  # do not count this connection any more: closing it takes a moment

@@ -96,7 +96,7 @@ class PageLine:
         self._queued = self._sent = self._reported = 0  # samples of the present stream
         self._earlier = 0  # samples of earlier streams that were played
         self._most = 0  # the greatest number of samples that `played` has returned
-        self._moved: float | None = None  # the time of the last report; None if it reports nothing new
+        self._moved: float | None = None  # the time of the last report; None if this report showed no progress
         self._drained = asyncio.Event()
         self._drained.set()
         self._watch: asyncio.TimerHandle | None = None
@@ -153,8 +153,8 @@ class PageLine:
         since = 0.0
         if self._moved is not None:
             since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
-        here = min(self._sent, self._reported + int(since * rawio.OUT_RATE))
-        self._most = max(self._most, self._earlier + here)
+        of_stream = min(self._sent, self._reported + int(since * rawio.OUT_RATE))
+        self._most = max(self._most, self._earlier + of_stream)
         return self._most / rawio.OUT_RATE
 
     async def drained(self) -> None:
@@ -181,7 +181,7 @@ class PageLine:
             self._expect(DEAF, self._find_deaf)
 
     def leave(self, window: Window) -> None:
-        """If a window has the line, take the line away, and drop the queued sound."""
+        """Take the line away from a window, and drop the queued sound. Do nothing if the window does not have the line."""
         if self.window is not window:
             return
         self.window = None
@@ -201,7 +201,7 @@ class PageLine:
         self._arrived.set()
 
     def fetch(self, window: Window) -> memoryview | None:
-        """Return the next sound for a window, at most `CHUNK` bytes; None while it has not played `AHEAD` samples."""
+        """Return the next sound for a window, at most `CHUNK` bytes; None while `AHEAD` sent samples are still unplayed."""
         if self.window is not window or not self._waiting or self._sent - self._reported >= AHEAD:
             return None
         first = self._waiting.popleft()

@@ -116,7 +116,7 @@ class Server:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        """End the conversations in order, and stop the server."""
+        """End the conversations cleanly, and stop the server."""
         assert self._uvicorn is not None and self._task is not None  # set by `__aenter__`
         with self._saved:
             await self._app.state.sessions.close()

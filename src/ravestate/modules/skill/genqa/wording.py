@@ -44,8 +44,8 @@ def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
     The rule is for a context with wildtalk. It outranks `say`, the rule that answers with the document's own sentence.
     If the rule resigns or fails, `say` answers.
     """
+    from ravestate.language.chat import Message
     from ravestate.modules import wildtalk
-    from ravestate.modules.skill.wildtalk.backend import Message
     from ravestate.modules.skill.wildtalk.utterance import Utterance
 
     module = rs.Module("genqa-wording", requires=[genqa, wildtalk, verbaliser])

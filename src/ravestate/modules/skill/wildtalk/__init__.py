@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from ravestate.language.chat import Backend, Message
+
 from . import rules as rules
-from .backend import Backend, Message
 from .names import Settings, clock, history, listening, model, module, notes, trouble
 
 __all__ = ["Backend", "Message", "Settings", "clock", "history", "listening", "model", "module", "notes", "trouble"]

@@ -6,9 +6,8 @@ import re
 from collections import deque
 from collections.abc import Iterable
 
+from ravestate.language.chat import Message
 from ravestate.modules._text import printable
-
-from .backend import Message
 
 PERSONA = (
     "You are {name}, a friendly robot. You make small talk in short, simple sentences. You never state facts about the "

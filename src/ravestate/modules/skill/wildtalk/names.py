@@ -10,9 +10,9 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, SecretStr
 
 import ravestate as rs
+from ravestate.language.chat import Backend, Message
 from ravestate.modules import interloc, nlp, rawio
 
-from .backend import Backend, Message
 from .history import EXAMPLES, PERSONA
 from .listening.state import Overheard, State
 

@@ -9,18 +9,18 @@ from typing import cast
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.language.heap import give_back
+from ravestate.language.chat import Backend, Message, Role
 from ravestate.language.loading import wait_for_prompt
+from ravestate.language.openai import OpenAIBackend
 from ravestate.modules import interloc, nlp, rawio
 
-from .backend import Backend, Message, PendingBackend, Role
 from .choosing import choose
 from .facts import asks_for_fact
 from .history import History
 from .listening import ListeningBackend, State
 from .llama import LlamaBackend, checked_model
 from .names import OLLAMA, Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
-from .openai import OpenAIBackend
+from .pending import PendingBackend
 from .progress import ProgressBar
 from .small_talk import (
     follow_up,
@@ -83,7 +83,6 @@ def learn(ctx: rs.RuleContext) -> None:
     wait_for_prompt()
     try:
         learn_all()
-        give_back()
     except ModelMissing as error:
         warn_once(ctx.log, error)
     except PlatformError as error:

@@ -17,9 +17,8 @@ from typing import Any, ClassVar, cast
 from weakref import WeakValueDictionary
 
 from ravestate.errors import PlatformError
+from ravestate.language.chat import Message, Progress
 from ravestate.language.loading import LOADING
-
-from .backend import Message, Progress
 
 ANSWERS = "Agent:"
 """The beginning of a line in a transcript. A model that has no chat template writes the rest of the line."""

@@ -110,7 +110,7 @@ class Video:
         self.ended = False
         self.skipped = 0
         self._path, self._loop = path, loop
-        self._begun = 0.0  # the time at which this round began
+        self._begun = 0.0  # the time at which the video last began, because it may loop
         self._waiting: tuple[float, Any] | None = None
         self._last = 0.0
         self._fault = ""

@@ -122,7 +122,7 @@ def raw_type(name, fields):
 
     Args:
         name: The type, such as ``std_msgs/msg/String``.
-        fields: Type → its fields, each a name and a description as in rosbags. The type and all that it contains.
+        fields: Type → its fields, each a name and a description as in rosbags; for the type and all types in it.
     """
     from cyclonedds.idl import make_idl_struct
     from cyclonedds.idl._main import IDL

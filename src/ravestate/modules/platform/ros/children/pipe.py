@@ -148,7 +148,7 @@ def serve(open_node):
         open_node: A function that takes the pipe and the configuration. It returns an object with the methods ``bind``,
             ``unbind``, ``message``, ``call``, ``answer``, ``cancel``, ``ask`` and ``close``.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the agent, which closes this process in order
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the agent, which ends this process cleanly
     pipe = Pipe(socket.socket(fileno=int(sys.argv[1])))
     try:
         kind, _, _, body = pipe.receive()

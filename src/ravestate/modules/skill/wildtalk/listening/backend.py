@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import AsyncGenerator, Sequence
 
-from ravestate.modules.skill.wildtalk.backend import Message, Progress
+from ravestate.language.chat import Message, Progress
 
 from .hearing import Heard
 from .listener import Listener

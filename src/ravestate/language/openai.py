@@ -1,4 +1,4 @@
-"""Small talk by any server that supports OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
+"""A language model on any server that supports OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydantic import AliasChoices, BaseModel, Field, SecretStr, ValidationError
 
 from ravestate.errors import PlatformError
 
-from .backend import Message, Progress
+from .chat import Message, Progress
 
 if TYPE_CHECKING:
     import httpx2
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 LIMIT = 1 << 20
 """The maximum size in bytes of a document, or of an event in a stream."""
 
-_EXAMPLE = "write for example wildtalk.base_url=http://localhost:11434/v1"
+_EXAMPLE = "base_url=http://localhost:11434/v1"
 _OPTIONAL = {"max_tokens": "max_completion_tokens", "temperature": "", "seed": "", "stop": ""}
 """Parameter that newer models refuse → its newer name; empty if newer models have no such parameter."""
 
@@ -37,6 +37,7 @@ class OpenAIBackend:
         connect_timeout: float = 5.0,
         read_timeout: float = 60.0,
         extra: Mapping[str, object] | None = None,
+        owner: str = "wildtalk",
     ) -> None:
         """Take the settings, without contacting the server.
 
@@ -47,6 +48,7 @@ class OpenAIBackend:
             connect_timeout: Seconds to wait for a connection.
             read_timeout: Seconds of silence after which a server counts as stalled. Some servers load the model first.
             extra: More fields of the request, for a particular server.
+            owner: The module whose settings the messages name.
 
         Raises:
             PlatformError: `base_url` is not a web address.
@@ -54,12 +56,15 @@ class OpenAIBackend:
         self._base_url = base_url.strip().rstrip("/").removesuffix("/chat/completions")
         scheme, _, rest = self._base_url.partition("://")
         if scheme not in ("http", "https") or not rest:
-            raise PlatformError(f"wildtalk: base_url {base_url!r} is not a web address: {_EXAMPLE}")
+            raise PlatformError(
+                f"{owner}: base_url {base_url!r} is not a web address: write for example {owner}.{_EXAMPLE}"
+            )
         self._place = f"{scheme}://{rest.rpartition('@')[2]}"  # without a password
         self._model = model
         self._key = api_key.get_secret_value().strip() if api_key is not None else ""
         self._connect_timeout, self._read_timeout = connect_timeout, read_timeout
         self._extra = dict(extra or {})
+        self._owner = owner
         self._unsupported: set[str] = set()
         self._client: httpx2.AsyncClient | None = None
 
@@ -122,10 +127,10 @@ class OpenAIBackend:
                         not str(_error(refusal).get("code")).startswith("unsupported")
                         or unsupported not in _OPTIONAL.keys() & body.keys()
                     ):
-                        raise PlatformError(f"wildtalk: {self._refused(answer, refusal)}")
+                        raise PlatformError(f"{self._owner}: {self._refused(answer, refusal)}")
                     self._unsupported.add(unsupported)
         except (httpx2.HTTPError, httpx2.InvalidURL, TimeoutError) as error:
-            raise PlatformError(f"wildtalk: {self._broken(error)}") from error
+            raise PlatformError(f"{self._owner}: {self._broken(error)}") from error
 
     # ------------------------------------------------------------------------------- internals
 
@@ -134,10 +139,12 @@ class OpenAIBackend:
             import anyio
             import httpx2
         except ImportError as error:
-            raise PlatformError("wildtalk with a server needs httpx2: pip install 'ravestate[wildtalk]'") from error
+            raise PlatformError(
+                f"{self._owner} with a server needs httpx2: pip install 'ravestate[wildtalk]'"
+            ) from error
         if not (self._key.isascii() and self._key.isprintable()):
             raise PlatformError(
-                "wildtalk: api_key has characters that no key has: check the environment variable it is read from"
+                f"{self._owner}: api_key has characters that no key has: check the environment variable it is read from"
             )
         # Import here what the first request would otherwise import on the event loop.
         anyio.run(anyio.sleep, 0)
@@ -162,7 +169,7 @@ class OpenAIBackend:
                 yield text
         if event is None and not finished:
             raise PlatformError(
-                f"wildtalk: the answer from {self._place} broke off before its end: look into the server's log"
+                f"{self._owner}: the answer from {self._place} broke off before its end: look into the server's log"
             )
 
     def _parsed(self, payload: bytes) -> tuple[str, bool]:
@@ -172,10 +179,10 @@ class OpenAIBackend:
         except ValidationError:
             shown = self._safe(payload.decode("utf-8", "replace"))
             raise PlatformError(
-                f"wildtalk: {self._place} sent an answer in another form than OpenAI's: {shown}"
+                f"{self._owner}: {self._place} sent an answer in another form than OpenAI's: {shown}"
             ) from None
         if document.error:
-            raise PlatformError(f"wildtalk: the server at {self._place} failed: {self._reason(payload)}")
+            raise PlatformError(f"{self._owner}: the server at {self._place} failed: {self._reason(payload)}")
         first = document.choices[0] if document.choices else _Choice()
         return (first.text.content if first.text else None) or "", first.finish_reason is not None
 
@@ -198,15 +205,15 @@ class OpenAIBackend:
             case httpx2.ConnectError() | httpx2.ConnectTimeout():
                 return (
                     f"no server answers at {self._place} within {self._connect_timeout:g} s ({reason}): is it running? With "
-                    f"Ollama: `ollama serve`; for another address: --set wildtalk.base_url=http://localhost:11434/v1"
+                    f"Ollama: `ollama serve`; for another address: --set {self._owner}.{_EXAMPLE}"
                 )
             case httpx2.TimeoutException() | TimeoutError():
                 return (
                     f"the server at {self._place} stalled: nothing for {self._read_timeout:g} s. Is it overloaded, or "
-                    f"loading model {self._model!r}? Give it longer: wildtalk.read_timeout={2 * self._read_timeout:g}"
+                    f"loading model {self._model!r}? Give it longer: {self._owner}.read_timeout={2 * self._read_timeout:g}"
                 )
             case httpx2.InvalidURL():
-                return f"base_url {self._place!r} is not a web address ({reason}): {_EXAMPLE}"
+                return f"base_url {self._place!r} is not a web address ({reason}): write for example {self._owner}.{_EXAMPLE}"
             case httpx2.SSEError():
                 return (
                     f"{self._place} sends no stream of events ({reason}). An OpenAI-compatible API usually ends in /v1"
@@ -217,10 +224,11 @@ class OpenAIBackend:
     def _refused(self, answer: httpx2.Response, body: bytes) -> str:
         match answer.status_code:
             case 401 | 403:
-                mend = "check wildtalk.api_key" if self._key else "set wildtalk.api_key, from the environment"
+                key = f"{self._owner}.api_key"
+                mend = f"check {key}" if self._key else f"set {key}, from the environment"
             case 404:
                 mend = (
-                    f"does it know the model {self._model!r} (wildtalk.model; with Ollama: `ollama pull "
+                    f"does it know the model {self._model!r} ({self._owner}.model; with Ollama: `ollama pull "
                     f"{self._model or 'llama3.2'}`), and is the address right? It usually ends in /v1"
                 )
             case 429:
@@ -228,9 +236,9 @@ class OpenAIBackend:
             case status if status >= 500:
                 mend = "look into its log, and whether the model fits into its memory"
             case _ if moved := answer.headers.get("location"):
-                mend = f"it has moved: set wildtalk.base_url to where {moved!r} is"
+                mend = f"it has moved: set {self._owner}.base_url to where {moved!r} is"
             case _:
-                mend = f"check wildtalk.model ({self._model!r}) and the other settings"
+                mend = f"check {self._owner}.model ({self._model!r}) and the other settings"
         return f"the server at {self._place} answers {answer.status_code} ({self._reason(body) or 'no reason'}): {mend}"
 
 

@@ -12,8 +12,8 @@ import pytest
 from pydantic import SecretStr
 
 from ravestate.errors import PlatformError
-from ravestate.modules.skill.wildtalk.backend import Message
-from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+from ravestate.language.chat import Message
+from ravestate.language.openai import OpenAIBackend
 
 HELLO = [Message("system", "Be kind."), Message("user", "Hello!")]
 Conversation = Callable[..., list[str]]
@@ -51,8 +51,8 @@ async def hello(talk: Any) -> None:
 FIRST_REQUEST = """
 import asyncio, sys
 from ravestate.errors import PlatformError
-from ravestate.modules.skill.wildtalk.backend import Message
-from ravestate.modules.skill.wildtalk.openai import OpenAIBackend
+from ravestate.language.chat import Message
+from ravestate.language.openai import OpenAIBackend
 
 async def main():
     backend = OpenAIBackend("http://127.0.0.1:9/v1", "x")

@@ -8,8 +8,6 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
-import pytest
-
 
 class Talk:
     """A request at the server, and the way to answer it."""
@@ -90,8 +88,3 @@ class ChatServer:
                 task.cancel()
             await asyncio.gather(*serving, return_exceptions=True)
             await server.wait_closed()
-
-
-@pytest.fixture
-def chat_server() -> type[ChatServer]:
-    return ChatServer

@@ -5,8 +5,9 @@ import asyncio
 import pytest
 
 from ravestate.errors import PlatformError
-from ravestate.modules.skill.wildtalk.backend import Message, PendingBackend
+from ravestate.language.chat import Message
 from ravestate.modules.skill.wildtalk.listening import ListeningBackend
+from ravestate.modules.skill.wildtalk.pending import PendingBackend
 
 
 def test_calls_wait_for_the_chosen_backend() -> None:
