@@ -19,6 +19,7 @@ from .cache import cached
 from .encoder import Encoder
 from .entity import Entity
 from .examples import bundled
+from .factor import factor
 from .heap import note_load
 from .loading import LOADING
 from .normal import plain
@@ -43,8 +44,6 @@ RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
 """`confusions` lists an example if the other examples put it into a wrong class by at least this margin."""
-SAMPLED = 1500
-"""The maximum number of examples that are scored without themselves, to learn the curve from margin to confidence."""
 NONE = ""
 REMEMBERED = 256
 """The number of sentences whose classes a matcher keeps, because all skills ask for the same sentences."""
@@ -140,8 +139,6 @@ class Matcher:
     def confusions(self) -> list[tuple[str, str, str]]:
         """Return the examples that the other examples put into a wrong class: example, its class, the wrong class.
 
-        If there are more than `SAMPLED` examples, check only that many, evenly spread.
-
         Raises:
             PlatformError: See `load`.
         """
@@ -217,7 +214,7 @@ class _Learnt:
         self._meanings = encoder.encode_lasting(self._examples)
         self._spelling = Spelling(self._examples)
         self._shapes = np.array([shape(text) for text in self._examples], dtype=np.int8)
-        key = ["matcher", encoder.identity, pairs, shapes, SHARPNESS, SPELLING, SHAPE, COMMON, RIDGE, BUCKETS, SAMPLED]
+        key = ["matcher, factored", encoder.identity, pairs, shapes, SHARPNESS, SPELLING, SHAPE, COMMON, RIDGE, BUCKETS]
         learnt = cached(key, self._learn)
         self._weights = np.ascontiguousarray(learnt["weights"].T)  # of shape (classes, examples)
         confused = learnt["confused"].tolist()
@@ -236,22 +233,17 @@ class _Learnt:
         vectors = self._meanings.unpacked()
         kernel = self._kernel(vectors @ vectors.T, self._spelling.among(), self._shapes)
         kernel[np.diag_indices_from(kernel)] += np.float32(RIDGE)
-        size, classes = len(self._of), len(self._classes)
-        targets = np.eye(classes, dtype=np.float32)[self._of]
-        # Score some examples with a classifier that has learnt all the others. The closed form needs the diagonal of the
-        # inverse kernel; for thousands of examples, a few columns of the inverse take a third of the time of all.
-        some = np.unique(np.linspace(0, size - 1, min(size, SAMPLED)).round().astype(np.intp))
-        units = np.zeros((size, len(some)), dtype=np.float32)
-        units[some, np.arange(len(some))] = 1
-        solved = np.linalg.solve(kernel, np.concatenate([targets, units], axis=1))
-        weights, diagonal = solved[:, :classes], solved[some, classes + np.arange(len(some))]
-        left_out = targets[some] - weights[some] / diagonal[:, None]
+        targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
+        factored = factor(kernel)
+        weights = factored.T @ (factored @ targets)
+        # The scores of each example by a classifier that has learnt all the others. They need the diagonal of the inverse.
+        left_out = targets - weights / np.square(factored).sum(axis=0)[:, None]
         margins, others = margins_of(left_out), left_out.argmax(axis=1)
-        wrong = np.flatnonzero((others != self._of[some]) & (margins > DOUBT))
+        wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))
         return {
-            "weights": np.ascontiguousarray(weights),
-            "curve": np.array(calibrated(margins.astype(np.float64), others == self._of[some])),
-            "confused": np.stack([some[wrong], others[wrong]], axis=1),
+            "weights": weights,
+            "curve": np.array(calibrated(margins.astype(np.float64), others == self._of)),
+            "confused": np.stack([wrong, others[wrong]], axis=1),
         }
 
     def ranked(self, sentences: Sequence[str], most: int | None) -> list[list[Match]]:

@@ -1,0 +1,17 @@
+"""The factor of a kernel gives its inverse, also where the kernel is divided many times."""
+
+import numpy as np
+import pytest
+
+from ravestate.language.factor import BLOCK, factor
+
+
+@pytest.mark.parametrize("size", [1, BLOCK, BLOCK + 1, 5 * BLOCK + 3])
+def test_the_product_of_the_factor_with_itself_is_the_inverse(size: int) -> None:
+    points = np.random.default_rng(0).standard_normal((size, 8)).astype(np.float32)
+    # Like the kernel of a matcher: all similarities are positive, and many examples are almost alike.
+    kernel = np.exp(-np.square(points[:, None] - points).sum(axis=2) / 50) + np.float32(0.1)
+    kernel[np.diag_indices(size)] += np.float32(0.1)
+    found = factor(kernel)
+    assert np.allclose(np.triu(found, 1), 0)
+    assert np.abs(found.T @ found @ kernel - np.eye(size)).max() < 2e-3
