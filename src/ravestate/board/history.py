@@ -315,8 +315,10 @@ class Rivals:
         return min(1.0, (time - fired[runs - 1]) / rule.cooldown) if rule.cooldown and runs else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that answered the group in a slot of `rule` by `time`, and its activation's
-        number."""
+        """Return the first other rule that answered the group, by `time`, with a write to a slot of `rule`.
+
+        Return the number of that rule's activation as well.
+        """
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

@@ -28,7 +28,7 @@ LOADING = 120.0
 """The longest time (seconds) that a model may take to load."""
 
 LINGER = 60.0
-"""The seconds for which an unused process stays loaded, if its last user wants the process to stay."""
+"""The seconds for which an unused process stays loaded, if its last user asked for that."""
 
 SERVER = Path(__file__).with_name("serve.py")
 

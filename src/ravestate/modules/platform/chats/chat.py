@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from .room import Room
 
 GRACE = 0.05
-"""The seconds for which an answer waits for the agent to finish, so that one transaction can also mark the message."""
+
 
 TURN = 1.0
 """The seconds for which a message waits for the answer to the previous message. Then it may interrupt that answer."""
