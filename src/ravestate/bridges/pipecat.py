@@ -77,7 +77,8 @@ class RavestateProcessor(FrameProcessor):
                 return
             case LLMContextUserTurnFrame() if self._guessed:  # the turn has ended, as the framework guessed
                 self._guessed = False
-
+                conversation.hear(frame.text)
+            case EagerEndOfTurnCancelFrame():
                 self._guessed = False
             case UserStartedSpeakingFrame():
                 conversation.notice_speech()

@@ -66,7 +66,7 @@ def _loaded(agent: Agent | Policy | Module | ModuleType | str | Path | Sequence[
 
 
 class Utterance:
-    """An utterance of the agent. It is an async iterator, which yields each piece as soon as the agent has written it."""
+    """An utterance of the agent, as an async iterator. It yields each piece as soon as the agent has written the piece."""
 
     def __init__(self) -> None:
         self.text = ""

@@ -141,7 +141,7 @@ class Clause:
 
     @cached_property
     def passive(self) -> Word | None:
-        """The auxiliary of a passive, or of a participle that serves as an adjective, such as *are* in *are they married*."""
+        """The auxiliary of a passive or of a participle used as an adjective, such as *are* in *are they married*."""
         first, head = self.chain[0], self.head_clause
         auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
         if first.low in FEELINGS:

@@ -55,7 +55,8 @@ class Pipeline:
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
-        # spaCy keeps its computing backend in a context variable. In a new context, it would search for one for milliseconds.
+        # spaCy keeps its computing backend in a context variable. In a new context, spaCy would look for a backend, which
+        # takes milliseconds.
         self._context = Context()
         self._nlp: Any = None  # spacy.Language: spaCy is not imported before it is needed
 

@@ -32,7 +32,7 @@ RIDGE = 0.05
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""The head start of a taught activity over the starter set's activities, as a cost: twice the log likelihood per feature."""
+"""The head start of a taught activity over the starter set's activities, as a cost (see `_compared`)."""
 LIMIT = 4.0
 """The greatest distance from a taught activity: the mean squared deviation of the features."""
 REMEMBERED = 64

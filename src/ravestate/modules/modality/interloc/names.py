@@ -13,7 +13,7 @@ module = rs.Module("interloc")
 
 
 class Recognised(str):
-    """The name of a user whom a platform has recognised, with `node`, the user's node in memory. It is an item of `users`."""
+    """An item of `users`: the name of a user whom a platform has recognised. `node` is the user's node in memory."""
 
     node: Node
 

@@ -65,7 +65,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
             now = ctx.now
             seen = await view.look(want, tracks.request(now), now - began, frame) if frame else None
             if view.blind:
-        
+                ctx.emit(sighted, Sighting(Look(now, (0, 0), dropped=view.skipped), ()))  # so that people leave
             if seen is not None:
                 look = Look(now, tuple(seen["picture"]), seen["dark"], view.skipped)
                 ctx.emit(sighted, Sighting(look, tuple(tracks.update(seen["faces"], now))))
@@ -86,7 +86,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context. If so, this machine's camera does not show the user."""
+    """Return whether a platform with many users runs this context. If so, the machine's camera does not show the user."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 

@@ -13,7 +13,7 @@ from .store import Item, Store
 from .voice import voiced
 
 IN_FLIGHT = 8
-"""The maximum number of attempts at a time. So a crash leaves at most this many messages that may have arrived or not."""
+"""The maximum number of attempts at a time. A crash leaves at most this many messages that may have arrived or not."""
 
 SHOWN = 2.0
 """The maximum number of seconds for which a message waits for a request that shows its draft."""
