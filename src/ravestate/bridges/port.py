@@ -170,7 +170,8 @@ class Conversation:
     def interrupt(self) -> None:
         """End the utterance and the answer in progress: the user has interrupted them.
 
-        If the rule that answers has an ``until``, the rule is cancelled. If it has none, its further words are not said.
+        A rule that answers is cancelled if it has an ``until``. In any case, its words after the interruption are not
+        said.
         """
         if self._growing is not None:
             self._growing.end()

@@ -19,7 +19,7 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Say a phrase that expresses the intent. Do not choose the phrase that was used for this intent the last time."""
+    """Say a phrase for the intent. Among several phrases, avoid the one that was used the last time for this intent."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:
