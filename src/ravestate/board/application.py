@@ -1,4 +1,4 @@
-"""The board's routes, mounted beside the chat page and protected by the same checks."""
+"""The routes of the board (the debugger). They lie beside those of the chat page, and the same checks protect them."""
 
 from __future__ import annotations
 
@@ -55,7 +55,8 @@ def routes(
 
     The board is for the agent's developers: anybody with access to the page can inspect and change every conversation.
     Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
-    starts when a board opens. If there is a `recording`, the board shows it to pages that name no conversation.
+    starts when a board opens. If there is a `recording`, a board opens with it, unless the board's address chooses a
+    conversation.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)

@@ -153,9 +153,8 @@ class History:
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run of a rule in `hears` that answered the group; None if none did.
 
-        A run answers the group if it fires and consumes one of the group's spikes. `hears` maps the name of a rule to one
-        collection for each of its clauses: the signals that the clause consumes. A detached constraint consumes no
-        spike (L19).
+        A run answers the group if it fires and consumes one of the group's spikes. For each rule, `hears` has one
+        collection for each clause: the signals that the clause consumes. A detached constraint consumes no spike (L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
@@ -296,7 +295,7 @@ class Rivals:
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Return a phrase: which rule waited for `rule`, since when, and when the patience of `rule` ran out.
+        """Return a phrase that says which rule waited for `rule`, since when, and when the patience of `rule` ran out.
 
         If rules waited for `rule` several times, the phrase is about the last wait that was over by `end` (seconds).
         """
@@ -316,8 +315,10 @@ class Rivals:
         return min(1.0, (time - fired[runs - 1]) / rule.cooldown) if rule.cooldown and runs else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that answered the group in a slot of `rule` by `time`, and its activation's
-        number."""
+        """Return the first other rule that answered the group, by `time`, with a write to a slot of `rule`.
+
+        Return the number of that rule's activation as well.
+        """
         if rule.name not in self._first:
             slots = set(rule.writes)
             self._first[rule.name] = self._history.answered(

@@ -55,14 +55,14 @@ KEPT = 4  # the maximum number of uploaded recordings that a server keeps; it dr
 
 
 class Recordings:
-    """The uploaded recordings. Each has a name that nobody can guess. The `first` recording needs no name."""
+    """The recordings of a server: the uploaded ones, with names that nobody can guess, and `first`, without a name."""
 
     def __init__(self, first: Recording | None = None) -> None:
         self._first = first
         self._uploaded: OrderedDict[str, Recording] = OrderedDict()
 
     def get(self, name: str | None) -> Recording | None:
-        """Return the recording with this name, or None if it is missing. For None, return the first recording."""
+        """Return the recording with this name; without a name, the first recording. Return None if there is none."""
         return self._first if name is None else self._uploaded.get(name)
 
     def put(self, recording: Recording) -> str:

@@ -124,7 +124,7 @@ class RavestateAgent(Agent):
             return
         match event:
             case ConversationItemAddedEvent(item=llm.ChatMessage(role="assistant") as message):
-                self._conversation.heard(message.text_content or "")  # after an interruption, only the words before it
+                self._conversation.heard(message.text_content or "")  # only the words before an interruption
             case UserStateChangedEvent(new_state="speaking"):
                 self._conversation.notice_speech()
             case UserInputTranscribedEvent(is_final=False):

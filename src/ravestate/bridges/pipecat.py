@@ -75,7 +75,7 @@ class RavestateProcessor(FrameProcessor):
                 if not frame.speculation:
                     conversation.hear(self._new_words(frame.context))
                 return
-            case LLMContextUserTurnFrame() if self._guessed:  # the guess was right
+            case LLMContextUserTurnFrame() if self._guessed:  # the turn has ended, as the framework guessed
                 self._guessed = False
                 conversation.hear(frame.text)
             case EagerEndOfTurnCancelFrame():
@@ -120,7 +120,7 @@ class RavestateProcessor(FrameProcessor):
             self._utterances.task_done()
 
     async def _watch(self) -> None:
-        """End the pipeline when the agent wants to leave. If the agent has failed, the pipeline decides."""
+        """End the pipeline when the agent wants to leave. If the agent has failed, report the error to the pipeline."""
         try:
             await self._conversation.until_agent_leaves()
             await self.push_frame(EndWorkerFrame(), FrameDirection.UPSTREAM)

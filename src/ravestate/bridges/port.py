@@ -66,7 +66,7 @@ def _loaded(agent: Agent | Policy | Module | ModuleType | str | Path | Sequence[
 
 
 class Utterance:
-    """An utterance of the agent: an async iterator, which yields each piece when the agent has written the piece."""
+    """An utterance of the agent, as an async iterator. It yields each piece as soon as the agent has written the piece."""
 
     def __init__(self) -> None:
         self.text = ""
@@ -76,7 +76,7 @@ class Utterance:
         """Whether the iterator ends after the pieces so far."""
 
     def grow(self, piece: str) -> None:
-        """Add a piece. After `end`, the iterator does not yield it."""
+        """Add a piece. The iterator does not yield pieces that come after `end`."""
         self.text += piece
         if piece and not self.ended:
             self._pieces.put_nowait(piece)
@@ -145,7 +145,7 @@ class Conversation:
             self._fall_silent()
 
     async def until_agent_leaves(self) -> None:
-        """Wait until the agent ends the conversation (``ctx.stop()``). If `end` ends it instead, wait for ever.
+        """Wait until the agent ends the conversation (``ctx.stop()``). If a call of `end` ends it, wait for ever.
 
         Raises:
             RavestateError: The agent has failed.
@@ -170,7 +170,8 @@ class Conversation:
     def interrupt(self) -> None:
         """End the utterance and the answer in progress: the user has interrupted them.
 
-        A rule that answers is cancelled if it has an ``until``. Its words after the interruption are not said.
+        A rule that answers is cancelled if it has an ``until``. In any case, its words after the interruption are not
+        said.
         """
         if self._growing is not None:
             self._growing.end()

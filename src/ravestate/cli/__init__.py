@@ -95,8 +95,8 @@ def script() -> int:
     """Run the command ``ravestate``, and end the process.
 
     The interpreter stops the remaining threads in the middle of their work. In a C++ library, such as a model that is
-    still loading, this aborts the process. So the process ends here, after everything else has been cleaned up. Hence it
-    need not wait long for threads: `LAST_GRACE` is for functions that save something.
+    still loading, this aborts the process. So the process ends here, after everything else has been cleaned up. It waits
+    for threads no longer than `LAST_GRACE`, which is enough for functions that save something.
     """
     import atexit
     import os

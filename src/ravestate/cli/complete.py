@@ -20,7 +20,7 @@ COMPLETE = (
 """The names of the modules of the complete text agent, without a platform."""
 
 ON_PAGE = ("voiceio", "visionio", "charades")
-"""The names of the modules that the complete agent also has on a web page, if speech and eyes are set up."""
+"""The names of the modules that the complete agent also has on a web page, if speech and the camera are set up."""
 
 PACKAGES = {
     "nlp": ("spacy",),
@@ -58,7 +58,7 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
 def names(options: argparse.Namespace, *, page: bool = False) -> list[str]:
     """Return the names of the complete agent's modules, except those that the options leave out.
 
-    On a `page`, the agent also hears, speaks and sees if speech and eyes are set up on this machine.
+    On a `page`, the agent also hears, speaks and sees if speech and the camera are set up on this machine.
     """
     known = (*COMPLETE, *ON_PAGE) if page else COMPLETE
     for name in options.without:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SHOWN = 5
 """The maximum number of intents in the table."""
 PATIENCE = 60.0
-"""Seconds to wait for a language model: nobody waits for an answer of the agent here."""
+"""Seconds to wait for a language model. The wait may be long, because no user of an agent waits for an answer here."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "talk",
         help="hold a conversation between a recording and an agent, faster than real time",
         description="Hold a conversation between a recording, which is the user's microphone, and an agent. Time is "
-        "virtual: computing takes none of it. The transcript of both sides goes to standard output.",
+        "virtual, so computing takes no time. The transcript of both sides goes to standard output.",
     )
     talking.add_argument("recording", type=Path, metavar="IN.wav", help="the sound of the user's microphone")
     talking.add_argument(

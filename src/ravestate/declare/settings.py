@@ -25,5 +25,5 @@ Number = float | SettingRef
 
 
 def setting(name: str) -> SettingRef:
-    """Return a reference to a setting of the rule's own module: ``idle.bored.min_age(rs.setting("bored_after"))``."""
+    """Return a reference to a setting of the rule's own module, as in ``idle.bored.min_age(rs.setting("bored_after"))``."""
     return SettingRef(name)

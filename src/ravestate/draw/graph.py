@@ -93,7 +93,7 @@ JUNCTIONS: dict[NodeKind, str] = {"and": "∧", "or": "∨"}
 
 
 def describe(node: Node) -> str:
-    """Return a node's kind, name and note: ``rule hello:greet (×1.2)``, or ``conjunction``."""
+    """Return a node's kind, name and note, for example ``rule hello:greet (×1.2)`` or ``conjunction``."""
     words = NODES[node.kind]
     if node.name:
         words += f" {node.name}"

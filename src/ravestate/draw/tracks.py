@@ -24,7 +24,7 @@ _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of a
 
 @dataclass(slots=True)
 class Tracks:
-    """The number of tracks, and the track of each segment; None for a straight (rarely, a slanted) line."""
+    """The number of tracks, and the track of each segment; None for a segment that is straight or, rarely, slanted."""
 
     count: int
     of: list[int | None]

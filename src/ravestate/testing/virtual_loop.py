@@ -92,7 +92,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return timer
 
     def give_up(self, rule: str) -> None:
-        """Stop the loop, because rules run without end at one instant. `run_to` then raises an error with the rule."""
+        """Stop the loop, because rules repeat endlessly at one instant. `run_to` then raises an error with the rule."""
         self._endless = rule
         self.stop()
 

@@ -28,7 +28,7 @@ LOADING = 120.0
 """The longest time (seconds) that a model may take to load."""
 
 LINGER = 60.0
-"""The seconds for which an unused process stays loaded, if its last user wants the process to stay."""
+"""The seconds for which an unused process stays loaded, if its last user asked for that."""
 
 SERVER = Path(__file__).with_name("serve.py")
 
@@ -109,8 +109,8 @@ class ModelProcess:
         Args:
             header, data: The request.
             seconds: The longest time from sending the request to its answer. Loading does not count.
-            unwanted: An event that another thread sets if nobody needs the answer any more. If the request still waits
-                for earlier requests, it is then dropped.
+            unwanted: An event that another thread sets if nobody needs the answer any more. If this request then still
+                waits for earlier requests, it is dropped.
 
         Raises:
             PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within

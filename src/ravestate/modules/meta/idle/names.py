@@ -30,15 +30,15 @@ class Settings(rs.Settings):
 module = rs.Module("idle", requires=[rawio], settings=Settings)
 
 bored = module.signal("bored")
-"""There was no activity for ``bored_after`` seconds. The signal is raised once for each silence, also after startup.
+"""There was no activity for ``bored_after`` seconds. Each silence raises the signal once, also a silence after startup.
 
-A rule that speaks ends the silence. If the user does not respond to ``remarks`` remarks, asks for quiet or says
-goodbye, the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised for
-twelve utterances.
+A rule that speaks ends the silence. If the user ignores ``remarks`` remarks in a row, asks for quiet or says goodbye,
+the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised for twelve
+utterances.
 """
 
 hushed = module.signal("hushed")
-"""The user wants quiet: "shut up", "stop", "please be quiet"."""
+"""The user wants quiet, and says for example "stop" or "please be quiet"."""
 
 impatient = module.signal("impatient")
 """A ready rule has waited for ``impatient_after`` seconds."""

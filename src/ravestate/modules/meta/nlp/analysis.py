@@ -76,7 +76,7 @@ class Analysis:
     sentences: tuple[str, ...] = ()
     """The sentences of the normal form."""
     statements: tuple[Statement, ...] = ()
-    """The triples with flags for their circumstances: denied, past, hearsay..."""
+    """The triples, with flags that say whether they are denied, past, hearsay and so on."""
     acts: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Class in ``acts.yaml``, such as ``greeting`` → the best match of a sentence for this act."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
@@ -86,7 +86,7 @@ class Analysis:
     """Class in ``asks.yaml`` (a kind of question or request) → the best match of a sentence for this kind."""
 
     move: Move | None = None
-    """The move that a good listener makes next: rejoice, console, advise..."""
+    """The move that a good listener makes next, such as to rejoice, console or advise."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""

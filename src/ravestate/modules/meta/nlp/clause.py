@@ -92,7 +92,7 @@ class Clause:
 
     @cached_property
     def predicate(self) -> str:
-        """The lemma of the verb. In a chain: the lemma of the first verb, then the other verbs as written."""
+        """The lemma of the verb. For a chain of verbs, the lemma of the first verb and the other verbs as written."""
         first, *others = self._inherited + self.chain
         if self._is_state:
             return self.lemma
@@ -141,7 +141,7 @@ class Clause:
 
     @cached_property
     def passive(self) -> Word | None:
-        """The auxiliary of a passive, or of a participle that serves as an adjective: *are they married*."""
+        """The auxiliary of a passive or of a participle used as an adjective, such as *are* in *are they married*."""
         first, head = self.chain[0], self.head_clause
         auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
         if first.low in FEELINGS:
@@ -291,7 +291,7 @@ class Clause:
         return head.subjects
 
     def _unsaid(self) -> list[Part]:
-        """Return the implied subject: *you* of a request, *I* of a note such as *am tired*."""
+        """Return the subject that goes without saying: *you* in a request, *I* in a note such as *am tired*."""
         auxiliaries = [word.low for word in self.tree.children(self.verb, "aux", "auxpass")]
         if any("?" in word.low for word in self.own):  # as in "like it?"
             return [YOU]

@@ -22,7 +22,7 @@ from . import names
 from .analysis import Analysis
 
 Intents = Mapping[str, tuple[str, ...]]
-"""The examples of intents, by the qualified names of their signals."""
+"""Qualified name of an intent's signal → the intent's examples."""
 
 OF_ACT = 12
 """The number of examples of each act that compete with the designer's intents."""
@@ -118,8 +118,8 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
     """Return a matcher of intents and acts. If an act and an intent share an example, the intent keeps it.
 
-    A designer writes few examples, and an act has hundreds. If all of them competed, acts would always win. So only
-    `OF_ACT` examples of each act compete.
+    A designer writes few examples, but an act (such as *greeting*) has hundreds. If all examples competed, acts would
+    always win. So only `OF_ACT` examples of each act compete.
     """
     taken = {plain(text) for _, texts in intents for text in texts}
     acts = bundled("acts")

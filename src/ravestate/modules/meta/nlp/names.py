@@ -57,7 +57,7 @@ text: rs.Slot[str] = module.slot("text", "", always=True)
 ``rawio.input``."""
 
 normal: rs.Slot[str] = module.slot("normal", "", always=True)
-"""The last utterance as written English: its normal form."""
+"""The normal form of the last utterance: the same words as correct written English."""
 
 lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
 """The lock lets rules analyse one utterance at a time, because a later utterance may correct an earlier one."""
@@ -69,10 +69,10 @@ lemmas: rs.Slot[tuple[str, ...]] = module.slot("lemmas", (), always=True)
 """The dictionary forms of the tokens."""
 
 pos: rs.Slot[tuple[str, ...]] = module.slot("pos", (), always=True)
-"""The universal parts of speech of the tokens: ``NOUN``, ``VERB``..."""
+"""The universal parts of speech of the tokens, such as ``NOUN`` and ``VERB``."""
 
 tags: rs.Slot[tuple[str, ...]] = module.slot("tags", (), always=True)
-"""The fine tags of the tokens: ``NNS``, ``VBD``..."""
+"""The detailed parts of speech of the tokens, such as ``NNS`` (plural noun) and ``VBD`` (verb in the past tense)."""
 
 entities: rs.Slot[tuple[Entity, ...]] = module.slot("entities", (), always=True)
 """The named entities: persons, places, dates, numbers."""
@@ -91,7 +91,7 @@ yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
 """The meaning of the utterance as an answer: yes or no. This slot is written last."""
 
 intents: rs.Collection[Mapping[str, tuple[str, ...]]] = module.collection("intents")
-"""The examples of the intents that `nlp.intent` declares. For each module: signal's name → sentences."""
+"""The examples of the intents that `nlp.intent` declares: a module's name → name of a signal → sentences."""
 
 is_question = module.signal("is_question", payload=QuestionWord)
 """The user asks something; the payload is the kind of question."""

@@ -24,19 +24,19 @@ class Phrase:
     """
 
     text: str
-    """The phrase as in the triple: ``my sister Rosa``."""
+    """The phrase as the triple has it, for example ``my sister Rosa``."""
     head: str = ""
-    """The lemma of the common noun or adjective, in lower case: ``sister``; empty for names and pronouns."""
+    """The lemma of the common noun or adjective, for example ``sister``, in lower case. Empty for names and pronouns."""
     names: tuple[str, ...] = ()
-    """The names in the phrase, as written: ``("Rosa",)``; *two brothers, Max and Tim* has two."""
+    """The names in the phrase, as written. For example, *two brothers, Max and Tim* has ``("Max", "Tim")``."""
     owner: Phrase | None = None
-    """The possessor: *my*; *my mother* for *my mother's name*; *Peru* for *the capital of Peru*."""
+    """The possessor, for example *my mother* in *my mother's name*, or *Peru* in *the capital of Peru*."""
     amount: float | None = None
-    """The number before the head: 2 for *two sisters*, 0 for *no sisters*, 34 for *34 years old*."""
+    """The number before the head, for example 2 in *two sisters*, 0 in *no sisters*, and 34 in *34 years old*."""
     person: Person = "other"
     """``I`` and ``you`` for pronouns; ``other`` for everything else, also for *my sister*."""
     preposition: str = ""
-    """The preposition before the phrase, in lower case: ``in``."""
+    """The preposition before the phrase in lower case, for example ``in``."""
 
     @property
     def name(self) -> str:

@@ -37,7 +37,7 @@ _log = logging.getLogger("ravestate.nlp")
 
 
 class _Order:
-    """A text in the queue, with its result."""
+    """A text that waits to be parsed, and later its result."""
 
     __slots__ = ("error", "found", "normal")
 
@@ -55,7 +55,8 @@ class Pipeline:
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
-        # spaCy keeps its way to compute in a context variable. In a new context it would look for one, for milliseconds.
+        # spaCy keeps its computing backend in a context variable. In a new context, spaCy would look for a backend, which
+        # takes milliseconds.
         self._context = Context()
         self._nlp: Any = None  # spacy.Language: spaCy is not imported before it is needed
 
@@ -103,7 +104,7 @@ class Pipeline:
         with self._lock:
             while order.found is None and order.error is None:
                 waiting = [self._orders.popleft() for _ in range(min(TOGETHER, len(self._orders)))]
-                # If the queue is empty, an earlier thread took this text but was interrupted before it read the text.
+                # If the queue is empty, an earlier thread took this text, but was interrupted before it parsed the text.
                 self._context.run(self._read, waiting or [order])
         if order.error is not None:
             raise order.error

@@ -73,7 +73,7 @@ _FOUGHT_FOR = word_set(
 def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
     """Return the kind of question of the word at `index`; None for other words.
 
-    Example: of "how many friends do you have" the word at 0 asks for an amount.
+    Example: in "how many friends do you have", the word at index 0 asks for an amount.
     """
     word = words[index]
     kind = QUESTION_WORDS.get(word.low)

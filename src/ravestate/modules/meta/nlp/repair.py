@@ -167,8 +167,8 @@ def _make_way(tree: Tree, words: list[Word], work: Word) -> None:
 def _split_relatives(tree: Tree) -> list[Word]:
     """Return the words with relative clauses apart from the main clause.
 
-    The parser takes some relative clauses for objects (*the hat that you gave me*). After others, it takes their object for
-    the subject of the main verb (*the dog that bit me belongs to Ann*).
+    The parser takes some relative clauses for objects (*the hat that you gave me*). In other sentences, it takes the
+    relative clause's object for the main verb's subject (*me*, in *the dog that bit me belongs to Ann*).
     """
     words = list(tree.words)
     for verb in tree.words:

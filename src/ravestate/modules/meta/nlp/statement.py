@@ -51,12 +51,12 @@ class Statement:
     object: Phrase
     """The object; an empty phrase if there is no object."""
     verb: str
-    """The lemma of the last verb of the predicate: ``live``, also for *used to live* and *want to live*."""
+    """The lemma of the predicate's last verb. For example, it is ``live`` in *used to live* and *want to live*."""
     phrases: tuple[Phrase, ...] = ()
     """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*. A name that
     the clause gives to somebody is also here, without a preposition: *Rex*, in *we named our dog Rex*."""
     when: str = ""
-    """The time that the clause names: ``two years ago``, ``since 2010``, ``next month``."""
+    """The time that the clause names, for example ``two years ago``, ``since 2010`` or ``next month``."""
     negated: bool = False
     """The statement is denied: *I don't live here*, *I have no sister*, *I no longer smoke*."""
     past: bool = False

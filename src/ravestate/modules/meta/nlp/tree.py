@@ -1,4 +1,4 @@
-"""A text as a dependency tree of plain records, independent of spaCy."""
+"""The dependency tree of a text. It consists of plain records, and is independent of spaCy."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ SUBJECTS = ("nsubj", "nsubjpass", "csubj", "csubjpass")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A token in the tree, with the labels of spaCy's English pipelines."""
+    """A token in the tree. Its labels are those of spaCy's English pipelines."""
 
     index: int
     """The word's number within the tree."""
     text: str
     """The word as written."""
     lemma: str
-    """Its dictionary form."""
+    """The word's dictionary form."""
     pos: str
-    """The universal part of speech: ``NOUN``."""
+    """The word's universal part of speech, for example ``NOUN``."""
     tag: str
-    """The fine tag: ``NNS``."""
+    """The word's detailed part of speech, for example ``NNS`` for a plural noun."""
     dep: str
-    """Its relation to its head: ``nsubj``; ``ROOT`` for the head of a sentence."""
+    """The word's relation to its head, for example ``nsubj``. It is ``ROOT`` for a root, which has no head above it."""
     head: int
-    """The index of its head; a root is its own head."""
+    """The index of the word's head, on which the word depends. A root is its own head."""
     start: int
-    """The position of its first character in the text."""
+    """The position of the word's first character in the text."""
 
     @property
     def low(self) -> str:
@@ -58,12 +58,12 @@ class Tree:
         return children
 
     def children(self, word: Word, *deps: str) -> list[Word]:
-        """Return the words that depend directly on `word`, in order; with `deps`, only those with such a relation."""
+        """Return the words that depend directly on `word`, in text order. If `deps` are given, return only these relations."""
         children = self._children[word.index]
         return [child for child in children if child.dep in deps] if deps else children
 
     def children_of(self, heads: Iterable[Word], *deps: str) -> list[Word]:
-        """Return the words that depend directly on one of `heads`; with `deps`, only those with such a relation."""
+        """Return the words that depend directly on one of `heads`. If `deps` are given, return only these relations."""
         return [child for head in heads for child in self.children(head, *deps)]
 
     def head(self, word: Word) -> Word:
@@ -77,22 +77,22 @@ class Tree:
             yield word
 
     def subtree(self, word: Word) -> list[Word]:
-        """Return `word` and all of its dependents, in order."""
+        """Return `word` and all words below it in the tree, in text order."""
         found = [word]
         for known in found:  # the list grows in the loop
             found += self._children[known.index]
         return sorted(found, key=lambda word: word.index)
 
     def before(self, word: Word) -> Word | None:
-        """Return the word before `word`."""
+        """Return the word before `word` in the text; None if `word` is the first."""
         return self.words[word.index - 1] if word.index else None
 
     def after(self, word: Word) -> Word | None:
-        """Return the word after `word`."""
+        """Return the word after `word` in the text; None if `word` is the last."""
         return self.words[word.index + 1] if word.index + 1 < len(self.words) else None
 
     def phrase(self, words: Iterable[Word]) -> str:
-        """Return `words` as written, in order. A gap becomes one space."""
+        """Return `words` as written, in text order. One space stands for the text between two of them."""
         written = ""
         last: Word | None = None
         for word in sorted(words, key=lambda word: word.index):

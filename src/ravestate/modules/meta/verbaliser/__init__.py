@@ -1,4 +1,4 @@
-"""Phrases for intents: the agent says an intent with a phrase from a file of phrases."""
+"""Phrases for meanings: the agent expresses an intent, such as ``greet``, with a phrase from a file."""
 
 from __future__ import annotations
 

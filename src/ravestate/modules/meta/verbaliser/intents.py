@@ -1,4 +1,4 @@
-"""An intent: a meaning that the agent wants to express, without its words."""
+"""An intent is a meaning that the agent wants to express. It does not contain the words."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class Intent:
-    """A meaning that the agent wants to express; a `PhraseBook` has the words.
+    """A meaning that the agent wants to express. A `PhraseBook` has phrases for it.
 
     Example:
         >>> Intent("greet", {"name": "Ada"})
@@ -19,7 +19,7 @@ class Intent:
     name: str
     """The intent's name in the files of phrases."""
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
-    """Name of a parameter in phrases → its value; None counts as missing."""
+    """Name of a placeholder in the phrases → its value. A value of None counts as missing."""
     package: str | None = None
     """The package whose ``phrases.yaml`` has phrases for the intent, usually the rule's ``__package__``."""
     file: Path | None = None

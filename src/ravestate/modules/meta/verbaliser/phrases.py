@@ -145,7 +145,8 @@ class PhraseBook:
         """Choose a phrase at random, and fill in its parameters.
 
         A phrase is eligible if all its parameters have values; None counts as missing. A phrase that begins with a
-        parameter gets a capital letter. The template `last` is not chosen again if another template is eligible.
+        parameter gets a capital letter. The template `last`, which was used the last time, is not chosen again if
+        another template is eligible.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.

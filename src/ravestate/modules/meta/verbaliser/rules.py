@@ -1,4 +1,4 @@
-"""The rule that says an intent."""
+"""The rule that puts an intent into words. Here, an intent is a meaning that the agent wants to express."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ HERE = "ravestate.modules.meta.verbaliser"
 
 @module.rule(when=intent.changed, writes=(rawio.output, last))
 async def verbalise(ctx: rs.RuleContext) -> None:
-    """Say a phrase for the intent. If there are several phrases, do not repeat the last phrase."""
+    """Say a phrase for the intent. Among several phrases, avoid the one that was used the last time for this intent."""
     meant = as_intent(ctx.payload(intent.changed))
     settings = ctx.settings
     if meant.phrases is not None:
@@ -34,7 +34,7 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return an `Intent` for the slot's value, which is an `Intent` or an intent's name."""
+    """Return the slot's value as an `Intent`. The value is an `Intent` or the name of one."""
     if isinstance(value, Intent):
         return value
     if isinstance(value, str) and value:
@@ -49,7 +49,8 @@ def as_intent(value: object) -> Intent:
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
     """Return a book of the built-in phrases, the phrases of `package`, and the user's files `own` (absolute paths).
 
-    Later phrases replace earlier ones. A process reads each file once; all its contexts share the book.
+    If several of these have phrases for the same intent, the later ones in this list replace the earlier ones. All
+    contexts of the process share the book, so the process reads each file only once.
     """
     packages = (HERE,) if package in (None, HERE) else (HERE, package)
     try:

@@ -32,7 +32,7 @@ RIDGE = 0.05
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""The head start of a taught activity over the others, in units of the cost: twice the log likelihood per feature."""
+"""The head start of a taught activity over the starter set's activities, as a cost (see `_compared`)."""
 LIMIT = 4.0
 """The greatest distance from a taught activity: the mean squared deviation of the features."""
 REMEMBERED = 64
@@ -48,7 +48,7 @@ class Recognition:
     """The result of a recognition."""
 
     name: str = ""
-    """The activity; empty for an unknown movement, or if too little of the body is visible."""
+    """The name of the activity. It is empty if the movement is unknown, or if too little of the body is visible."""
     confidence: float = 0.0
     """0 to 1."""
     others: tuple[tuple[str, float], ...] = ()

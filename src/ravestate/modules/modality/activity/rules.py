@@ -24,7 +24,7 @@ from .names import (
 from .recogniser import Recogniser
 
 GONE = 2.0
-"""The seconds without a pose after which nobody counts as in view."""
+"""After this many seconds without a pose, the agent assumes that nobody is in view."""
 BEGINNING = 0.6
 """The share of a window that is enough for the first recognition."""
 

@@ -26,7 +26,7 @@ SHARED: Mapping[str, Feeling] = {
 """The agent's feeling for each class of ``feelings.yaml``, the strongest first. Other classes raise no feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
-"""Classes that rule out joy in the same text: "I got my results, and I failed"."""
+"""Classes of sentences that rule out joy in the same text, as in "I got my results, and I failed"."""
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),

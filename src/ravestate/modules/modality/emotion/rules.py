@@ -41,7 +41,7 @@ def learn(ctx: rs.RuleContext) -> None:
 def be_moved(ctx: rs.RuleContext) -> None:
     """Raise the feeling that fits the user's words, or a spontaneous feeling.
 
-    For some utterances after words of sorrow, raise no cheerful and no spontaneous feeling. The encoder takes a few
+    After words of sorrow, some utterances raise neither a cheerful nor a spontaneous feeling. The encoder takes a few
     milliseconds, so this rule runs in a thread. Without the encoder, only sentences that equal an example raise a
     feeling.
     """

@@ -13,7 +13,7 @@ module = rs.Module("interloc")
 
 
 class Recognised(str):
-    """The name of a user whom a platform has recognised, together with their node in memory (`node`): an item of `users`."""
+    """An item of `users`: the name of a user whom a platform has recognised. `node` is the user's node in memory."""
 
     node: Node
 
@@ -28,8 +28,8 @@ agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""The present users: a key that the platform chooses for the user → the user's name, or None while it is unknown. A
-`Recognised` is the name of a user whom a platform has recognised."""
+"""The users who are present. The platform chooses a key for each user: key → the user's name, or None while the name is
+unknown. The name of a user whom a platform has recognised is a `Recognised`."""
 
 recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
 """A platform has recognised a user who was already present. The payload is their entry in `users`."""
@@ -38,4 +38,4 @@ facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """Topic, such as ``home`` or ``sister`` → known facts about the user. A module that learns facts writes them."""
 
 forgotten: rs.Signal[None] = module.signal("forgotten", input=True)
-"""The user has been forgotten, so modules delete their data about the user. `persqa` raises it."""
+"""Memory has forgotten the user, so all modules delete their data about this user. `persqa` raises the signal."""

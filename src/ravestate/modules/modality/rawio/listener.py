@@ -1,4 +1,4 @@
-"""The listener: the user's side of a conversation, and the rules that carry the agent's words to it."""
+"""The listener, which is the user's side of a conversation, and the rules that carry the agent's words to it."""
 
 from __future__ import annotations
 

@@ -34,10 +34,10 @@ picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The last picture that the user showed: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
 
 sound: rs.Slot[Line | None] = module.slot("sound", None, input=True)
-"""The line to the user's microphone and loudspeaker, from a platform that carries sound; None without one."""
+"""The line to the user's microphone and loudspeaker, from a platform that carries sound; None on other platforms."""
 
 camera: rs.Slot[Camera | None] = module.slot("camera", None, input=True)
-"""The user's camera, from a platform that has one; None while it is off."""
+"""The user's camera, from a platform that has cameras; None while the camera is off."""
 
 hearing: rs.Signal[str] = module.signal("hearing", payload=str, input=True, keep="latest")
 """The words so far of an utterance that the user is still speaking, for platforms that show captions."""

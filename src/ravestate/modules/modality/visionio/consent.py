@@ -1,4 +1,4 @@
-"""The rules of consent: they ask whether the agent may remember a face, keep it after a yes, and forget it."""
+"""The rules of consent. They ask people whether the agent may remember their faces, store faces, and forget them."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _open(ctx: rs.RuleContext) -> Question | None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=asking, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Drop the question when the agent says something else, because a yes may then answer those later words."""
+    """Drop the question when the agent says something else, because a later *yes* may answer that instead."""
     question = ctx[asking]
     if question is None or not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
         return rs.Resign("there is no question, or the output has no words")

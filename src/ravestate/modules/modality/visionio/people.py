@@ -34,7 +34,7 @@ class Nearest:
 
 
 def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest | None:
-    """Return the person with the nearest stored vector; None beyond `threshold`, or if two people are about as near."""
+    """Return the person with the nearest vector. Return None beyond `threshold`, or if two people are about as near."""
     faces = stored(graph)
     ranked = sorted((dist(vector, known), number) for number, (_, known) in enumerate(faces))
     if not ranked or ranked[0][0] > threshold:

@@ -30,7 +30,7 @@ from .tracks import Sighting, Tracks
 from .visitors import Decision, Visitor, at, decide, gone, of_track, whose
 
 KEY = "visionio-"
-"""The beginning of the keys in ``interloc.users`` for people whom no platform has added."""
+"""People whom no platform has added have keys in ``interloc.users`` that begin with this text."""
 
 
 # ------------------------------------------------------------------------------------ looking
@@ -86,7 +86,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context. Then the machine's camera does not show the user."""
+    """Return whether a platform with many users runs this context. If so, the machine's camera does not show the user."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 

@@ -1,4 +1,4 @@
-"""Tracks: each follows a face from picture to picture, and knows whether the face needs a new vector. Pure."""
+"""Tracks. A track follows a face from picture to picture, and knows whether the face needs a new vector. Pure."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Sighting:
 
     Attributes:
         look: The picture's time and size.
-        faces: The tracks of the faces. Each comes with True if its vector is from this picture.
+        faces: The track of each face, and whether the track's vector is from this picture.
     """
 
     look: Look
@@ -107,7 +107,7 @@ class Tracks:
         return {"known": known, "thorough": int(now - self._thorough >= THOROUGH)}
 
     def update(self, faces: Iterable[Mapping[str, Any]], now: float) -> list[tuple[Track, bool]]:
-        """Take the faces of a picture. Return their tracks, each with True if it has a new vector."""
+        """Take the faces of a picture. Return the track of each face, and whether the track has a new vector."""
         if now - self._thorough >= THOROUGH:
             self._thorough = now
         found: list[tuple[Track, bool]] = []

@@ -1,4 +1,4 @@
-"""The people before the camera: functions that derive, from faces, people who come and leave. Pure."""
+"""The people in front of the camera. The functions derive from faces who comes and who leaves. Pure."""
 
 from __future__ import annotations
 
@@ -90,7 +90,8 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said the question. The agent's next words end it: a yes may then answer those.
+        said: Whether the agent has said the question. The agent's next words make the question obsolete, because a later
+            *yes* may answer these words.
     """
 
     key: str
@@ -142,7 +143,7 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
 def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
     """Return the visitor to whom a new track belongs; None if somebody new has come.
 
-    A person whose face was lost for a moment gets a new track. Memory or the vectors show that it is the same visitor.
+    A person whose face was lost for a moment gets a new track. Memory or the vectors show that they are the same visitor.
     """
     for visitor in visitors.values():
         if decision.person is not None and visitor.node.id == decision.person.id:
@@ -158,7 +159,7 @@ def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
 
 
 def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
-    """Return the visitor to whom the agent talks: the visitor with the largest face. If it sees nobody, return None."""
+    """Return the visitor to whom the agent talks: the one with the largest face. If the agent sees nobody, return None."""
     sizes = {face.track: face.box[2] * face.box[3] for face in history}
     return max(
         visitors.values(),

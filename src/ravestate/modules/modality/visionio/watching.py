@@ -17,7 +17,7 @@ from .places import default_camera
 AGAIN = 5.0
 """The seconds between two attempts to open a lost camera."""
 MADE_UP = 0.5
-"""The greatest delay (seconds) for which later looks may make up."""
+"""If looks are late by at most this many seconds, later looks catch up. They skip a greater delay."""
 FAULTS = 5
 """The number of failures in a row after which the agent gives up a video, a folder or a worker."""
 

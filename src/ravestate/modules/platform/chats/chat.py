@@ -33,10 +33,11 @@ if TYPE_CHECKING:
     from .room import Room
 
 GRACE = 0.05
-"""The seconds for which an answer waits for the agent to finish, so that one transaction can also mark the message."""
+"""The seconds for which an answer waits for the agent to finish. Then one transaction stores the answer and marks the
+message as done."""
 
 TURN = 1.0
-"""The seconds for which a message waits for the answer to the previous message. Then it may interrupt that answer."""
+"""A message waits at most this many seconds for the previous message's answer, and then may interrupt this answer."""
 
 FAREWELL = 10.0
 """The maximum number of seconds for a greeting, and for a farewell."""
@@ -137,7 +138,7 @@ class Chat:
         return self._following is None
 
     def _end(self, finished: bool) -> None:
-        """End a conversation. With `finished`, all its messages are done; else the agent will hear them again."""
+        """End a conversation. If `finished`, mark all its messages as done. If not, the agent hears them again later."""
         if self._following is not None:
             self._following.cancel()
             self._following = None

@@ -137,7 +137,7 @@ class Carrier(Protocol):
 
         Args:
             chat: The id of the chat.
-            words: The answer so far, or an empty text. A carrier may show the words if they leave no message behind.
+            words: The answer so far, or an empty text. A carrier may show the words if this leaves no message behind.
 
         Raises:
             DeliveryError: The chat does not show it.

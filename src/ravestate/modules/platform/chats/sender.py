@@ -13,13 +13,13 @@ from .store import Item, Store
 from .voice import voiced
 
 IN_FLIGHT = 8
-"""The maximum number of attempts at a time. After a crash, only so many messages may have arrived unnoticed."""
+"""The maximum number of attempts at a time. A crash leaves at most this many messages that may have arrived or not."""
 
 SHOWN = 2.0
 """The maximum number of seconds for which a message waits for a request that shows its draft."""
 
 BURST = 0.15
-"""The seconds of unused turns that may come at once after a pause. A rate of 25 allows 28 turns in the first second."""
+"""After a pause, the turns of this many seconds may come at once. At 25 turns per second, the first second has 28."""
 
 
 class Pace:

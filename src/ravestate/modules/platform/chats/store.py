@@ -20,7 +20,7 @@ SEEN = 3 * 24 * 3600.0
 """The seconds for which the store remembers the keys of messages. Messengers repeat a message for a day at most."""
 
 TRIES = 3
-"""The number of crashes during one message after which the store gives the message up: it may cause the crashes."""
+"""The number of crashes during one message after which the store gives up the message, which may cause the crashes."""
 
 PARTING = ("stop", "forget")
 """The commands after which the agent treats the person as new in the chat."""

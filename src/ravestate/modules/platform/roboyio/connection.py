@@ -18,7 +18,7 @@ LATCHED = quality("latched", depth=1, latch=True)
 STEP = 0.1
 """Seconds between two commands to an axis that takes a speed. Without further commands, a base stops by itself."""
 NEAR = 0.03
-"""The distance to the target (radians) below which such an axis has arrived."""
+"""The distance to the target (radians) below which an axis that takes a speed has arrived."""
 NOD = ((0.0, -0.18), (0.25, 0.1), (0.25, -0.12), (0.25, 0.0))
 """A nod: the seconds to wait, and then the pitch to add."""
 SHAKE = ((0.0, 0.25), (0.3, -0.25), (0.3, 0.2), (0.3, 0.0))

@@ -48,7 +48,7 @@ here = module.flag("here", input=True)
 """Whether the robot belongs to this context although a platform with many users runs beside it."""
 
 body: rs.Slot[Connection | None] = module.slot("body", None)
-"""The connection to the robot; None without one, as in virtual time."""
+"""The connection to the robot; None without a connection, as in virtual time."""
 
 words: rs.Slot[str] = module.slot("words", "", type=str, always=True, input=True)
 """The last words that the robot understood."""

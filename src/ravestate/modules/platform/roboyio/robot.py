@@ -29,7 +29,7 @@ class Port(pydantic.BaseModel):
     type: str
     """The type of the messages."""
     field: str
-    """The name of the field. Dots separate nested fields: ``angular.z``."""
+    """The name of the field. Dots separate nested fields, as in ``angular.z``."""
 
     @pydantic.model_validator(mode="after")
     def _one_name(self) -> Port:

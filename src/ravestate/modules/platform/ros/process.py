@@ -16,7 +16,7 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""The seconds until a new process replaces a dead process, by the number of processes that never became ready."""
+"""The seconds until a new process replaces a dead one. The wait grows while processes die before they are ready."""
 
 ENDING = 3.0
 """The maximum number of seconds that a process may take to end cleanly."""

@@ -97,7 +97,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation that has no window: first of silent visitors, then of visitors who left earliest."""
+        """End a conversation that has no window. Prefer visitors who never spoke, then the visitor who left earliest."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

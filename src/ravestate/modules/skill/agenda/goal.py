@@ -123,7 +123,7 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # the rule rests by resigning: a `cooldown` only lets other rules go first
+        weight=priority,  # the rule resigns during its rest, because a `cooldown` would only let other rules go first
         until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say()` runs
         detached=True,  # a new causal group begins, so that rules can react to the user's answer
         name=name,

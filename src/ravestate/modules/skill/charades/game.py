@@ -316,7 +316,7 @@ MOVES: Mapping[tuple[Step, str], Transition] = {
     ("riddle", "gives_up"): _reveal,
     ("riddle", "swap"): _repeat,
 }
-"""Step and move → the transition. If a move is in neither table, the agent repeats its question."""
+"""Step and move → the transition. If a move is neither here nor in `ANYWHERE`, the agent repeats its question."""
 
 ANYWHERE: Mapping[str, Transition] = {
     "rules": _explain,

@@ -63,7 +63,7 @@ def is_empty(users: Mapping[str, object]) -> bool:
 
 
 def is_waiting(now: Game) -> bool:
-    """Return whether a countdown is called off: the agent waits for a move, or no game is on."""
+    """Return whether a countdown must stop, because the agent waits for a move, or because no game is on."""
     return now.is_waiting or not now.is_on
 
 
@@ -109,7 +109,7 @@ async def note_offer(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=nlp.analysis.changed, reads=(game, activity.known), writes=strayed, emits=(moved, invited, abandoned))
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Emit the move that the user's words make. Words on something else are left to the other skills."""
+    """Emit the user's move, if the words make one. Leave words about something else to the other skills."""
     seen = ctx.payload(nlp.analysis.changed)
     now = ctx[game]
     if seen is None:

@@ -1,4 +1,4 @@
-"""The user's words as moves in the game: the acts and the yes or no of `nlp`, and examples of this game's own."""
+"""Understand the user's words as moves in the game, by acts and answers that `nlp` finds, and by the game's examples."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _act(seen: Analysis, moves: Set[str]) -> Move | None:
     matches = [match for match in examples().match_all(seen.sentences) if match is not None]
     best = max((one for one in matches if one.name in moves), key=lambda match: match.score, default=None)
     if "stop" in moves and (best is None or best.name == "stop"):
-        # The acts of `nlp` are for any talk: to them, "ready" resembles a farewell, and "I'd rather not say" a stop.
+        # The acts of `nlp` are for any conversation: "ready" would count as a farewell, and "I'd rather not say" as a stop.
         other = any(match.name not in moves for match in matches)
         if "farewell" in seen.acts and not other:
             return Move("farewell")

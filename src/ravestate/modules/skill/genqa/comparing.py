@@ -131,7 +131,7 @@ def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
 
 
 def _told(turn: Turn, base: str) -> Answer | None:
-    """Return the answer of a turn if it has the measure that the comparison needs."""
+    """Return a turn's answer if this answer has the measure that the comparison needs."""
     words = set(turn.question.lower().split())
     fits = base in ("big", "large", "many", "much") or (base == "old" and "when" in words)
     if not fits and words.isdisjoint(variants_of(base)):

@@ -112,7 +112,7 @@ class Pipe:
 class Outlet:
     """Carries the messages of one subscription to the agent.
 
-    With `latest`, the next message leaves once the agent has acknowledged the last message. Newer messages replace
+    With `latest`, the next message leaves once the agent has acknowledged the previous message. Newer messages replace
     waiting messages.
     """
 
