@@ -215,7 +215,7 @@ async def test_the_page_of_a_visitor_cannot_be_removed() -> None:
 
 
 @in_virtual_time
-async def test_say_takes_the_texts_of_visitors() -> None:
+async def test_say_treats_texts_like_those_that_visitors_type() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         async with Look(app) as look:

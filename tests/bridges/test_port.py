@@ -119,7 +119,7 @@ def test_pieces_that_end_in_a_space_are_not_said_twice() -> None:
     converse(talk, module)
 
 
-def test_a_text_unlike_the_pieces_is_an_utterance_of_its_own() -> None:
+def test_a_text_that_differs_from_its_pieces_is_a_separate_utterance() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)

@@ -357,7 +357,7 @@ def test_a_set_value_is_text_for_a_text_field_and_yaml_for_others(
     assert run(capsys, "./hello.py", "--set", text).startswith(said)
 
 
-def test_the_last_of_two_values_wins(folder: Path, capsys: Capture) -> None:
+def test_the_last_of_two_values_for_a_setting_wins(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith("Hello 3.0")
 
@@ -406,7 +406,7 @@ def test_one_message_has_all_unknown_settings(capsys: Capture) -> None:
         ("idle.bored_after=-1", "-1"),
     ],
 )
-def test_unfit_values_are_faults(text: str, fault: str, capsys: Capture) -> None:
+def test_a_value_that_does_not_fit_its_setting_is_refused(text: str, fault: str, capsys: Capture) -> None:
     assert fault in refused(capsys, "idle", "rawio", "--set", text, code=2)
 
 

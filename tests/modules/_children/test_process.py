@@ -130,7 +130,7 @@ def test_users_of_the_same_model_share_its_process(backend: Backend) -> None:
     assert one.pid is None
 
 
-def test_a_process_that_lingers_serves_the_next_user(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unused_process_is_kept_for_the_next_user(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 3600.0)
     one = model_process.take(backend, {"b": 1})
     one.start()
@@ -142,7 +142,7 @@ def test_a_process_that_lingers_serves_the_next_user(backend: Backend, monkeypat
     assert two.pid is None
 
 
-def test_a_process_that_nobody_takes_again_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_nobody_uses_again_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 0.0)
     one = model_process.take(backend, {"c": 1})
     one.start()
@@ -158,7 +158,7 @@ def test_a_process_that_nobody_takes_again_ends(backend: Backend, monkeypatch: p
     model_process.drop(other)
 
 
-def test_processes_that_linger_end_with_the_interpreter(backend: Backend) -> None:
+def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
     """Also while their timer runs."""
     program = (
         "import sys, pathlib\n"

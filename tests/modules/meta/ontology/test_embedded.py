@@ -74,7 +74,7 @@ def test_acknowledged_writes_survive_a_kill(
 
 
 @pytest.mark.parametrize("times", [1, 4, 9])
-def test_a_kill_during_forget_brings_nobody_back_and_takes_nobody_else(
+def test_after_a_kill_during_forget_forgotten_people_stay_forgotten_and_nobody_else_is_lost(
     tmp_path: Path, open_here: Open, times: int
 ) -> None:
     path = tmp_path / "memory.lbug"
@@ -277,7 +277,7 @@ def test_a_folder_is_no_file_and_a_file_is_no_folder(file: Path, tmp_path: Path)
     assert "cannot make its folder" in failure(path=file / "memory.lbug")
 
 
-def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_here: Open) -> None:
+def test_a_stored_property_cannot_be_read_as_another_kind(file: Path, tmp_path: Path, open_here: Open) -> None:
     types = tmp_path / "mine.yaml"
     types.write_text("Person: {has: {shoe_size: text}}")
     memory = open_here(path=file, types=(types,))

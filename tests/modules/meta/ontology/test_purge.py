@@ -130,7 +130,7 @@ def test_a_kill_before_the_purge_puts_it_off_to_the_next_start(
     assert [city["name"] for city in memory.find("City").result()] == ["London"]
 
 
-def test_a_purge_that_failed_is_done_after_the_next_start(
+def test_a_failed_purge_is_repeated_after_the_next_start(
     killed: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def fail(*_: object) -> None:

@@ -40,7 +40,7 @@ def test_a_reply_raises_the_error() -> None:
         asyncio.run(wait(reply))
 
 
-def test_waiting_may_end_before_the_operation() -> None:
+def test_a_timeout_ends_the_wait_but_not_the_operation() -> None:
     future: Future[int] = Future()
     reply = Reply(future, "Memory.save")
     with pytest.raises(TimeoutError):

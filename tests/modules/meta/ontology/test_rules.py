@@ -113,7 +113,7 @@ def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
     assert asyncio.run(talk()) == 100
 
 
-def test_without_the_package_everything_else_goes_on(
+def test_without_the_package_the_agent_runs_without_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setitem(sys.modules, "ladybug", None)

@@ -87,7 +87,7 @@ def test_a_turn_that_is_cancelled_stops_the_base() -> None:
     asyncio.run(main())
 
 
-def test_words_for_a_robot_that_is_not_connected_yet_wait() -> None:
+def test_words_wait_until_the_robot_is_connected() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))) as node:
             heard: list[str] = []

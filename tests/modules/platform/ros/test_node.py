@@ -39,7 +39,7 @@ async def numbers(node: Node, got: list[int], count: int) -> list[int]:
     return [n for n in got if n >= 0]
 
 
-def test_messages_go_there_and_come_back(either: Network) -> None:
+def test_messages_reach_another_node_and_its_answers_come_back(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             assert await echo(node) == [f"echo text {n}" for n in range(3)]

@@ -47,7 +47,7 @@ def test_a_short_sound_is_not_written_twice() -> None:
     small.close()
 
 
-def test_a_last_word_that_cannot_end_a_sentence_remains_plausible() -> None:
+def test_a_last_word_that_cannot_end_a_sentence_keeps_some_probability() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     found = small.recognise(bytes(9600) + spoken("It is a photograph of my") + bytes(6400))
     assert found.last.get("my", 0.0) > 0.05

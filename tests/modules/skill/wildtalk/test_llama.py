@@ -73,7 +73,7 @@ def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
 
 @pytest.mark.model
 @pytest.mark.parametrize("how", ["close", "cancel"])
-def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
+def test_closing_or_cancelling_an_answer_stops_the_model(loaded: LlamaProcess, how: str) -> None:
     """The server stops the model when the connection closes; then the next answer comes from an idle model."""
 
     async def main() -> None:

@@ -81,7 +81,7 @@ def test_a_longer_statement_about_something_else_ends_the_thread(own: Callable[.
     assert talk.say("my cousin plays chess with a dentist every friday") != "The goat certainly has its reasons."
 
 
-def test_another_unit_of_time_is_another_answer(own: Callable[..., Talk]) -> None:
+def test_a_different_unit_of_time_gets_a_different_answer(own: Callable[..., Talk]) -> None:
     talk = own()
     assert [talk.say("the goat had a birthday"), talk.say("about ten days")][-1] == "Then it climbs on everything."
 
@@ -115,7 +115,7 @@ def test_follow_ups_are_not_found_in_the_open_bank(bank: Bank, own: Callable[...
         ("my fence has fallen over", "goat"),
     ],
 )
-def test_any_other_statement_leaves_sorrows_questions_requests_and_other_entries(
+def test_the_follow_up_for_any_other_statement_does_not_answer_sorrows_questions_or_requests(
     text: str, unsaid: str, own: Callable[..., Talk]
 ) -> None:
     talk = own()
@@ -166,7 +166,7 @@ def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Talk]) -> None
     assert [first.say(text) for text in texts] == [second.say(text) for text in texts]
 
 
-def test_the_built_in_follow_ups_lead_on(begin: Callable[[int], Any]) -> None:
+def test_a_built_in_follow_up_continues_the_thread(begin: Callable[[int], Any]) -> None:
     talk = begin(1)
     talk.say("my train was cancelled again")
     before = material().bank.follow_ups(talk.state.moment)
