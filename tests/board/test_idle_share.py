@@ -1,4 +1,4 @@
-"""The idle share of a process. A process that other programs keep waiting has none."""
+"""The idle share of a process. Time in which other programs keep the process waiting is not idle."""
 
 from pathlib import Path
 

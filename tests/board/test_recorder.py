@@ -202,7 +202,7 @@ async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
         await passing(0.01)
         assert isinstance(recorder.records[-1], Gap)
         before = max(record.spike for record in recorder.records if isinstance(record, Born))
-        recorder.shorten(20)  # another conversation needs the room
+        recorder.shorten(20)  # another conversation needs the memory
         await passing(1)
         context.emit(tick)
         await passing(1)

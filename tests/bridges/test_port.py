@@ -39,7 +39,7 @@ stubborn = rs.Module("stubborn", requires=[rawio])
 
 @stubborn.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
 async def insist(ctx: rs.RuleContext) -> None:
-    """Do as `talk` does, but without an `until`."""
+    """Say the same as `talk`, but without an `until`."""
     ctx.emit(rawio.piece, "one ")
     await ctx.sleep(1)
     ctx.emit(rawio.piece, "two")

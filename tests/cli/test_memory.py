@@ -1,5 +1,7 @@
-"""``ravestate memory``: lists, shows, exports, loads and forgets. The exit code is 2 for a mistake, and 1 if something
-cannot be used."""
+"""``ravestate memory`` lists, shows, exports, loads and forgets.
+
+The exit code is 2 for a mistake of the user, and 1 if a file or the memory cannot be used.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``ravestate vision``: whose faces are in pictures, and learning a face."""
+"""``ravestate vision`` tells whose faces are in pictures, and learns and forgets faces."""
 
 import re
 from collections.abc import Iterator

@@ -39,7 +39,7 @@ class Cue:
 
 @keeper.rule(when=rawio.input.changed, emits=question)
 async def classify(ctx: rs.RuleContext) -> None:
-    """Tell questions from other things."""
+    """Classify an input as a question or something else."""
     await Cue.classified.wait()
     if "?" in ctx.payload(rawio.input.changed):
         ctx.emit(question, ctx.payload(rawio.input.changed))
@@ -56,7 +56,7 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @keeper.rule(when=rawio.input.changed, writes=rawio.output)
 async def small_talk(ctx: rs.RuleContext) -> None:
-    """Say something in any case."""
+    """Answer when no other rule does."""
     ctx[rawio.output] = "I see."
 
 
@@ -424,7 +424,7 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         assert shown is not None
         assert shown["height"] > 20  # pixels, for two lines
         joined = page.locator(".node:not(.faint)")
-        await expect(joined).to_have_count(3)  # its signal, and its slot
+        await expect(joined).to_have_count(3)  # the rule's signal and slot
 
 
 @on_stage

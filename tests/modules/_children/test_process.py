@@ -159,7 +159,7 @@ def test_a_process_that_nobody_uses_again_ends(backend: Backend, monkeypatch: py
 
 
 def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
-    """Also while their timer runs."""
+    """This holds even while the timer that would end them is running."""
     program = (
         "import sys, pathlib\n"
         "from ravestate.modules._children import process\n"
@@ -178,7 +178,7 @@ def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
 
 
 def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: ModelProcess) -> None:
-    """The answers to superseded requests would keep the last one waiting."""
+    """Otherwise, the newest request would wait for answers that nobody needs."""
     unwanted, refused = threading.Event(), list[str]()
 
     def ask() -> None:

@@ -1,4 +1,4 @@
-"""The laws of yes and no; `tests/quality` measures which texts mean which."""
+"""Rules for the meaning of answers; `tests/quality` measures how often the meaning is right."""
 
 import pytest
 from hypothesis import given

@@ -1,4 +1,4 @@
-"""A package can be blocked for one thread."""
+"""Importing a package can be forbidden for one thread."""
 
 import importlib
 import sys

@@ -1,4 +1,4 @@
-"""The repair of trees, and what clauses and questions gain by it."""
+"""The repair of parse trees makes clauses and questions readable."""
 
 import pytest
 

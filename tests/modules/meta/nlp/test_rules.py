@@ -74,7 +74,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
 
     def read(text: str, *rest: Any) -> Any:
         if text == "I live in Ulm.":
-            later.wait(0.2)  # for the other one, which would be through by now if it did not wait for its turn
+            later.wait(0.2)  # by now the second analysis would have ended if it did not wait for the first
         else:
             later.set()
         return analyse(text, *rest)

@@ -1,4 +1,4 @@
-"""The laws of triples; `tests/quality` measures which texts have which."""
+"""Rules for triples; `tests/quality` measures how often they are right."""
 
 import pytest
 

@@ -4,7 +4,7 @@ from ravestate.modules.meta.nlp.tree import Tree, Word
 
 
 def words(notation: str) -> list[Word]:
-    """Words without a pipeline: ``my/PRON/poss>1 name/NOUN/nsubj>2``."""
+    """Return words made without a pipeline, for example from ``my/PRON/poss>1 name/NOUN/nsubj>2``."""
     found: list[Word] = []
     start = 0
     for index, item in enumerate(notation.split()):

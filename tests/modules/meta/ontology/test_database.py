@@ -1,4 +1,4 @@
-"""A damaged file causes a plain message, and ends no process."""
+"""A damaged file causes a clear message, and does not crash the process."""
 
 from __future__ import annotations
 

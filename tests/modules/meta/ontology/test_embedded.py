@@ -309,7 +309,7 @@ def test_a_forgotten_person_leaves_no_byte_in_any_file(tmp_path: Path, open_here
     memory.relate(ada, "lives_in", memory.create("City", name="Ockham in Surrey").result()).result()
     memory.close().result()
 
-    memory = open_here(path=path)  # without that file of types; its nodes stay in memory
+    memory = open_here(path=path)  # without the file of types, its nodes stay in memory
     assert [node["name"] for node in memory.forget(ada).result()] == [ada["name"], "Ockham in Surrey"]
     for file in tmp_path.iterdir():
         content = file.read_bytes()

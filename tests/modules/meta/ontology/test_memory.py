@@ -199,7 +199,7 @@ def test_unrelate_may_forget_the_other_node(memory: Memory) -> None:
     assert (memory.get(kim.id).result(), memory.get(bob.id).result()) == (
         None,
         bob,
-    )  # memory knows more about him than his name
+    )  # memory has more about Bob than his name
     memory.unrelate(bob, "lives_in", london, forget=True).result()
     assert memory.get(london.id).result() is None
 

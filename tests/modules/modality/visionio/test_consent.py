@@ -1,4 +1,4 @@
-"""The agent keeps a face only after a yes to its question, and forgets it at once."""
+"""The agent keeps a face only after the person agrees, and forgets it at once if they ask."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Tracks: the same face from picture to picture, and when it needs a new vector."""
+"""A track follows a face from picture to picture, and tells when the face needs a new vector."""
 
 from typing import Any
 

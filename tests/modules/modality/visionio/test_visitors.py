@@ -1,4 +1,4 @@
-"""From a history of faces to people: decisions, tracks, visitors. Short vectors are enough for these tests."""
+"""Faces that were seen over time become decisions, tracks and visitors. Short vectors are enough for these tests."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec

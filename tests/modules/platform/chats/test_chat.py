@@ -1,4 +1,4 @@
-"""Chats: answers that are slow, chats that close meanwhile, groups, and a file that cannot be written."""
+"""Chats with slow answers, chats that close during an answer, groups, and a file that cannot be written."""
 
 import contextlib
 from collections.abc import Generator

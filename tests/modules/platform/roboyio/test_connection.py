@@ -30,7 +30,7 @@ class Base:
         self.speed = message["angular"]["z"]
 
     async def sleep(self, seconds: float) -> None:
-        """Let time pass; another task that waits may go first."""
+        """Let time pass; other waiting tasks run first."""
         end = self.now + seconds
         await turns(1)
         self.angle += self.speed * max(0.0, end - self.now)

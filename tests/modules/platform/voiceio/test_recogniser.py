@@ -135,7 +135,7 @@ def test_a_second_attempt_follows_a_crash(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_long_recording_is_understood_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A model that reads one window in time then reads a recording of any length."""
+    """If a model reads each piece in time, it can read a recording of any length."""
     small = Recogniser(Settings(model="tiny.en"))
     texts = list(transcriptions(LIBRIVOX / "transcription").items())[:5]
     texts += texts[:1]

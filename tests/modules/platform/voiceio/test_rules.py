@@ -367,7 +367,7 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
 
 
 def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It ends before the conversation, or at the end of the conversation if the file is lost only then."""
+    """The agent ends at once. If the file becomes unwritable later, the agent ends with the conversation."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):

@@ -95,9 +95,9 @@ def test_a_site_that_embeds_the_chat_without_permission_is_named(referer: str) -
 @pytest.mark.parametrize(
     "headers",
     [
-        {**EMBEDDED, "referer": "https://museum.example/"},  # one that may
-        {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # its own
-        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link
+        {**EMBEDDED, "referer": "https://museum.example/"},  # a site that may embed the chat
+        {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # the page's own site
+        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link, not a frame
         {**EMBEDDED, "referer": "about:client"},
         EMBEDDED,
         {},

@@ -165,8 +165,8 @@ async def test_a_visitor_who_types_gets_no_sound_and_no_mark() -> None:
         assert await visit.messages(2) == ["user: words", "agent: I heard words, and that pleases me."]
         await past(60.0)
         assert visit.nothing_more()
-        assert session_of(app).context.read(rawio.sound) is None  # so no sound came
-        visit.tell("hush")  # without a line, too
+        assert session_of(app).context.read(rawio.sound) is None  # the visitor has no line for sound
+        visit.tell("hush")  # this is harmless without a line, too
 
 
 @in_virtual_time

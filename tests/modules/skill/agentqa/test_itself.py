@@ -1,4 +1,4 @@
-"""The agent in its own memory."""
+"""The agent keeps a node about itself in memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Laws for any remark. The set ``agentqa_remarks`` measures how well remarks are understood."""
+"""Rules for every remark. The set ``agentqa_remarks`` measures how well remarks are understood."""
 
 from __future__ import annotations
 

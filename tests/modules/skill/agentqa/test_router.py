@@ -1,4 +1,4 @@
-"""Laws for the routing of any question. The set ``agentqa_asks`` measures how good it is."""
+"""Rules for the routing of every question. The set ``agentqa_asks`` measures how often the routing is right."""
 
 from __future__ import annotations
 

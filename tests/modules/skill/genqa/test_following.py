@@ -1,4 +1,4 @@
-"""An answer in a talk: qualifiers are met, things are compared, and readings compete."""
+"""In a talk, answers must meet the qualifiers of a question, compare things, and choose between readings."""
 
 from collections.abc import Iterator
 

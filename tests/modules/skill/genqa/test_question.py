@@ -1,4 +1,4 @@
-"""Laws for any question. The set ``genqa_declined`` measures which questions are looked up."""
+"""Rules for every question. The set ``genqa_declined`` measures how well the module decides what to look up."""
 
 import pytest
 

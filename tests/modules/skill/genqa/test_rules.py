@@ -26,7 +26,7 @@ async def chat(ctx: rs.RuleContext) -> None:
 
 @pytest.fixture(autouse=True)
 def apart(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Keep the answerers of one test out of the next."""
+    """Close the answerers of each test, so that no other test uses them."""
     made: dict[Any, Answerer] = {}
     monkeypatch.setattr(places, "_answerers", made)
     yield

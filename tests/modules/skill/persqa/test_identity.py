@@ -1,4 +1,4 @@
-"""Identity: names that memory knows, and people who say that it is them."""
+"""Identity: a user says a name that memory knows, or says that they are that person."""
 
 from __future__ import annotations
 

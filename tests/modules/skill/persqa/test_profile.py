@@ -1,4 +1,4 @@
-"""The facts after the user has told something."""
+"""The known facts after the user has told something new."""
 
 from ravestate.modules.skill.persqa.profile import learn, merged, told_apart
 from ravestate.modules.skill.persqa.topics import Fact

@@ -1,4 +1,4 @@
-"""Free statements: remembered, answered, picked up, forgotten."""
+"""Free statements are remembered, used as answers, taken up later, and forgotten."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Laws for any utterance. The set ``persqa_facts`` measures how well utterances are understood."""
+"""Rules for every utterance. The set ``persqa_facts`` measures how well utterances are understood."""
 
 from dataclasses import replace
 

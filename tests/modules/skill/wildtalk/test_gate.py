@@ -1,4 +1,4 @@
-"""The gate: what a model must not say, and what it may."""
+"""The gate refuses sentences that a model must not say, and passes all others."""
 
 import pytest
 

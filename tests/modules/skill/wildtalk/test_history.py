@@ -1,4 +1,4 @@
-"""The history of a conversation, and its prompt."""
+"""The history of a conversation, and the prompt made from it."""
 
 import pytest
 from hypothesis import given

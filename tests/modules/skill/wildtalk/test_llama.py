@@ -98,7 +98,7 @@ def test_closing_or_cancelling_an_answer_stops_the_model(loaded: LlamaProcess, h
                 await task
         else:
             assert await task == 3
-        # All places are free: as many answers as there are places come at once.
+        # No place is taken any more, so one answer for each place can run at the same time.
         assert all(await asyncio.gather(*(answer(backend) for _ in range(5))))
         await backend.close()
 

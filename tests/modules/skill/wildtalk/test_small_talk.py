@@ -42,7 +42,7 @@ class Scripted:
         self.prompts: list[Sequence[Message]] = []
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Nothing is to be loaded."""
+        """Do nothing, because there is no model to load."""
 
     async def stream(self, messages: Sequence[Message], **_: Any) -> AsyncGenerator[str, None]:
         self.prompts.append(messages)
@@ -50,7 +50,7 @@ class Scripted:
             yield word + " "
 
     async def close(self) -> None:
-        """Nothing is to be closed."""
+        """Do nothing, because there is no model to close."""
 
 
 @pytest.fixture(scope="module", autouse=True)
