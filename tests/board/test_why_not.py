@@ -763,7 +763,7 @@ def test_the_cost_grows_as_the_history_does(slow: float) -> None:
     assert cost(200) < 2.3 * cost(100)
 
 
-def test_the_middle_of_many_moments_is_left_out(stage: Stage) -> None:
+def test_of_very_many_moments_those_in_the_middle_are_left_out(stage: Stage) -> None:
     with many(stage, 300, 1.0) as sim:
         sim.emit(stage.touch)
         sim.advance(3)

@@ -234,7 +234,7 @@ def test_the_user_comes_and_goes() -> None:
     assert seen == [["test-"], []]
 
 
-def test_the_end_waits_for_an_answer_and_a_farewell_but_not_for_ever() -> None:
+def test_ending_waits_for_an_answer_and_a_farewell_up_to_a_limit() -> None:
     module = rs.Module("module", requires=[interloc, rawio])
 
     @module.rule(when=rawio.input.changed | interloc.users.removed, writes=rawio.output)
@@ -270,7 +270,7 @@ def test_pieces_that_end_in_a_space_and_the_whole_are_one_utterance(whole: str) 
     converse(talk, writer)
 
 
-def test_an_end_at_once_waits_for_nothing() -> None:
+def test_ending_at_once_does_not_wait_for_utterances() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
         await conversation.end(at_once=True)

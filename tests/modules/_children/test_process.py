@@ -49,14 +49,14 @@ def process(backend: Backend) -> Iterator[ModelProcess]:
     one.close()
 
 
-def test_it_answers_with_data_of_any_size(process: ModelProcess) -> None:
+def test_a_process_answers_with_data_of_any_size(process: ModelProcess) -> None:
     data = bytes(range(256)) * 4000  # more than a pipe holds
     answer, back = process.request({"do": "turn"}, data, seconds=20)
     assert answer["said"] == "turn" and back == data[::-1]
     assert process.request({"do": "again"}, seconds=20)[0]["pid"] == answer["pid"] == process.pid
 
 
-def test_a_fault_is_reported_and_the_process_lives(process: ModelProcess) -> None:
+def test_a_fault_is_reported_and_the_process_goes_on(process: ModelProcess) -> None:
     with pytest.raises(PlatformError, match="obedient failed: ValueError: too loud"):
         process.request({"do": "fail"}, seconds=20)
     pid = process.pid
@@ -107,7 +107,7 @@ def test_an_interpreter_that_is_missing_is_named(backend: Backend) -> None:
         ModelProcess(backend, {}, "/none/python").start()
 
 
-def test_a_closed_process_refuses(process: ModelProcess) -> None:
+def test_a_closed_process_refuses_requests(process: ModelProcess) -> None:
     process.start()
     pid = process.pid
     process.close()

@@ -272,7 +272,7 @@ def test_a_database_of_another_program_is_left_alone(tmp_path: Path) -> None:
     assert "is a ladybug database of another program (it has Person)" in failure(path=path)
 
 
-def test_a_folder_is_no_file_and_a_file_is_no_folder(file: Path, tmp_path: Path) -> None:
+def test_a_path_that_is_a_folder_or_lies_below_a_file_is_refused(file: Path, tmp_path: Path) -> None:
     assert "cannot be opened" in failure(path=tmp_path)
     assert "cannot make its folder" in failure(path=file / "memory.lbug")
 

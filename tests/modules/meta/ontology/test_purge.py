@@ -72,7 +72,7 @@ def test_a_replaced_value_is_purged_in_the_first_pause(
     assert rewrites == [path]  # a pause with nothing to purge rewrites nothing
 
 
-def test_operations_without_a_pause_do_not_put_the_purge_off_for_ever(
+def test_without_a_pause_the_purge_is_still_done_in_time(
     tmp_path: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
@@ -118,7 +118,7 @@ def killed(tmp_path: Path) -> Iterator[Path]:
     yield path
 
 
-def test_a_kill_before_the_purge_puts_it_off_to_the_next_start(
+def test_after_a_kill_the_purge_is_done_at_the_next_start(
     killed: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert holds(killed)

@@ -81,7 +81,7 @@ def test_an_ignored_error_is_logged(caplog: pytest.LogCaptureFixture, late: bool
     assert "Memory.save failed, and nobody waited for it: the disk is full" in caplog.text
 
 
-def test_a_seen_error_is_not_logged(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_error_that_the_caller_gets_is_not_logged(caplog: pytest.LogCaptureFixture) -> None:
     reply = Reply(done(PlatformError("no")), "Memory.save")
     with pytest.raises(PlatformError):
         reply.result()

@@ -27,7 +27,7 @@ def test_the_agent_may_be_called_by_its_name() -> None:
     assert found is not None and found.topic == "rude"
 
 
-def test_the_gravest_of_several_remarks_counts() -> None:
+def test_of_several_remarks_the_gravest_counts() -> None:
     found = remark_in("You are stupid. My cat died. I want to die.", read_life())
     assert found is not None and (found.topic, found.text) == ("distress", "i want to die")
 

@@ -168,7 +168,7 @@ def test_a_user_in_distress_hears_the_helplines(tmp_path: Path) -> None:
         assert "doctor" in say(sim, "I want to kill myself")
 
 
-def test_a_question_that_is_said_for_ever_is_answered_once(tmp_path: Path) -> None:
+def test_a_question_repeated_thousands_of_times_is_answered_once(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 12, 5, tzinfo=UTC))
         assert "2 years" in say(sim, "How old are you? " * 6_000)
@@ -219,7 +219,7 @@ def test_the_user_may_return_the_agents_question(question: str, answer: str, top
         assert say(sim, answer) == f"This is my {topic}."  # without "And yours?", which the user has answered
 
 
-def test_nothing_is_asked_back_where_nothing_was_asked(tmp_path: Path) -> None:
+def test_and_you_without_an_earlier_question_is_left_to_other_modules(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         assert say(sim, "and you") == "chatter"
 
@@ -265,7 +265,7 @@ def test_after_a_wish_for_quiet_the_agent_is_silent_until_the_user_speaks(tmp_pa
         assert len(sim.said) == 2
 
 
-def test_it_does_not_say_the_same_twice_running(tmp_path: Path) -> None:
+def test_the_same_phrase_never_comes_twice_in_a_row(tmp_path: Path) -> None:
     with start(tmp_path) as sim:
         said = [say(sim, "where do you live") for _ in range(8)]
         assert all(first != second for first, second in itertools.pairwise(said))
@@ -349,7 +349,7 @@ def test_after_a_long_silence_the_agent_once_offers_to_answer_questions(tmp_path
         assert len(sim.said) == 8
 
 
-def test_it_offers_nothing_in_the_first_turns_or_while_the_user_talks(tmp_path: Path) -> None:
+def test_the_agent_offers_nothing_in_the_first_turns_or_while_the_user_talks(tmp_path: Path) -> None:
     with start(tmp_path, chatter, bored=5.0) as sim:
         sim.say("it rains")
         sim.advance(200.0)

@@ -78,7 +78,7 @@ def test_without_documents_there_is_a_reason_and_no_answer(tmp_path: Path) -> No
     answerer.close()
 
 
-def test_documents_of_ones_own_are_asked_beside_the_collection(tmp_path: Path) -> None:
+def test_the_users_documents_are_searched_beside_the_collection(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     put(path, "The Zorbex engine was invented by Mira Kolm in 1987.")
     answerer = Answerer(path)

@@ -52,7 +52,7 @@ def test_numbers_lines_and_captions_without_a_sentence_are_left_out() -> None:
     assert texts("7\n\nFig. 3\n\n--- --- --- --- ---\n\n1234567890 1234567890") == []
 
 
-def test_controls_and_escapes_are_not_kept() -> None:
+def test_control_characters_and_escape_sequences_are_removed() -> None:
     assert texts("The \x1b[31mred\x1b[0m line\x00 is short\udce9 now.") == ["The red line is short\ufffd now."]
 
 

@@ -180,12 +180,12 @@ def test_a_damaged_pdf_is_refused(tmp_path: Path, content: bytes) -> None:
     assert why(write(tmp_path / "a.pdf", content)).startswith("it is not a PDF, or damaged")
 
 
-def test_a_pdf_that_is_cut_off(tmp_path: Path) -> None:
+def test_a_pdf_that_is_cut_off_is_refused(tmp_path: Path) -> None:
     whole = write_pdf(tmp_path / "whole.pdf", "Grease the pump each month.").read_bytes()
     assert "damaged" in why(write(tmp_path / "half.pdf", whole[: len(whole) // 3]))
 
 
-def test_a_pdf_of_pictures(tmp_path: Path) -> None:
+def test_a_pdf_without_text_is_refused(tmp_path: Path) -> None:
     assert "only pictures" in why(write_pdf(tmp_path / "scan.pdf", ""))
 
 
@@ -199,7 +199,7 @@ def test_a_pdf_of_pictures(tmp_path: Path) -> None:
         ("\udce9".encode("utf-8", "surrogateescape"), "line 2 is not JSON"),
     ],
 )
-def test_a_line_that_is_no_document(tmp_path: Path, line: str | bytes, said: str) -> None:
+def test_a_line_of_json_that_is_not_a_document_is_refused(tmp_path: Path, line: str | bytes, said: str) -> None:
     line = line.encode() if isinstance(line, str) else line
     assert why(write(tmp_path / "a.jsonl", b'{"text": "The first line is fine."}\n' + line)).startswith(said)
 
@@ -264,7 +264,7 @@ def archive(monkeypatch: pytest.MonkeyPatch) -> list[SimpleNamespace]:
     return entries
 
 
-def test_articles_of_a_zim_file(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
+def test_the_articles_of_a_zim_file_are_read(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
     archive += [
         entry("Delft", "<html><body><p>Delft is a town in Holland.</p></body></html>"),
         entry("delft", "", redirect=True),
@@ -278,6 +278,6 @@ def test_articles_of_a_zim_file(tmp_path: Path, archive: list[SimpleNamespace]) 
     ]
 
 
-def test_a_file_that_is_no_zim(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
+def test_a_file_that_is_not_a_zim_archive_is_refused(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
     assert archive == []
     assert why(write(tmp_path / "a.zim", b"PK\x03\x04")) == "it is not a ZIM file, or damaged (Invalid magic number)"

@@ -169,5 +169,5 @@ def test_a_long_text_is_no_sum() -> None:
         ("300 g for 0, and for 5", ""),
     ],
 )
-def test_an_amount_is_scaled(text: str, result: str) -> None:
+def test_an_amount_is_scaled_to_another_number_of_people(text: str, result: str) -> None:
     assert scaled(text) == result

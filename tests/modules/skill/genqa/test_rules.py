@@ -49,7 +49,7 @@ def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, An
         assert "genqa:say" in sim.fired
 
 
-def test_the_sample_conversation_of_the_paper(settings: dict[str, dict[str, Any]]) -> None:
+def test_the_sample_conversation_of_the_paper_is_reproduced(settings: dict[str, dict[str, Any]]) -> None:
     """*Will it rain?* is small talk; *when did it start to rain?* asks for a fact."""
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Will it rain today?")

@@ -47,7 +47,7 @@ def test_a_person_in_the_answer_is_meant_first(follow: str) -> None:
 
 
 @pytest.mark.parametrize("heard", ["And its capital?", "which one is bigger?", "and when?", "how high is it?"])
-def test_without_a_thread_a_reference_means_nothing(heard: str) -> None:
+def test_without_a_thread_a_question_with_a_reference_has_no_readings(heard: str) -> None:
     assert readings(parse(heard), ()) == []
 
 

@@ -117,7 +117,7 @@ STORED = {
 }
 
 
-def test_a_whole_first_talk(file: Path, look: Look) -> None:
+def test_in_a_first_talk_the_agent_learns_about_the_user(file: Path, look: Look) -> None:
     topics: list[str] = []
     with agent(file) as sim:
         sim.say("I talked about work and the university at breakfast")
@@ -165,7 +165,7 @@ with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}, "persqa": {"c
     assert meant(said, "welcome_back") and "you live in Hannover" in said
 
 
-def test_the_papers_sample_conversation(file: Path, look: Look) -> None:
+def test_the_sample_conversation_of_the_paper_is_reproduced(file: Path, look: Look) -> None:
     with agent(file, knower(), topics=["home"]) as sim:
         assert answers(sim, "what is your favorite animal") == "I know it."
         assert asked(sim) == "home"
@@ -660,7 +660,7 @@ def test_nothing_is_known_yet(file: Path) -> None:
 # ------------------------------------------------------------------------------------ to forget
 
 
-def test_forget_me(file: Path, look: Look) -> None:
+def test_forget_me_forgets_the_user(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.put(interloc.users, {"console": None})
         sim.say("my name is ada and i live in hannover")
@@ -892,7 +892,7 @@ def test_a_user_whom_the_platform_names_differently_is_another_person(file: Path
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"works_as": ["baker"]}}
 
 
-def test_a_user_given_as_a_node_is_that_node(file: Path) -> None:
+def test_a_user_whom_the_platform_gives_as_a_node_is_that_person(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None

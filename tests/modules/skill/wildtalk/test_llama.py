@@ -215,7 +215,7 @@ def test_a_broken_file_is_an_error_and_no_crash(tmp_path: Path, content: bytes |
 
 
 @pytest.mark.model
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_model_file_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "tiny-q4.gguf").touch()
     wanted = tmp_path / "tiny-q5.gguf"
     with pytest.raises(
@@ -232,7 +232,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 @pytest.mark.model
-def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unreadable_model_file_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "model.gguf"
     file.touch()
 

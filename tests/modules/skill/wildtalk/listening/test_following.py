@@ -86,13 +86,13 @@ def test_a_different_unit_of_time_gets_a_different_answer(own: Callable[..., Tal
     assert [talk.say("the goat had a birthday"), talk.say("about ten days")][-1] == "Then it climbs on everything."
 
 
-def test_there_are_three_levels(own: Callable[..., Talk]) -> None:
+def test_follow_ups_may_be_nested_to_three_levels(own: Callable[..., Talk]) -> None:
     talk = own()
     said = [talk.say(text) for text in ("the goat is on the roof", "the shed", "it doesn't hold", "I have no ladder")]
     assert said[2:] == ["Then fetch the ladder at once.", "A table and a chair reach as high."]
 
 
-def test_the_talk_can_return_to_an_earlier_entry(own: Callable[..., Talk]) -> None:
+def test_a_follow_up_of_an_earlier_entry_can_still_be_found(own: Callable[..., Talk]) -> None:
     talk = own()
     said = [talk.say(text) for text in ("the goat is on the roof", "the shed", "what shall i do now")]
     assert said[-1] == "Shake a bucket of oats."
@@ -138,7 +138,7 @@ def test_a_follow_up_has_the_tone_of_its_entry(own: Callable[..., Talk]) -> None
     assert talk.state.tone == "sad"
 
 
-def test_a_clear_follow_up_belongs_to_the_skill_but_a_name_does_not(own: Callable[..., Talk]) -> None:
+def test_only_a_clear_follow_up_continues_the_thread(own: Callable[..., Talk]) -> None:
     talk = own()
     talk.say("the goat is on the roof")
     texts = ("it's the henhouse", "nope", "red tiles", "Anna", "what is a goat?")
