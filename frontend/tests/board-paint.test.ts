@@ -47,12 +47,12 @@ test("a text is shortened before the next dot, and left out without room", () =>
   ).toEqual([]);
 });
 
-test("the context's own spikes leave room for a text", () => {
+test("a text is not shortened before spikes of the context itself", () => {
   const own = born(1.1, "core:pressure:changed", "true", { spike: 2 });
   expect(words([born(1, "m:heard", '"Who is there?"', { spike: 1 }), own])).toEqual(["“Who is there?”"]);
 });
 
-test("a cut text appears as far as it goes", () => {
+test("the beginning of a cut payload appears with dots at its end", () => {
   expect(words([born(1, "m:heard", '"Who is th', { spike: 1 })])).toEqual(["“Who is th…"]);
 });
 
@@ -74,7 +74,7 @@ test("a waiting bar names its rivals if it is wide enough", () => {
   expect(words(waits, { now: 1.2 })).toEqual([]);
 });
 
-test("the pointer finds input, and the context's own spikes below it", () => {
+test("the pointer finds input spikes, and below them the spikes of the context itself", () => {
   const both = scene(
     [
       born(1, "m:heard", '"Who is there?"', { spike: 1 }),
@@ -87,7 +87,7 @@ test("the pointer finds input, and the context's own spikes below it", () => {
   expect(at(both, 300, AXIS + 13)).toEqual({});
 });
 
-test("a crowd of spikes has lines for the first, the last and the chosen one", () => {
+test("of many spikes close together, only the first, the last and the chosen one have lines", () => {
   const piece = (spike: number) => born(spike / 10, "m:piece", "null", { spike, parents: [1] });
   const lines = (pieces: number, kin: number[]) => {
     const numbers = Array.from({ length: pieces }, (_, i) => i + 2);

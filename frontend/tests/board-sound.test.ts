@@ -43,7 +43,7 @@ test("speech makes bands; the end of a turn, an interruption and what was heard 
   });
 });
 
-test("an answer that was heard to its end is not cut, and a back-channel is no turn", () => {
+test("an answer that was heard to its end is not marked as cut, and a back-channel does not count as a turn", () => {
   const { sound } = scene(
     [
       write(0, "rawio:output", "Well, thank you."),
@@ -87,7 +87,7 @@ test("the lanes of the voices show bands and words, and the pointer finds both",
   const context = new Proxy(kept, { get: (found, name: string) => found[name] ?? (() => {}) });
   paint(context as unknown as CanvasRenderingContext2D, drawn);
   expect(boxes).toContainEqual([100, AXIS + 6, 100, LANE - 13]); // the user from 1 to 2 s
-  expect(boxes).toContainEqual([400, AXIS + 6, 100, LANE - 13]); // and until now
+  expect(boxes).toContainEqual([400, AXIS + 6, 100, LANE - 13]); // the user again, from 4 s until now
   expect(boxes).toContainEqual([300, AXIS + LANE + 6, 120, LANE - 13]);
   expect(boxes).toContainEqual([419, AXIS + 3, 3, 2 * LANE - 6]); // the interruption, through both
   expect(texts).toContainEqual(["“how are you”", AXIS + LANE / 2]);

@@ -57,7 +57,7 @@ test("an activation ends with its last spike, and names the rule that answered",
   expect([bar.to, bar.outcome, gaveUp(bar, trace)]).toEqual([3, "consumed", "m:best answered it"]);
 });
 
-test("the answering rule is named with the rule that raised its input", () => {
+test("the answering rule is named together with the rule that raised its input", () => {
   restart();
   const trace = new Trace();
   trace.add([
@@ -166,10 +166,10 @@ test("groups that merge are one", () => {
   ]);
   const found = () => [3, 2, 1, 9].map((group) => trace.group(group));
   expect(found()).toEqual([1, 1, 1, 9]);
-  expect(found()).toEqual([1, 1, 1, 9]); // asked again
+  expect(found()).toEqual([1, 1, 1, 9]); // the answer is the same when it is asked again
 });
 
-test("after a gap, dead bars end and new ones appear", () => {
+test("after a gap, bars that have ended meanwhile are closed, and new bars appear", () => {
   const trace = new Trace();
   trace.add([held(1, 1, "m:r", 1), { kind: "gap", time: 2, spikes: 40 }]);
   const alive = { condition: "", lacks: [], waits_for: [], until: null };
@@ -207,7 +207,7 @@ test("a file with circular merges is readable", () => {
   expect([trace.group(1), trace.group(2)]).toEqual([1, 1]);
 });
 
-test("groups stay merged when those between them are forgotten", () => {
+test("groups stay merged when the groups between them are forgotten", () => {
   restart();
   const trace = new Trace(10);
   trace.add([

@@ -51,7 +51,7 @@ test("the marks of an axis are round", () => {
   ]);
 });
 
-test("a typed value is JSON, or else text", () => {
+test("a typed value is read as JSON if possible, and otherwise as text", () => {
   expect([typed("7"), typed('{"a": [1]}'), typed("hello"), typed('"7"')]).toEqual([
     7,
     { a: [1] },

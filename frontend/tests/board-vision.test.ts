@@ -32,7 +32,7 @@ test("a face makes a stretch with its name, which ends when the face is lost", (
   ]);
 });
 
-test("a visitor's name counts before memory has their face", () => {
+test("a visitor's name is shown even before memory has their face", () => {
   expect(
     faces([face(1, 1), face(1, 2), visitor(1.5, '"O\'Hara"', "2, 5"), visitor(1.6, "None", "1")]),
   ).toEqual([

@@ -303,7 +303,7 @@ test("a signal that a user raises is a cause, even if rules raise it, too", () =
   expect(board.causes.map((spike) => spike.signal)).toEqual(["m:named"]);
 });
 
-test("a cause has the name of its text, slot or signal", () => {
+test("a cause is called by its text, or by its slot or signal", () => {
   const [server, board] = Server.open();
   const came = (spike: number, signal: string, text: string, json = true): TraceRecord =>
     ({ ...input(spike, spike, text), signal, payload: json ? { text } : { text, json } }) as TraceRecord;
@@ -324,7 +324,7 @@ test("a cause has the name of its text, slot or signal", () => {
   ]);
 });
 
-test("a signal for background rules does not replace the input", () => {
+test("a signal that only background rules hear does not replace the input", () => {
   const [server, board] = Server.open();
   const talk = { ...rule("m:talk"), background: false };
   const watch = { ...rule("m:watch"), background: true };
@@ -373,7 +373,7 @@ test("a write counts as heard if any of its signals is", () => {
   expect(board.cause?.id).toBe(5);
 });
 
-test("a rule's signal is no cause, even if its run was missed", () => {
+test("a signal that a rule raised is not a cause, even if the record of its run was missed", () => {
   const [server, board] = Server.open();
   const born = { ...input(3, 1, "1"), source: 77 } as TraceRecord;
   server.tell({ type: "records", records: [born], missed: 5, behind: 0, now: 2, paused: false });
@@ -473,7 +473,7 @@ test("the result follows each step of a stopped clock", () => {
   }
 });
 
-test("closing a rule returns to the chosen cause, or else to the newest", () => {
+test("closing a rule returns to the chosen cause, or to the newest if none is chosen", () => {
   const [server, board] = Server.open();
   const records = [input(3, 1, "1"), input(4, 2, "2")];
   server.tell({ type: "records", records, missed: 0, behind: 0, now: 9, paused: false });
@@ -752,7 +752,7 @@ test("a failed rule shows its traceback, and the header counts failures", async 
   expect(container.querySelector("pre")?.textContent).toBe(error);
 });
 
-test("an interrupted run has a glyph of its own", () => {
+test("an interrupted run has its own glyph", () => {
   const shapes = ["done", "interrupted", "resigned", "failed"].map(
     (state) => render(Glyph, { state }).container.innerHTML,
   );

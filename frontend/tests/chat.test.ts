@@ -26,7 +26,7 @@ test("Enter sends the text, but not with Shift, and not while a character is com
   expect(field).toHaveProperty("value", "");
 });
 
-test("the field reports typing, unless it is blank", async () => {
+test("the field reports typing, but not while it is blank", async () => {
   const onwrite = vi.fn();
   render(Composer, { agent: "Elske", closed: false, onwrite, onsay: vi.fn() });
   const field = screen.getByLabelText("What you say to Elske");

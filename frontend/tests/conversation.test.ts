@@ -186,7 +186,7 @@ test("words that the server refuses are marked, and are not sent again", () => {
   expect(texts()).toEqual([]);
 });
 
-test("after a reload, the page tells earlier lines from new ones", () => {
+test("after a reload, the page distinguishes earlier lines from new ones", () => {
   TestSocket.newest.welcome("s");
   expect(conversation.recalling).toBe(false);
   TestSocket.newest.tell(message(1, "agent", "Hi!"), message(2, "agent", "Welcome."));
@@ -233,7 +233,7 @@ test("a server that does not accept reports of typing gets none", () => {
   expect(TestSocket.newest.sent.map((frame) => frame.type)).toEqual(["hello"]);
 });
 
-test("the page takes the agent's new name", () => {
+test("the page shows the agent's new name", () => {
   TestSocket.newest.welcome("s");
   expect(conversation.agent).toBe("Elske");
   TestSocket.newest.tell({ type: "renamed", agent: "Robin" });

@@ -71,7 +71,7 @@ test("the page asks the browser to remove the echo and to play sound", async () 
   expect(Sound.newest.resume).toHaveBeenCalled();
 });
 
-test("sound goes through both ways, and the microphone can be silent", async () => {
+test("sound passes in both directions, and the microphone can be muted", async () => {
   const devices = await openDevices(listener);
   Node.all.capture?.port.onmessage?.({ data: { sound: "sound", level: 0.5 } });
   expect(listener.onsound).toHaveBeenCalledWith("sound", 0.5);

@@ -3,7 +3,7 @@ import { Heights } from "../src/lib/heights";
 
 const lines = Array.from({ length: 1000 }, (_, n) => ({ key: `${n}` }));
 
-test("lines that nobody has measured have the average height", () => {
+test("lines that are not yet measured count with the average height of the others", () => {
   const heights = new Heights();
   heights.measure("0", 20);
   heights.measure("1", 60);

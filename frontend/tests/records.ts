@@ -10,7 +10,7 @@ export function spikes(): number {
   return newest;
 }
 
-/** Count spikes from 1 on again. */
+/** Number spikes from 1 on again. */
 export function restart(): void {
   newest = 0;
 }

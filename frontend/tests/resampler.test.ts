@@ -52,7 +52,7 @@ test("pieces of any size make the same sound as the whole", () => {
   });
 });
 
-test("samples become integers and floats again; those beyond the range are cut", () => {
+test("samples become integers and then floats again; values beyond the range are clipped", () => {
   expect([...toInt16(Float32Array.of(-2, -1, 0, 0.5, 2))]).toEqual([-32768, -32767, 0, 16384, 32767]);
   expect([...toFloat(Int16Array.of(-32768, 0, 16384))]).toEqual([-1, 0, 0.5]);
 });

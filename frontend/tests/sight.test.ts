@@ -144,7 +144,7 @@ test("the preview shows a box and a name for each face, mirrored", async () => {
   expect(screen.getByRole("status").textContent).toBe("Elske sees Anna.");
 });
 
-test("a refused camera says what to do, and the button tries again", async () => {
+test("after a refusal of the camera, the page says what to do, and the button tries again", async () => {
   welcome();
   refusal = new DOMException("", "NotAllowedError");
   await turnOn();
@@ -161,7 +161,7 @@ test("a refused camera says what to do, and the button tries again", async () =>
   ]);
 });
 
-test("each failure has its remedy", () => {
+test("each failure of the camera has a message with its remedy", () => {
   const names = ["SecurityError", "NotFoundError", "NotReadableError"];
   const texts = names.map((name) => explain(new DOMException("", name), false));
   expect(texts.map((text) => text.split(/[,.]/)[0])).toEqual([

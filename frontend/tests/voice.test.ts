@@ -186,7 +186,7 @@ test("the page says when the agent begins to listen", async () => {
   expect(screen.getByText("The microphone is on.")).toBeTruthy();
 });
 
-test("a caption shows, and disappears if it becomes no message", async () => {
+test("a caption shows, and disappears if no message follows it", async () => {
   welcome();
   await press();
   render(VoiceBar, { voice: voice(), agent: "Elske" });
@@ -230,7 +230,7 @@ test("an unplugged microphone turns everything off", async () => {
   ]);
 });
 
-test("the sound stops when the connection is lost, and returns with it", async () => {
+test("the sound stops when the connection is lost, and starts again when it returns", async () => {
   welcome();
   await press();
   TestSocket.newest.tell({ type: "flush", n: 1 });

@@ -26,7 +26,7 @@ cheered: rs.Signal[Any] = gossip.signal("cheered", payload=dict)
 
 @gossip.rule(when=rawio.input.changed, emits=question)
 async def classify(ctx: rs.RuleContext) -> None:
-    """Tell questions from other things."""
+    """Classify an input as a question or something else."""
     await ctx.sleep(0.2)
     if "?" in ctx.payload(rawio.input.changed):
         ctx.emit(question)
@@ -40,7 +40,7 @@ async def answer(ctx: rs.RuleContext) -> None:
 
 @gossip.rule(when=rawio.input.changed, writes=rawio.output)
 async def talk(ctx: rs.RuleContext) -> None:
-    """Say something in any case."""
+    """Answer when no other rule does."""
     ctx[rawio.output] = "I see."
 
 

@@ -1,4 +1,4 @@
-"""The idle share of a process. A process that other programs keep waiting has none."""
+"""The idle share of a process. Time in which other programs keep the process waiting is not idle."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
     return clocks
 
 
-def test_time_without_work_is_idle(clocks: Clocks) -> None:
+def test_the_share_is_the_idle_time_since_the_last_call(clocks: Clocks) -> None:
     spare = IdleShare()
     clocks.on(2.0, computed=0.5)
     assert spare.share() == 0.75
@@ -36,7 +36,7 @@ def test_time_without_work_is_idle(clocks: Clocks) -> None:
     assert spare.share() == 0.0  # since the last call
 
 
-def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks: Clocks) -> None:
+def test_time_spent_waiting_for_other_programs_is_not_idle(clocks: Clocks) -> None:
     spare = IdleShare()
     clocks.on(3.0, computed=1.0, kept=2.0)
     assert spare.share() == 0.0
@@ -44,7 +44,7 @@ def test_a_process_that_other_programs_keep_waiting_has_nothing_to_spare(clocks:
     assert spare.share() == 0.5
 
 
-def test_several_threads_at_work_leave_nothing_to_spare(clocks: Clocks) -> None:
+def test_several_busy_threads_leave_no_idle_time(clocks: Clocks) -> None:
     spare = IdleShare()
     clocks.on(1.0, computed=1.8)
     assert spare.share() == 0.0
@@ -54,7 +54,7 @@ def test_several_threads_at_work_leave_nothing_to_spare(clocks: Clocks) -> None:
 @pytest.mark.parametrize(
     ("told", "seconds"), [("5000000000 1500000000 7\n", 1.5), ("", 0.0), ("5 x 7", 0.0), (None, 0.0)]
 )
-def test_without_a_measure_no_time_counts_as_waiting(
+def test_without_a_readable_measurement_no_time_counts_as_waiting(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, told: str | None, seconds: float
 ) -> None:
     file = tmp_path / "schedstat"

@@ -117,7 +117,7 @@ def test_a_collection_is_written_whatever_its_items_are() -> None:
     check_value(people, {"ada": 1}, {"ada": Point(1)})
 
 
-def test_a_type_beyond_json_is_refused() -> None:
+def test_a_value_of_a_type_that_json_cannot_express_is_refused() -> None:
     with pytest.raises(rs.RavestateError, match="lab:place takes Point, which JSON cannot express"):
         check_value(place, {"x": 1}, None)
     check_value(place, None, Point(1))  # its default
@@ -168,7 +168,7 @@ def test_a_type_that_cannot_be_checked_counts_as_no_type(kind: Any) -> None:
 
 
 @pytest.mark.parametrize("value", [1, 0, "true", None])
-def test_a_flag_takes_truth_values(value: Any) -> None:
+def test_a_flag_takes_only_true_and_false(value: Any) -> None:
     check_value(lamp, True, False)
     with pytest.raises(rs.RavestateError, match=rf"lab:lamp is a flag: write true or false, not {value!r}"):
         check_value(lamp, value, False)
@@ -215,7 +215,7 @@ async def test_the_page_of_a_visitor_cannot_be_removed() -> None:
 
 
 @in_virtual_time
-async def test_say_takes_the_texts_of_visitors() -> None:
+async def test_say_treats_texts_like_those_that_visitors_type() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         async with Look(app) as look:

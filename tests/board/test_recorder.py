@@ -77,7 +77,7 @@ async def test_beyond_its_rate_a_recorder_stops_listening_and_counts_the_missed_
 
 
 @in_virtual_time
-async def test_a_long_pause_earns_a_burst_again() -> None:
+async def test_after_a_long_pause_another_burst_is_recorded_in_full() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=500, rate=100, spare=0)
     async with context:
@@ -202,7 +202,7 @@ async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
         await passing(0.01)
         assert isinstance(recorder.records[-1], Gap)
         before = max(record.spike for record in recorder.records if isinstance(record, Born))
-        recorder.shorten(20)  # another conversation needs the room
+        recorder.shorten(20)  # another conversation needs the memory
         await passing(1)
         context.emit(tick)
         await passing(1)

@@ -63,7 +63,7 @@ def endless() -> list[object]:
         ("<b>", Rendered('"<b>"')),
     ],
 )
-def test_values_as_text(value: object, shown: Rendered) -> None:
+def test_each_value_has_a_readable_text(value: object, shown: Rendered) -> None:
     assert render(value) == shown
 
 
@@ -97,7 +97,7 @@ def test_lone_surrogates_are_replaced() -> None:
     assert well_formed("café 👋🏽") == "café 👋🏽"
 
 
-def test_not_json_knows_the_values_that_json_cannot_express() -> None:
+def test_not_json_is_true_for_values_that_json_cannot_express() -> None:
     assert (
         not_json(Loud())
         and not_json({"a": [Loud()]})

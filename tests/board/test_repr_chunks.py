@@ -98,7 +98,7 @@ def test_the_chunks_make_pythons_repr(value: object) -> None:
         (Pair(1, [object]), "Pair(left=1, right=[<class 'object'>])"),
     ],
 )
-def test_the_text_of_containers(value: object, text: str) -> None:
+def test_containers_have_the_same_text_as_in_python(value: object, text: str) -> None:
     assert "".join(repr_chunks(value)) == repr(value) == text
 
 

@@ -24,7 +24,7 @@ async def test_a_call_outside_of_any_task_returns_its_result() -> None:
 
 @pytest.mark.parametrize("work", [int, fail], ids=["done", "failed"])
 @pytest.mark.parametrize("by_itself", [False, True], ids=["before", "by it"])
-def test_the_caller_may_be_gone_when_a_call_is_done(work: Callable[[], object], by_itself: bool) -> None:
+def test_a_call_may_end_after_its_caller_was_cancelled(work: Callable[[], object], by_itself: bool) -> None:
     @in_virtual_time
     async def test() -> None:
         said: list[Any] = []

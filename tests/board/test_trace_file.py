@@ -1,4 +1,4 @@
-"""Recorded traces: files survive a round trip, and errors name the place of the fault."""
+"""Recorded traces are read back as they were written, and errors name the place of the fault."""
 
 import dataclasses
 import json

@@ -477,7 +477,7 @@ def test_the_first_declared_of_equal_rules_answers(stage: Stage) -> None:
     assert "demo:first" in found.words
 
 
-def test_another_input_has_another_answer(stage: Stage) -> None:
+def test_the_question_may_be_about_a_later_input(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "one")
@@ -489,7 +489,7 @@ def test_another_input_has_another_answer(stage: Stage) -> None:
     assert all(moment.time == 1.0 for moment in found.moments)
 
 
-def test_a_signal_of_another_cause_is_distinguished(stage: Stage) -> None:
+def test_a_signal_that_only_another_cause_raised_is_reported_as_such(stage: Stage) -> None:
     question = stage.module.signal("question")
 
     @stage.module.rule(when=stage.input.changed.where(lambda text: "?" in text), emits=question)
@@ -604,7 +604,7 @@ def test_a_predicate_that_became_false_during_a_wait_is_no_answer_by_another_rul
     assert unseen.verdict == "gated"  # a recording has no predicates to evaluate
 
 
-def test_a_waiting_rule_that_lost_while_its_predicate_was_false_was_gated(stage: Stage) -> None:
+def test_a_waiting_rule_that_lost_while_its_predicate_was_false_is_reported_as_gated(stage: Stage) -> None:
     lit = shut_while_waiting(stage)
 
     @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=0.1)
@@ -763,7 +763,7 @@ def test_the_cost_grows_as_the_history_does(slow: float) -> None:
     assert cost(200) < 2.3 * cost(100)
 
 
-def test_the_middle_of_many_moments_is_left_out(stage: Stage) -> None:
+def test_of_very_many_moments_those_in_the_middle_are_left_out(stage: Stage) -> None:
     with many(stage, 300, 1.0) as sim:
         sim.emit(stage.touch)
         sim.advance(3)

@@ -11,7 +11,7 @@ def failures(tmp_path_factory: pytest.TempPathFactory) -> Failures:
 
 
 @pytest.mark.parametrize("name", names_in("pipecat"))
-def test_pipecat(name: str, failures: Failures) -> None:
+def test_each_case_of_pipecat_passes_in_its_own_environment(name: str, failures: Failures) -> None:
     runs = failures.get(name, ["it did not run"])
     if any(runs):
         pytest.fail("\n".join(filter(None, runs)), pytrace=False)

@@ -39,7 +39,7 @@ stubborn = rs.Module("stubborn", requires=[rawio])
 
 @stubborn.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
 async def insist(ctx: rs.RuleContext) -> None:
-    """Do as `talk` does, but without an `until`."""
+    """Say the same as `talk`, but without an `until`."""
     ctx.emit(rawio.piece, "one ")
     await ctx.sleep(1)
     ctx.emit(rawio.piece, "two")
@@ -119,7 +119,7 @@ def test_pieces_that_end_in_a_space_are_not_said_twice() -> None:
     converse(talk, module)
 
 
-def test_a_text_unlike_the_pieces_is_an_utterance_of_its_own() -> None:
+def test_a_text_that_differs_from_its_pieces_is_a_separate_utterance() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
@@ -234,7 +234,7 @@ def test_the_user_comes_and_goes() -> None:
     assert seen == [["test-"], []]
 
 
-def test_the_end_waits_for_an_answer_and_a_farewell_but_not_for_ever() -> None:
+def test_ending_waits_for_an_answer_and_a_farewell_up_to_a_limit() -> None:
     module = rs.Module("module", requires=[interloc, rawio])
 
     @module.rule(when=rawio.input.changed | interloc.users.removed, writes=rawio.output)
@@ -270,7 +270,7 @@ def test_pieces_that_end_in_a_space_and_the_whole_are_one_utterance(whole: str) 
     converse(talk, writer)
 
 
-def test_an_end_at_once_waits_for_nothing() -> None:
+def test_ending_at_once_does_not_wait_for_utterances() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
         await conversation.end(at_once=True)

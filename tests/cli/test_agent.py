@@ -155,13 +155,13 @@ def test_ctrl_c_during_an_import_is_not_the_module_s_fault(folder: Path, capsys:
         assert call(capsys, "run", way) == (130, "", "")
 
 
-def test_the_message_names_a_missing_package(folder: Path, capsys: Capture) -> None:
+def test_a_module_that_imports_a_missing_package_has_a_message_that_names_it(folder: Path, capsys: Capture) -> None:
     write(folder / "needs.py", "import no_such_package\n")
     assert "No module named 'no_such_package'" in refused(capsys, "./needs.py")
     assert "No module named 'no_such_package'" in refused(capsys, "needs")
 
 
-def test_a_wrong_declaration_is_a_fault_with_its_place(folder: Path, capsys: Capture) -> None:
+def test_a_wrong_declaration_gives_exit_code_1_and_a_message(folder: Path, capsys: Capture) -> None:
     write(folder / "wrong.py", "import ravestate as rs\nm = rs.Module('two words')\n")
     for way in ("./wrong.py", "wrong", "wrong:m"):
         assert refused(capsys, way, code=1).startswith("Module: 'two words' is not a name")
@@ -256,14 +256,14 @@ def test_a_wrong_agent_file_has_a_message(content: str, text: str, folder: Path,
     ids=["aliases", "nesting"],
 )
 @pytest.mark.parametrize("command", ["run", "check", "graph"])
-def test_an_agent_file_that_explodes_ends_at_once(
+def test_an_agent_file_that_expands_without_limit_is_refused_at_once(
     command: str, content: str, text: str, folder: Path, capsys: Capture
 ) -> None:
     (folder / "agent.yaml").write_text(content, encoding="utf-8")
     assert call(capsys, command, "agent.yaml") == (2, "", f"ravestate {command}: {text}\n")
 
 
-def test_a_setting_that_explodes_counts_as_text(capsys: Capture) -> None:
+def test_a_setting_nested_too_deeply_counts_as_text(capsys: Capture) -> None:
     assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=2)
 
 
@@ -357,7 +357,7 @@ def test_a_set_value_is_text_for_a_text_field_and_yaml_for_others(
     assert run(capsys, "./hello.py", "--set", text).startswith(said)
 
 
-def test_the_last_of_two_values_wins(folder: Path, capsys: Capture) -> None:
+def test_the_last_of_two_values_for_a_setting_wins(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith("Hello 3.0")
 
@@ -406,7 +406,7 @@ def test_one_message_has_all_unknown_settings(capsys: Capture) -> None:
         ("idle.bored_after=-1", "-1"),
     ],
 )
-def test_unfit_values_are_faults(text: str, fault: str, capsys: Capture) -> None:
+def test_a_value_that_does_not_fit_its_setting_is_refused(text: str, fault: str, capsys: Capture) -> None:
     assert fault in refused(capsys, "idle", "rawio", "--set", text, code=2)
 
 

@@ -113,7 +113,8 @@ def test_one_line_says_which_model_talks(started: Any, capsys: Capture, monkeypa
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
 def test_output_that_cannot_be_written_is_a_failure() -> None:
-    others = [option for name in COMPLETE if name != "hibye" for option in ("--without", name)]  # they start slowly
+    # Without the other modules the process starts quickly.
+    others = [option for name in COMPLETE if name != "hibye" for option in ("--without", name)]
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", *others]
     with Path("/dev/full").open("w") as full:
         run = subprocess.run(

@@ -97,7 +97,7 @@ def test_an_interrupted_command_says_how_to_continue(
     assert call(capsys, "genqa", "index", "docs")[1].startswith("1 unchanged, 1 added")
 
 
-def test_the_index_may_be_named(
+def test_the_index_file_may_be_given(
     docs: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     call(capsys, "genqa", "--index", "my.sqlite", "index", "docs")
@@ -106,7 +106,7 @@ def test_the_index_may_be_named(
     assert "engine.txt" in call(capsys, "genqa", "list")[1]
 
 
-def test_the_index_may_also_be_named_after_the_action(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_option_for_the_index_may_also_follow_the_action(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "index", "docs", "--index", "my.sqlite")
     assert (docs.parent / "my.sqlite").exists()
     before = call(capsys, "genqa", "--index", "my.sqlite", "list")
@@ -139,7 +139,7 @@ def test_an_index_of_a_newer_version_is_an_error_with_a_message(docs: Path, caps
     assert "written by a newer Ravestate (format 99" in errors
 
 
-def test_nothing_read_yet_is_no_error(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_list_without_documents_is_not_an_error(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "genqa", "list")
     assert code == 0
     assert out.startswith("nothing has been read yet: to read files into")
@@ -150,7 +150,7 @@ def test_wrong_use_has_exit_code_2(docs: Path, capsys: pytest.CaptureFixture[str
     assert call(capsys, "genqa", *arguments)[0] == 2
 
 
-def test_no_document_controls_the_terminal(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_control_codes_in_a_document_do_not_reach_the_terminal(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     evil = {
         "title": "\x1b]0;evil\x07Zorbex",
         "text": "The \x1b[2JZorbex pump was built by Anna Berg.",

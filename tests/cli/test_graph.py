@@ -32,7 +32,7 @@ def test_svg_is_the_default(hello: str, capsys: Capture) -> None:
 
 
 @pytest.mark.parametrize(("format", "begins"), [("dot", "digraph"), ("mermaid", "flowchart")])
-def test_text_formats(hello: str, capsys: Capture, format: str, begins: str) -> None:
+def test_dot_and_mermaid_diagrams_are_printed(hello: str, capsys: Capture, format: str, begins: str) -> None:
     code, out, _ = call(capsys, "graph", hello, "--format", format)
     assert code == 0 and out.startswith(begins) and "greet" in out
 

@@ -85,7 +85,7 @@ def test_modules_may_come_before_and_after_options(folder: Path, capsys: Capture
         (("memory", "--nonsense=1", "list"), "memory", "unrecognized arguments: --nonsense=1"),
     ],
 )
-def test_wrong_use_shows_the_usage_of_that_command(
+def test_wrong_use_of_a_command_shows_its_usage(
     arguments: tuple[str, ...], usage: str, complaint: str, capsys: Capture
 ) -> None:
     code, out, errors = call(capsys, *arguments)
@@ -95,7 +95,7 @@ def test_wrong_use_shows_the_usage_of_that_command(
 
 
 @pytest.mark.parametrize("flags", [(), ("-v",), ("-vv",)])
-def test_verbosity_is_counted(flags: tuple[str, ...], capsys: Capture) -> None:
+def test_the_flag_for_verbosity_may_be_repeated(flags: tuple[str, ...], capsys: Capture) -> None:
     assert call(capsys, *flags, "check", "rawio")[0] == 0
 
 

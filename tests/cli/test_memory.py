@@ -1,5 +1,7 @@
-"""``ravestate memory``: lists, shows, exports, loads and forgets. The exit code is 2 for a mistake, and 1 if something
-cannot be used."""
+"""``ravestate memory`` lists, shows, exports, loads and forgets.
+
+The exit code is 2 for a mistake of the user, and 1 if a file or the memory cannot be used.
+"""
 
 from __future__ import annotations
 
@@ -214,7 +216,7 @@ def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Cap
     assert "also has Boat, but no file declares these types" in errors
 
 
-def test_the_place_may_also_be_named_after_the_action(file: Path, folder: Path, capsys: Capture) -> None:
+def test_the_options_for_the_place_may_also_follow_the_action(file: Path, folder: Path, capsys: Capture) -> None:
     before = call(capsys, "memory", "--path", str(file), "list")
     assert before[0] == 0
     assert call(capsys, "memory", "list", "--path", str(file)) == before

@@ -1,4 +1,4 @@
-"""``ravestate run``: until the agent ends by itself, or Ctrl-C."""
+"""``ravestate run`` runs until the agent ends by itself, or until Ctrl-C."""
 
 import signal
 import subprocess

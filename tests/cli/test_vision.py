@@ -1,4 +1,4 @@
-"""``ravestate vision``: whose faces are in pictures, and learning a face."""
+"""``ravestate vision`` tells whose faces are in pictures, and learns and forgets faces."""
 
 import re
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ def rows(text: str) -> list[tuple[str, str, str]]:
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 
 
-def test_the_commands_who_learn_and_forget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_commands_who_learn_and_forget_work_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))
     code, out, errors = call(capsys, "vision", "who", *memory, str(photo("obama")))
     assert code == 0 and rows(out) == [("unknown", "-", "obama")] and "there is no memory in" in errors

@@ -45,7 +45,7 @@ FLAGS = [
 
 
 async def hide(page: Page) -> None:
-    """Tell a page that it is in the background, as if the visitor had opened another tab."""
+    """Put a page in the background, as if the visitor had opened another tab."""
     await page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden'});"
         "document.dispatchEvent(new Event('visibilitychange'))"

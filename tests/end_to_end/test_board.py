@@ -39,7 +39,7 @@ class Cue:
 
 @keeper.rule(when=rawio.input.changed, emits=question)
 async def classify(ctx: rs.RuleContext) -> None:
-    """Tell questions from other things."""
+    """Classify an input as a question or something else."""
     await Cue.classified.wait()
     if "?" in ctx.payload(rawio.input.changed):
         ctx.emit(question, ctx.payload(rawio.input.changed))
@@ -56,7 +56,7 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @keeper.rule(when=rawio.input.changed, writes=rawio.output)
 async def small_talk(ctx: rs.RuleContext) -> None:
-    """Say something in any case."""
+    """Answer when no other rule does."""
     ctx[rawio.output] = "I see."
 
 
@@ -424,7 +424,7 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         assert shown is not None
         assert shown["height"] > 20  # pixels, for two lines
         joined = page.locator(".node:not(.faint)")
-        await expect(joined).to_have_count(3)  # its signal, and its slot
+        await expect(joined).to_have_count(3)  # the rule's signal and slot
 
 
 @on_stage
@@ -475,7 +475,7 @@ async def test_a_conversation_that_has_ended_takes_nothing_more_and_says_why(sta
 
 
 @on_stage
-async def test_nothing_runs_off_the_edge_of_a_phone(stage: Stage) -> None:
+async def test_on_a_phone_nothing_is_wider_than_the_screen(stage: Stage) -> None:
     off = """() => [...document.querySelectorAll("header *, .tools *, aside *")].filter(element => {
         const box = element.getBoundingClientRect();
         return box.width > 1 && box.right > innerWidth + 1;
@@ -575,7 +575,9 @@ async def test_a_thousand_events_a_second_do_not_stutter_or_delay_the_agent(stag
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [{}, PHONE], ids=["desk", "phone"])
 @on_stage
-async def test_axe_finds_nothing_serious(stage: Stage, scheme: str, size: dict[str, Any]) -> None:
+async def test_axe_finds_nothing_serious_in_any_view_of_the_board(
+    stage: Stage, scheme: str, size: dict[str, Any]
+) -> None:
     async with (
         served() as host,
         stage.open(f"{host.address}board/", complaints=True, color_scheme=scheme, **size) as page,
@@ -596,13 +598,13 @@ async def test_axe_finds_nothing_serious(stage: Stage, scheme: str, size: dict[s
     assert not found, "\n".join(found)
 
 
-def test_the_page_has_little_script() -> None:
+def test_the_scripts_of_the_page_are_small() -> None:
     scripts = sum(len(gzip.compress(file.read_bytes())) for file in PAGE.rglob("*.js"))
     assert 0 < scripts < SCRIPT
 
 
 @on_stage
-async def test_the_pictures_in_the_documentation(stage: Stage, tmp_path: Path) -> None:
+async def test_the_pictures_in_the_documentation_can_be_taken(stage: Stage, tmp_path: Path) -> None:
     folder = Path(os.environ.get("PICTURES", tmp_path))
     size = {"width": 1280, "height": 720}
     async with (
@@ -674,7 +676,7 @@ async def test_a_failure_is_counted_and_shows_its_traceback(stage: Stage) -> Non
 
 
 @on_stage
-async def test_the_picture_of_the_chat_beside_its_board(stage: Stage, tmp_path: Path) -> None:
+async def test_the_picture_of_the_chat_beside_its_board_can_be_taken(stage: Stage, tmp_path: Path) -> None:
     picture = Path(os.environ.get("PICTURES", tmp_path)) / "chat-and-board.png"
     chat_size, board_size = {"width": 480, "height": 720}, {"width": 1120, "height": 720}
     async with (

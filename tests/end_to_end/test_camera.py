@@ -90,7 +90,7 @@ async def test_a_stranger_tells_their_name_and_sees_it_on_their_face_and_on_the_
 
 
 @on_stage
-async def test_the_pictures_of_the_documentation(stage: Stage, tmp_path: Path) -> None:
+async def test_the_pictures_in_the_documentation_can_be_taken(stage: Stage, tmp_path: Path) -> None:
     """`PICTURES=docs/pictures pytest ...` renews them."""
     figure = tmp_path / "figure.mjpeg"
     make(Path(__file__).with_name("drawn_figure.py").read_text(), figure)
@@ -150,7 +150,7 @@ async def test_the_visitor_refuses_the_camera(stage: Stage) -> None:
 
 
 @on_stage
-async def test_on_a_phone_everything_is_in_reach_of_a_finger(stage: Stage, video: Path) -> None:
+async def test_on_a_phone_every_button_is_large_enough_for_a_finger(stage: Stage, video: Path) -> None:
     async with (
         stage.devices(film=video) as browser,
         stage.serve(eyes, title="Elske") as served,
@@ -207,7 +207,7 @@ with open(a[1], "wb") as out:
 
 
 @on_stage
-async def test_a_round_of_charades_with_a_real_video(stage: Stage, tmp_path: Path) -> None:
+async def test_a_round_of_charades_can_be_played_with_a_real_video(stage: Stage, tmp_path: Path) -> None:
     walk = tmp_path / "walk.mjpeg"
     make(WALK, PHOTOS.parent / "videos" / "walk.mp4", walk)
     settings: dict[str, Any] = {

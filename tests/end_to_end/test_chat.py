@@ -428,7 +428,7 @@ async def test_a_refused_text_is_not_sent_again_and_again(stage: Stage) -> None:
         stage.open(served.address, complaints=True) as page,
     ):
         await said(page, "Good evening.")
-        await say(page, "\u0085")  # white space to the server alone
+        await say(page, "\u0085")  # the server counts this as white space, but the page does not
         await expect(page.locator(".pending")).to_contain_text("(not taken)")
         await say(page, "hello")
         await expect(log(page)).to_contain_text("You said: hello")

@@ -10,7 +10,7 @@ from end_to_end.conversation import WORDS, Conversation, spoken_by
 
 
 @pytest.mark.parametrize("backend", ["auto", "listen"])
-def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path, backend: str) -> None:
+def test_example_1_has_small_talk_and_a_question_of_fact(tmp_path: Path, backend: str) -> None:
     with Conversation(tmp_path, {"wildtalk": {"backend": backend}}) as talk:
         assert spoken_by(talk.say("will it rain today")) == ["wildtalk"]
         assert spoken_by(talk.say("know if it's gonna rain today")) == ["wildtalk"]
@@ -20,7 +20,7 @@ def test_example_1_small_talk_and_a_question_of_fact(tmp_path: Path, backend: st
         assert (answer.module, "Lima" in answer.text) == ("genqa", True)
 
 
-def test_example_2_the_agent_asks_stores_the_answer_and_knows_it_after_a_restart(tmp_path: Path) -> None:
+def test_in_example_2_the_agent_asks_stores_the_answer_and_knows_it_after_a_restart(tmp_path: Path) -> None:
     with Conversation(tmp_path, {"persqa": {"topics": ["home"], "turns": 0}}) as talk:
         assert spoken_by(talk.say("what is your favorite animal")) in (["genqa"], ["agentqa"])
         asked = [line.text for line in talk.silence(60.0) if line.module == "persqa"]
@@ -37,7 +37,7 @@ def test_example_2_the_agent_asks_stores_the_answer_and_knows_it_after_a_restart
 
 
 @pytest.mark.parametrize("backend", ["auto", "listen"])
-def test_example_3_a_greeting_the_agent_and_its_feelings(tmp_path: Path, backend: str) -> None:
+def test_example_3_has_a_greeting_questions_about_the_agent_and_feelings(tmp_path: Path, backend: str) -> None:
     settings = {"emotion": {"shy": 1.0}, "wildtalk": {"backend": backend}, "persqa": {"topics": []}}
     with Conversation(tmp_path, settings) as talk:
         assert spoken_by(talk.say("Hello")) == ["hibye"]

@@ -29,7 +29,7 @@ async def answer(ctx: rs.RuleContext) -> None:
 
 
 @on_stage
-async def test_the_picture_of_the_chat(stage: Stage, tmp_path: Path) -> None:
+async def test_the_picture_of_the_chat_can_be_taken(stage: Stage, tmp_path: Path) -> None:
     picture = Path(os.environ.get("PICTURES", tmp_path)) / "chat.png"
     size = {"width": 920, "height": 560}
     async with (

@@ -57,7 +57,7 @@ async def point(board: Page, lane: str, words: str) -> None:
 
 
 @on_stage
-async def test_a_question_by_voice_its_answer_and_an_interruption(stage: Stage, tmp_path: Path) -> None:
+async def test_a_spoken_question_is_answered_and_the_answer_can_be_interrupted(stage: Stage, tmp_path: Path) -> None:
     settings: dict[str, Any] = {
         "webio": {"port": 0, "title": "Elske"},
         "voiceio": {"model": "tiny.en", "voice": "espeak", "captions": 0},  # captions cost computing time

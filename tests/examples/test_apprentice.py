@@ -1,4 +1,4 @@
-"""The apprentice: rules that are added to, and retire from, a context that runs."""
+"""The apprentice adds rules to a running context, and retires them again."""
 
 import ravestate as rs
 from examples.loading import example

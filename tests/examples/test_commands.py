@@ -1,8 +1,9 @@
 """The commands in the documentation print the output that the documentation shows.
 
-In a `console` block, a line that begins with `$ ` is a command, and the next lines are its output; `...` stands for
-anything. The tests run the commands of Ravestate and Python, in a folder with the files that the page has shown so far.
-A block with the title `hello.py` makes a file, and a block with the title `hello.py, continued` adds to it.
+In a `console` block, a line that begins with `$ ` is a command. The next lines are its output, in which `...`
+stands for anything. The tests run the commands of Ravestate and Python, in a folder with the files that
+the page has shown so far. A block with the title `hello.py` makes a file, and a block with the title
+`hello.py, continued` adds to it.
 """
 
 import doctest

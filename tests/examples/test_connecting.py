@@ -55,7 +55,7 @@ def test_a_robot_is_heard_and_told_what_to_say() -> None:
     asyncio.run(talk())
 
 
-def test_the_telephone_is_a_whole_line() -> None:
+def test_the_telephone_has_every_method_of_a_line() -> None:
     telephone = import_module("telephone").Telephone
     assert {name for name in vars(rawio.Line) if not name.startswith("_")} <= set(dir(telephone))
 

@@ -34,9 +34,9 @@ def test_praise_brings_a_smile_and_leaves_the_answer_to_others() -> None:
         assert state(sim) == ("If you say so. Ale, mead or water?", "smiling", "wipe the counter")
 
 
-def test_moods_pass() -> None:
+def test_the_innkeepers_frown_fades_after_a_while() -> None:
     with simulate(inn, settings={"idle": {"bored_after": 4, "answer_time": 12}}) as sim:
         sim.say("What an awful inn.")
         assert sim.read(inn.face) == "frowning"
-        sim.advance(20)  # she has asked something, and gives it its time
+        sim.advance(20)  # the innkeeper has asked something, and waits for the answer
         assert sim.read(inn.face) == "neutral"

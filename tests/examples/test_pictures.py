@@ -22,11 +22,11 @@ def pictures(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return module
 
 
-def test_they_are_current(pictures: ModuleType) -> None:
+def test_the_pictures_are_up_to_date(pictures: ModuleType) -> None:
     assert pictures.stale() == [], "run: .venv/bin/python tools/pictures.py"
 
 
-def test_each_is_shown_somewhere_and_says_what_it_is(pictures: ModuleType) -> None:
+def test_each_picture_is_on_a_page_and_has_a_description(pictures: ModuleType) -> None:
     pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
     for name, picture in pictures.pictures().items():

@@ -10,7 +10,7 @@ def asked(sim) -> int:
     return sim.fired.count("quiz:ask")
 
 
-def test_silence_is_asked_again_and_again() -> None:
+def test_in_silence_the_question_is_repeated() -> None:
     with simulate(quiz) as sim:
         assert sim.said == ["Which planet is nearest to the sun?"]
         sim.advance(50)
@@ -33,7 +33,7 @@ def test_a_wrong_answer_opens_the_question_once_more() -> None:
         assert sim.said[-2:] == ["No. Try again.", "Mercury it is!"]
 
 
-def test_nothing_is_left_of_it() -> None:
+def test_no_spike_is_left_after_the_quiz() -> None:
     with simulate(quiz, settings={"quiz": {"again_after": 2}}) as sim:
         sim.advance(2.5)
         sim.say("mercury")

@@ -15,7 +15,7 @@ def test_a_story_is_told_to_its_end() -> None:
         assert sim.read(storyteller.told) == 0
 
 
-def test_words_interrupt_it_and_are_answered_at_once() -> None:
+def test_the_users_words_interrupt_the_story_and_are_answered_at_once() -> None:
     with simulate(storyteller) as sim:
         sim.say("Tell me a story.")
         sim.advance(4)
@@ -27,7 +27,7 @@ def test_words_interrupt_it_and_are_answered_at_once() -> None:
         assert len(sim.said) == 3
 
 
-def test_it_goes_on_where_it_was_left() -> None:
+def test_the_story_continues_where_it_was_interrupted() -> None:
     with simulate(storyteller) as sim:
         sim.say("A story, please.")
         sim.advance(4)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from ravestate.modules._text import printable, without_controls
 
 
-def test_escape_sequences_go_as_a_whole() -> None:
+def test_escape_sequences_are_removed_as_a_whole() -> None:
     assert printable("a\x1b[1;31mb\x1b]0;title\x07c\x1b(Bd\x9b2Je\x1b") == "abcde"
 
 
@@ -27,5 +27,5 @@ def test_the_result_can_be_printed(text: str) -> None:
 
 
 @given(st.lists(st.text(st.characters(codec=None, categories=None), max_size=10)))
-def test_pieces_are_cleaned_like_their_whole(pieces: list[str]) -> None:
+def test_cleaning_piece_by_piece_equals_cleaning_the_whole(pieces: list[str]) -> None:
     assert "".join(map(without_controls, pieces)) == without_controls("".join(pieces))

@@ -31,13 +31,13 @@ def test_an_empty_file_has_no_node(tmp_path: Path) -> None:
         (b"[" * 5000, r"a\.yaml:1: nested more than 50 levels deep"),
     ],
 )
-def test_a_file_that_is_no_yaml(tmp_path: Path, content: bytes, message: str) -> None:
+def test_a_file_that_is_not_yaml_is_refused_with_the_line(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "a.yaml").write_bytes(content)
     with pytest.raises(DeclarationError, match=message):
         read_nodes(tmp_path / "a.yaml", "file of tests")
 
 
-def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").touch()
     with pytest.raises(PlatformError, match=r"the file of tests .*/b\.yaml' does not exist; did you mean 'a\.yaml'"):
         read_nodes(tmp_path / "b.yaml", "file of tests")

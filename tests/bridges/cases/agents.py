@@ -32,7 +32,7 @@ talker = rs.Module("talker", requires=[rawio])
     until=rawio.input.changed,
 )
 async def talk(ctx: rs.RuleContext) -> None:
-    """Say three pieces. After "wait", stop in the middle, and never go on."""
+    """Say three pieces. If the user said "wait", stop in the middle, and never go on."""
     said = ""
     ctx[rawio.speaking] = True
     try:
@@ -107,7 +107,7 @@ broken = rs.Module("broken", requires=[rawio])
 
 @broken.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
 async def fail(ctx: rs.RuleContext) -> None:
-    """Fail: at once, or after "go on" in the middle of an utterance."""
+    """Fail at once; if the user said "go on", fail in the middle of an utterance."""
     if ctx.payload(rawio.input.changed) == "go on":
         ctx.emit(rawio.piece, "I know that")
     raise PlatformError("the library is closed")

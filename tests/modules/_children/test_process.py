@@ -49,14 +49,14 @@ def process(backend: Backend) -> Iterator[ModelProcess]:
     one.close()
 
 
-def test_it_answers_with_data_of_any_size(process: ModelProcess) -> None:
+def test_a_process_answers_with_data_of_any_size(process: ModelProcess) -> None:
     data = bytes(range(256)) * 4000  # more than a pipe holds
     answer, back = process.request({"do": "turn"}, data, seconds=20)
     assert answer["said"] == "turn" and back == data[::-1]
     assert process.request({"do": "again"}, seconds=20)[0]["pid"] == answer["pid"] == process.pid
 
 
-def test_a_fault_is_reported_and_the_process_lives(process: ModelProcess) -> None:
+def test_a_fault_is_reported_and_the_process_goes_on(process: ModelProcess) -> None:
     with pytest.raises(PlatformError, match="obedient failed: ValueError: too loud"):
         process.request({"do": "fail"}, seconds=20)
     pid = process.pid
@@ -107,7 +107,7 @@ def test_an_interpreter_that_is_missing_is_named(backend: Backend) -> None:
         ModelProcess(backend, {}, "/none/python").start()
 
 
-def test_a_closed_process_refuses(process: ModelProcess) -> None:
+def test_a_closed_process_refuses_requests(process: ModelProcess) -> None:
     process.start()
     pid = process.pid
     process.close()
@@ -130,7 +130,7 @@ def test_users_of_the_same_model_share_its_process(backend: Backend) -> None:
     assert one.pid is None
 
 
-def test_a_process_that_lingers_serves_the_next_user(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unused_process_is_kept_for_the_next_user(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 3600.0)
     one = model_process.take(backend, {"b": 1})
     one.start()
@@ -142,7 +142,7 @@ def test_a_process_that_lingers_serves_the_next_user(backend: Backend, monkeypat
     assert two.pid is None
 
 
-def test_a_process_that_nobody_takes_again_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_nobody_uses_again_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 0.0)
     one = model_process.take(backend, {"c": 1})
     one.start()
@@ -158,8 +158,8 @@ def test_a_process_that_nobody_takes_again_ends(backend: Backend, monkeypatch: p
     model_process.drop(other)
 
 
-def test_processes_that_linger_end_with_the_interpreter(backend: Backend) -> None:
-    """Also while their timer runs."""
+def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
+    """This holds even while the timer that would end them is running."""
     program = (
         "import sys, pathlib\n"
         "from ravestate.modules._children import process\n"
@@ -178,7 +178,7 @@ def test_processes_that_linger_end_with_the_interpreter(backend: Backend) -> Non
 
 
 def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: ModelProcess) -> None:
-    """The answers to superseded requests would keep the last one waiting."""
+    """Otherwise, the newest request would wait for answers that nobody needs."""
     unwanted, refused = threading.Event(), list[str]()
 
     def ask() -> None:

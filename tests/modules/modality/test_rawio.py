@@ -48,5 +48,5 @@ def test_words_from_another_thread_are_heard() -> None:
         ("Hello", "uh", None),
     ],
 )
-def test_the_rest_of_an_utterance_follows_its_pieces(text: str, pieces: str, rest: str | None) -> None:
+def test_rest_returns_the_part_of_an_utterance_after_its_pieces(text: str, pieces: str, rest: str | None) -> None:
     assert rawio.rest(text, pieces) == rest

@@ -69,7 +69,7 @@ def test_a_key_pressed_shows_that_the_user_is_there() -> None:
         assert len(sim.said) == 4
 
 
-def test_activity_puts_boredom_off() -> None:
+def test_activity_delays_boredom() -> None:
     with simulate(watch, settings={"idle": {"bored_after": 3.0}}) as sim:
         sim.say("hello")
         sim.advance(4.0)
@@ -99,7 +99,7 @@ def test_the_first_silence_begins_after_the_work_at_startup() -> None:
 
 
 @pytest.mark.parametrize("begin", [0.0, 3.0, 4.9])
-def test_the_first_words_put_the_first_boredom_off(begin: float) -> None:
+def test_the_first_words_delay_the_first_boredom(begin: float) -> None:
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.advance(begin)
         sim.say("hello")
@@ -165,7 +165,7 @@ def test_the_user_has_more_time_to_answer_a_question_of_the_agent() -> None:
         assert sim.read(bored) == pytest.approx((9.0, 18.0, 25.0))
 
 
-def test_typing_is_no_silence() -> None:
+def test_a_user_who_types_is_not_silent() -> None:
     with simulate(watch, settings={"idle": {**SOON, "writing_time": 8.0}}) as sim:
         for _ in range(20):
             sim.advance(1.0)

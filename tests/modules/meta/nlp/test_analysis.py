@@ -15,14 +15,14 @@ texts = st.lists(st.sampled_from([*said, "?", ",", ".", "\n"]), max_size=25).map
 
 @given(texts)
 @settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_any_words_in_any_order(reader: Pipeline, text: str) -> None:
+def test_any_words_in_any_order_can_be_analysed(reader: Pipeline, text: str) -> None:
     seen = analyse(text, reader, ["Ravestate"])
     assert seen.question is None or seen.question.name
     assert all(triple.predicate for triple in seen.triples)
     assert all(seen.tree.text[word.start : word.end] == word.text for word in seen.tree.words)
 
 
-def test_names_are_whole_words(reader: Pipeline) -> None:
+def test_the_agents_name_counts_only_as_a_whole_word(reader: Pipeline) -> None:
     for text, expected in (
         ("Hi Ravestate!", True),
         ("ravestates are many", False),

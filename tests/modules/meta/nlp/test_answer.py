@@ -1,4 +1,4 @@
-"""The laws of yes and no; `tests/quality` measures which texts mean which."""
+"""Rules for the meaning of answers; `tests/quality` measures how often the meaning is right."""
 
 import pytest
 from hypothesis import given
@@ -34,7 +34,7 @@ def test_capitals_spaces_and_marks_change_nothing(text: str) -> None:
         assert yesno_of(variant) == yesno_of(text), variant
 
 
-def test_an_answer_is_true_and_no_answer_false() -> None:
+def test_a_meaning_is_truthy_only_if_the_text_is_an_answer() -> None:
     assert yesno_of("no") and yesno_of("maybe") and not yesno_of("It is cold.")
 
 
@@ -48,7 +48,7 @@ def test_every_text_has_one_of_six_values(text: str) -> None:
     assert yesno_of(text) in MEANINGS
 
 
-def test_a_long_text_is_no_more_work_than_a_short_one() -> None:
+def test_a_very_long_answer_has_the_meaning_of_a_short_one() -> None:
     assert yesno_of("yes " * 50_000) == MEANINGS[0]
 
 
@@ -72,7 +72,7 @@ def test_common_answers_need_no_sentence_model(text: str, meaning: YesNo, monkey
     assert yesno_of(text) == meaning
 
 
-def test_no_answer_is_also_a_sentence_of_no_class() -> None:
+def test_no_example_of_an_answer_is_also_an_example_of_another_sentence() -> None:
     answers = {plain(text) for texts in bundled("answers").classes.values() for text in texts}
     assert answers.isdisjoint(map(plain, (*bundled("answers").none, *bundled("none").none)))
 
@@ -90,6 +90,6 @@ def test_no_answer_is_also_a_sentence_of_no_class() -> None:
         ("thanks, but no", YesNo(0, 2, False)),
     ],
 )
-def test_the_parts_of_an_answer_are_weighed(text: str, meaning: YesNo) -> None:
+def test_all_parts_of_an_answer_decide_its_meaning(text: str, meaning: YesNo) -> None:
     bundled_matcher("answers").load()
     assert yesno_of(text) == meaning

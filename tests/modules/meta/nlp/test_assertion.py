@@ -1,4 +1,4 @@
-"""The parts of the phrases of statements. The set ``flags_rows`` measures their flags."""
+"""The parts of a statement. The set ``flags_rows`` measures how well its flags are found."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def test_an_owner_may_have_an_owner(reader: Pipeline) -> None:
     assert statement.subject.owner is not None and statement.subject.owner.head == "daughter"
 
 
-def test_quantities_and_names_of_several(reader: Pipeline) -> None:
+def test_a_statement_has_the_number_and_the_names_of_its_object(reader: Pipeline) -> None:
     (statement,) = said(reader, "I have two brothers, Max and Tim.")
     assert (statement.object.amount, statement.object.head) == (2, "brother")
     assert statement.object.names == ("Max", "Tim")
     assert said(reader, "I am 34 years old.")[0].object.amount == 34
 
 
-def test_all_phrases_of_the_clause_and_its_time(reader: Pipeline) -> None:
+def test_a_statement_has_all_prepositional_phrases_and_the_time_of_its_clause(reader: Pipeline) -> None:
     (statement,) = said(reader, "I work as a nurse in Hamburg.")
     assert [(phrase.preposition, phrase.text) for phrase in statement.phrases] == [("as", "nurse"), ("in", "Hamburg")]
     assert said(reader, "I moved to Toronto two years ago.")[0].when == "two years ago"

@@ -1,4 +1,4 @@
-"""A package can be blocked for one thread."""
+"""Importing a package can be forbidden for one thread."""
 
 import importlib
 import sys
@@ -23,7 +23,7 @@ def test_a_blocked_package_can_be_imported_later() -> None:
     assert sys.meta_path == finders
 
 
-def test_other_threads_can_import_it() -> None:
+def test_other_threads_can_import_a_blocked_package() -> None:
     found: list[object] = []
     with blocked("colorsys"):
         thread = threading.Thread(target=lambda: found.append(importlib.import_module("colorsys")))
@@ -32,7 +32,7 @@ def test_other_threads_can_import_it() -> None:
     assert len(found) == 1
 
 
-def test_an_imported_package_stays_available() -> None:
+def test_a_package_that_is_already_imported_stays_available() -> None:
     imported = importlib.import_module("colorsys")
     with blocked("colorsys"):
         assert importlib.import_module("colorsys") is imported

@@ -34,7 +34,7 @@ def cafe() -> rs.Module:
     return module
 
 
-def test_an_intent_is_raised_for_what_resembles_its_examples() -> None:
+def test_an_utterance_that_resembles_the_examples_of_an_intent_raises_it() -> None:
     with simulate(cafe()) as sim:
         for text in (
             "hi, when r u open tomorow",
@@ -58,7 +58,7 @@ def test_a_match_says_how_sure_it_is() -> None:
         assert (match.example, match.text) == ("when do you open", "At what time do you open?")
 
 
-def test_small_talk_has_less_utility() -> None:
+def test_small_talk_has_less_utility_than_an_intent() -> None:
     policy = rs.compile(cafe())
     assert policy.utility("cafe:tell_hours") > policy.utility("cafe:chat") + 1.0
 
@@ -86,7 +86,7 @@ def test_intents_of_several_modules_compete_and_contexts_share_nothing_but_what_
         assert unseen is not None and not unseen.intents
 
 
-def test_an_act_with_an_example_of_an_intent_is_the_intents() -> None:
+def test_a_greeting_that_is_an_example_of_an_intent_raises_the_intent() -> None:
     module = rs.Module("door", requires=[rawio, nlp])
     came = nlp.intent(module, "came", examples=["hello", "good day"])
 
@@ -114,7 +114,7 @@ def test_a_rule_that_is_added_later_hears_an_intent() -> None:
         assert sim.said == ["Ten euros."]
 
 
-def test_examples_from_a_file_beside_the_code(tmp_path: Path) -> None:
+def test_examples_may_come_from_a_file_beside_the_code(tmp_path: Path) -> None:
     (tmp_path / "hours.yaml").write_text("- when do you open\n- how late are you open\n")
     (tmp_path / "all.yaml").write_text("price: [how much is it, what does it cost]\nhours: [when do you open]\n")
     code = (
@@ -129,7 +129,7 @@ def test_examples_from_a_file_beside_the_code(tmp_path: Path) -> None:
     }
 
 
-def test_mistakes_of_the_designer(tmp_path: Path) -> None:
+def test_mistakes_of_the_designer_have_helpful_messages(tmp_path: Path) -> None:
     module = rs.Module("shop", requires=[nlp])
     with pytest.raises(rs.DeclarationError, match=r"there are no examples: write two or more sentences"):
         nlp.intent(module, "price", examples=[])
@@ -170,7 +170,7 @@ def test_without_the_sentence_model_the_examples_are_understood_word_for_word(mo
         assert sim.said == ["Here it is."]
 
 
-def test_typed_utterances_of_demonstrations_are_understood() -> None:
+def test_most_typed_utterances_raise_the_right_intent() -> None:
     """Twenty intents of three examples each: at least 90 % of what users type, and no intent for other sentences."""
     demo = yaml.safe_load((Path(__file__).parents[3] / "quality" / "demo_rows.yaml").read_text(encoding="utf-8"))
     module = rs.Module("demo", requires=[nlp])

@@ -17,7 +17,7 @@ from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.pipeline import LONGEST, Pipeline, pipeline
 
 
-def test_words_are_as_written(reader: Pipeline) -> None:
+def test_words_keep_their_spelling_and_position(reader: Pipeline) -> None:
     text = "I’d LIKE  to\tvisit München, wouldn't you?"
     tree, _ = reader.read(text)
     assert all(text[word.start : word.end] == word.text for word in tree.words)
@@ -25,7 +25,7 @@ def test_words_are_as_written(reader: Pipeline) -> None:
     assert [word.index for word in tree.words] == list(range(len(tree.words)))
 
 
-def test_entities_know_where_they_stand(reader: Pipeline) -> None:
+def test_entities_have_the_right_positions_in_the_text(reader: Pipeline) -> None:
     text = "Tom Miller has lived in Berlin since 1999."
     _, entities = reader.read(text)
     assert {(text[e.start : e.end], e.label) for e in entities} >= {("Berlin", "GPE"), ("1999", "DATE")}

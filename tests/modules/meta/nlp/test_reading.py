@@ -184,7 +184,7 @@ def test_an_absent_server_is_named_with_the_setting_of_nlp() -> None:
 
 
 def test_llama_cpp_keeps_to_the_schema() -> None:
-    """A tiny model knows nothing, but its server can only answer with a reading."""
+    """The answers of a tiny model are nonsense, but its server forces them into the form of a reading."""
     process = llama_process.take(ModelKey(bundled_model(), 2048, 1, 1))
 
     async def main() -> list[nlp.Reading | None]:

@@ -1,4 +1,4 @@
-"""The repair of trees, and what clauses and questions gain by it."""
+"""The repair of parse trees makes clauses and questions readable."""
 
 import pytest
 
@@ -33,12 +33,12 @@ def test_a_misread_clause_has_its_triple(text: str, expected: str, reader: Pipel
     assert triples(reader, text) == expected
 
 
-def test_homework_after_do_is_no_verb(reader: Pipeline) -> None:
+def test_homework_after_do_is_read_as_a_noun(reader: Pipeline) -> None:
     assert triples(reader, "do your math homework").startswith("(you, do,")
 
 
 @pytest.mark.parametrize("text", ["You like tea, don't you?", "you can dance cant you", "It is late, isn't it"])
-def test_a_tag_makes_a_question_and_no_triple(text: str, reader: Pipeline) -> None:
+def test_a_question_tag_turns_a_statement_into_a_question_and_adds_no_triple(text: str, reader: Pipeline) -> None:
     tree, _ = reader.read(text)
     assert question_of(tree) is not None and question_of(tree).name == "YES_NO"  # pyright: ignore[reportOptionalMemberAccess]
     (statement,) = statements_of(tree)
@@ -66,7 +66,9 @@ def test_a_tree_without_faults_stays_as_it_is(reader: Pipeline) -> None:
         ("Guess what, I passed.", "-"),
     ],
 )
-def test_the_kinds_of_questions_without_marks_and_auxiliaries(text: str, kind: str, reader: Pipeline) -> None:
+def test_the_kind_of_a_question_is_found_without_a_question_mark_or_an_auxiliary(
+    text: str, kind: str, reader: Pipeline
+) -> None:
     found = question_of(reader.read(text)[0])
     assert (found.name if found else "-") == kind
 
@@ -77,5 +79,5 @@ def test_a_noun_with_a_capital_inside_a_sentence_is_a_name(reader: Pipeline) -> 
 
 
 @pytest.mark.parametrize("text", ["I'm thinking of moving to Bern", "we are moving to Bern"])
-def test_an_action_that_somebody_thinks_of_is_a_plan(text: str, reader: Pipeline) -> None:
+def test_an_action_that_somebody_intends_is_a_plan(text: str, reader: Pipeline) -> None:
     assert all(statement.plan for statement in statements_of(reader.read(text)[0]))

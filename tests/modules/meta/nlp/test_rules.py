@@ -74,7 +74,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
 
     def read(text: str, *rest: Any) -> Any:
         if text == "I live in Ulm.":
-            later.wait(0.2)  # for the other one, which would be through by now if it did not wait for its turn
+            later.wait(0.2)  # by now the second analysis would have ended if it did not wait for the first
         else:
             later.set()
         return analyse(text, *rest)
@@ -117,7 +117,7 @@ def test_every_utterance_signals_every_slot() -> None:
         ("", set[str]()),
     ],
 )
-def test_signals(text: str, signals: set[str]) -> None:
+def test_each_utterance_raises_the_right_signals(text: str, signals: set[str]) -> None:
     module = rs.Module("listener", requires=[nlp])
     raised: set[str] = set()
     for signal in (nlp.is_question, nlp.about_agent, nlp.intent_play, nlp.intent_hi, nlp.intent_bye):
@@ -197,7 +197,7 @@ def agent() -> rs.Module:
         ("why are you here", "small talk"),
     ],
 )
-def test_the_more_specific_answers_and_small_talk_does_not_wait(text: str, said: str) -> None:
+def test_the_more_specific_rule_answers_and_small_talk_does_not_wait(text: str, said: str) -> None:
     with simulate(agent()) as sim:
         sim.say(text)
         assert sim.said == [said]

@@ -1,4 +1,4 @@
-"""The laws of triples; `tests/quality` measures which texts have which."""
+"""Rules for triples; `tests/quality` measures how often they are right."""
 
 import pytest
 
@@ -12,13 +12,13 @@ def test_a_text_without_a_statement_has_no_triple(reader: Pipeline, text: str) -
     assert triples_of(reader.read(text)[0]) == ()
 
 
-def test_question_words_are_no_strings(reader: Pipeline) -> None:
+def test_a_question_word_in_a_triple_is_an_enumeration_member(reader: Pipeline) -> None:
     tree, _ = reader.read("Where do you live?")
     (triple,) = triples_of(tree)
     assert triple.object is QuestionWord.PLACE and str(triple) == "(you, live, PLACE)"
 
 
-def test_enumerations_do_not_multiply_without_end(reader: Pipeline) -> None:
+def test_long_enumerations_give_a_limited_number_of_triples(reader: Pipeline) -> None:
     names = " and ".join(f"Anna{number}" for number in range(40))
     tree, _ = reader.read(f"{names} like {names}.")
     assert len(triples_of(tree)) <= MOST

@@ -4,7 +4,7 @@ from ravestate.modules.meta.nlp.tree import Tree, Word
 
 
 def words(notation: str) -> list[Word]:
-    """Words without a pipeline: ``my/PRON/poss>1 name/NOUN/nsubj>2``."""
+    """Return words made without a pipeline, for example from ``my/PRON/poss>1 name/NOUN/nsubj>2``."""
     found: list[Word] = []
     start = 0
     for index, item in enumerate(notation.split()):
@@ -23,7 +23,7 @@ TREE = Tree(
 MY, OLD, DOG, SLEEPS, HERE = TREE.words
 
 
-def test_children_and_heads() -> None:
+def test_each_word_has_its_children_and_its_head() -> None:
     assert TREE.children(SLEEPS) == [DOG, HERE]
     assert TREE.children(SLEEPS, "advmod", "dobj") == [HERE]
     assert TREE.head(OLD) is DOG and TREE.head(SLEEPS) is SLEEPS
@@ -35,7 +35,7 @@ def test_subtrees_are_in_order() -> None:
     assert TREE.subtree(SLEEPS) == list(TREE.words)
 
 
-def test_neighbours() -> None:
+def test_each_word_has_its_neighbours() -> None:
     assert TREE.before(MY) is None and TREE.after(HERE) is None
     assert TREE.before(DOG) is OLD and TREE.after(DOG) is SLEEPS
 
@@ -51,7 +51,7 @@ def test_phrases_are_written_as_in_the_text() -> None:
     assert TREE.phrase([]) == ""
 
 
-def test_a_word_knows_where_it_ends_and_how_it_is_compared() -> None:
+def test_a_word_has_its_position_and_a_lower_case_form() -> None:
     assert (HERE.start, HERE.end) == (18, 22)
     (word,) = words("Don’T/AUX/ROOT>0")
     assert word.low == "don't"

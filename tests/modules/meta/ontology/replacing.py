@@ -12,7 +12,7 @@ OLD = "Ockham in Surrey"
 
 
 def replaced(memory: ontology.Memory) -> tuple[ontology.Node, ontology.Node]:
-    """Return a person who has moved, and their new town: nobody needs the old town any more."""
+    """Return a person who has moved, and their new town. No node refers to the old town any more."""
     ada = memory.create("Person", name="Ada").result()
     old, new = memory.create("City", name=OLD).result(), memory.create("City", name="London").result()
 

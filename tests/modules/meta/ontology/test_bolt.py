@@ -129,7 +129,9 @@ def test_a_server_of_another_protocol_is_reported() -> None:
         thread.join()
 
 
-def test_a_server_that_stalls_later_is_reported(bolt_server: dict[str, Any], proxy: Proxy, open_here: Open) -> None:
+def test_a_server_that_stalls_after_the_opening_is_reported(
+    bolt_server: dict[str, Any], proxy: Proxy, open_here: Open
+) -> None:
     memory = open_here(**{**bolt_server, "url": proxy.url, "timeout": 6.0})
     ada = memory.create("Person", name="Ada").result()
     proxy.flowing.clear()

@@ -1,4 +1,4 @@
-"""A damaged file causes a plain message, and ends no process."""
+"""A damaged file causes a clear message, and does not crash the process."""
 
 from __future__ import annotations
 
@@ -68,16 +68,14 @@ def test_a_damaged_file_is_read_or_called_broken(tmp_path: Path, open_here: Open
     assert outcomes.count("broken") >= cases // 4
 
 
-def test_a_trial_leaves_a_whole_file_as_it_is(tmp_path: Path, open_here: Open) -> None:
+def test_a_trial_opening_does_not_change_an_intact_file(tmp_path: Path, open_here: Open) -> None:
     path = small_memory(tmp_path, open_here)
     content = path.read_bytes()
     assert survives(path) and survives(path, whole_log=False)
     assert path.read_bytes() == content
 
 
-def test_a_process_that_ends_or_takes_for_ever_does_not_survive(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_trial_fails_if_its_process_crashes_or_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(database, "PATIENCE", 2.0)
     file = tmp_path / "trial.py"
     for program, alive in (

@@ -74,7 +74,7 @@ def test_acknowledged_writes_survive_a_kill(
 
 
 @pytest.mark.parametrize("times", [1, 4, 9])
-def test_a_kill_during_forget_brings_nobody_back_and_takes_nobody_else(
+def test_after_a_kill_during_forget_forgotten_people_stay_forgotten_and_nobody_else_is_lost(
     tmp_path: Path, open_here: Open, times: int
 ) -> None:
     path = tmp_path / "memory.lbug"
@@ -272,12 +272,12 @@ def test_a_database_of_another_program_is_left_alone(tmp_path: Path) -> None:
     assert "is a ladybug database of another program (it has Person)" in failure(path=path)
 
 
-def test_a_folder_is_no_file_and_a_file_is_no_folder(file: Path, tmp_path: Path) -> None:
+def test_a_path_that_is_a_folder_or_lies_below_a_file_is_refused(file: Path, tmp_path: Path) -> None:
     assert "cannot be opened" in failure(path=tmp_path)
     assert "cannot make its folder" in failure(path=file / "memory.lbug")
 
 
-def test_a_property_does_not_change_its_kind(file: Path, tmp_path: Path, open_here: Open) -> None:
+def test_a_stored_property_cannot_be_read_as_another_kind(file: Path, tmp_path: Path, open_here: Open) -> None:
     types = tmp_path / "mine.yaml"
     types.write_text("Person: {has: {shoe_size: text}}")
     memory = open_here(path=file, types=(types,))
@@ -309,7 +309,7 @@ def test_a_forgotten_person_leaves_no_byte_in_any_file(tmp_path: Path, open_here
     memory.relate(ada, "lives_in", memory.create("City", name="Ockham in Surrey").result()).result()
     memory.close().result()
 
-    memory = open_here(path=path)  # without that file of types; its nodes stay in memory
+    memory = open_here(path=path)  # without the file of types, its nodes stay in memory
     assert [node["name"] for node in memory.forget(ada).result()] == [ada["name"], "Ockham in Surrey"]
     for file in tmp_path.iterdir():
         content = file.read_bytes()

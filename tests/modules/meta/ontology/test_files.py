@@ -177,7 +177,7 @@ def test_forgetting_names_the_logs_that_may_still_have_the_data(
     assert f"{crashed}.wal.orphaned-1" in caplog.text
 
 
-def test_a_closed_memory_is_sealed_and_a_changed_one_is_not(tmp_path: Path, open_here: Open) -> None:
+def test_closing_seals_a_memory_and_a_later_change_breaks_the_seal(tmp_path: Path, open_here: Open) -> None:
     files = MemoryFiles(tmp_path / "memory.lbug")
     assert not files.is_sealed()
     open_here(path=files.path).close().result()

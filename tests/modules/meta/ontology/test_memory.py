@@ -58,7 +58,7 @@ def test_subtypes_are_found_with_their_type_oldest_first(memory: Memory) -> None
     assert memory.find("Thing", name="x").result() == [robot, person, thing, agent, city]
 
 
-def test_none_matches_a_missing_value(memory: Memory) -> None:
+def test_find_with_none_matches_nodes_without_the_property(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada", age=36).result()
     bob = memory.create("Person", name="Bob").result()
     nobody = memory.create("Person", age=None).result()
@@ -116,7 +116,9 @@ def test_every_kind_of_value_comes_back_as_it_was(open_here: Open, place: dict[s
         ("Person", {"born": "2020-01-01"}, "write for example datetime.date(1815, 12, 10)"),
     ],
 )
-def test_undeclared_names_are_refused(memory: Memory, type: str, properties: dict[str, Any], said: str) -> None:
+def test_undeclared_types_and_properties_are_refused(
+    memory: Memory, type: str, properties: dict[str, Any], said: str
+) -> None:
     before = memory.export().result()
     for operation in (memory.create, memory.ensure, memory.find):
         with pytest.raises(RuleError) as caught:
@@ -197,7 +199,7 @@ def test_unrelate_may_forget_the_other_node(memory: Memory) -> None:
     assert (memory.get(kim.id).result(), memory.get(bob.id).result()) == (
         None,
         bob,
-    )  # memory knows more about him than his name
+    )  # memory has more about Bob than his name
     memory.unrelate(bob, "lives_in", london, forget=True).result()
     assert memory.get(london.id).result() is None
 
@@ -337,7 +339,7 @@ def test_a_person_is_forgotten_with_everything_about_them(memory: Memory) -> Non
     assert memory.forget(ada).result() == memory.only_about(ada).result() == []
 
 
-def test_forget_keeps_nodes_that_others_need_even_in_a_ring(memory: Memory) -> None:
+def test_forget_keeps_nodes_that_other_nodes_need_even_in_a_cycle(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada").result()
     here, there = memory.create("City", name="here").result(), memory.create("City", name="there").result()
     for source, relation, target in (
@@ -410,7 +412,9 @@ def test_nothing_of_a_bad_document_is_loaded(memory: Memory, document: dict[str,
     assert memory.find("Thing").result() == []
 
 
-def test_types_grow_and_nothing_is_lost(open_here: Open, place: dict[str, Any], tmp_path: Path) -> None:
+def test_types_may_be_added_and_removed_without_loss_of_data(
+    open_here: Open, place: dict[str, Any], tmp_path: Path
+) -> None:
     memory = open_here(**place)
     ada = memory.create("Person", name="Ada").result()
     memory.close().result()

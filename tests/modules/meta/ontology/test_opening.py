@@ -38,7 +38,7 @@ def test_each_agent_has_a_memory_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp
 
 
 @pytest.mark.parametrize("agent", ["", "../other", "a/b", ".", "..", "-"])
-def test_an_agents_name_is_no_path(agent: str) -> None:
+def test_an_agents_name_that_is_a_path_is_refused(agent: str) -> None:
     with pytest.raises(pydantic.ValidationError):
         ontology.Settings(agent=agent)
 

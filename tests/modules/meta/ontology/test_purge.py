@@ -1,4 +1,4 @@
-"""No byte of a forgotten node stays in the file; only a person who asked to be forgotten waits for that."""
+"""No byte of a forgotten node stays in the file. Only a request to forget a person waits until the bytes are gone."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def rewrites(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
 
 @pytest.fixture
 def rests(monkeypatch: pytest.MonkeyPatch) -> threading.Semaphore:
-    """Return a semaphore that is released after each rest of a store."""
+    """Return a semaphore that is released after each call of `EmbeddedStore.rest`."""
     done = threading.Semaphore(0)
     rest = EmbeddedStore.rest
 
@@ -60,7 +60,7 @@ def test_a_replaced_value_is_purged_in_the_first_pause(
     path = tmp_path / "memory.lbug"
     memory = open_here(path=path)
     ada, new = replaced(memory)
-    assert rewrites == []  # the answer has not waited
+    assert rewrites == []  # the operation has ended before the purge
     assert holds(path)
     monkeypatch.setattr(worker, "PAUSE", 0.01)
     memory.get(ada.id).result()
@@ -72,7 +72,7 @@ def test_a_replaced_value_is_purged_in_the_first_pause(
     assert rewrites == [path]  # a pause with nothing to purge rewrites nothing
 
 
-def test_operations_without_a_pause_do_not_put_the_purge_off_for_ever(
+def test_without_a_pause_the_purge_is_still_done_in_time(
     tmp_path: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
@@ -118,19 +118,20 @@ def killed(tmp_path: Path) -> Iterator[Path]:
     yield path
 
 
-def test_a_kill_before_the_purge_puts_it_off_to_the_next_start(
+def test_after_a_kill_the_purge_is_done_at_the_next_start(
     killed: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert holds(killed)
     monkeypatch.setattr(worker, "PAUSE", 0.01)
     memory = open_here(path=killed)
-    memory.find("City").result()  # there has been a pause by the second rest, even if the first came before the types
+    memory.find("City").result()
+    # The first rest may come before the types are read; by the second one, there has been a pause.
     assert rests.acquire(timeout=60) and (not holds(killed) or rests.acquire(timeout=60))
     assert not holds(killed)
     assert [city["name"] for city in memory.find("City").result()] == ["London"]
 
 
-def test_a_purge_that_failed_is_done_after_the_next_start(
+def test_a_failed_purge_is_repeated_after_the_next_start(
     killed: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def fail(*_: object) -> None:

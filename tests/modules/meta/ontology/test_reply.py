@@ -40,7 +40,7 @@ def test_a_reply_raises_the_error() -> None:
         asyncio.run(wait(reply))
 
 
-def test_waiting_may_end_before_the_operation() -> None:
+def test_a_timeout_ends_the_wait_but_not_the_operation() -> None:
     future: Future[int] = Future()
     reply = Reply(future, "Memory.save")
     with pytest.raises(TimeoutError):
@@ -81,7 +81,7 @@ def test_an_ignored_error_is_logged(caplog: pytest.LogCaptureFixture, late: bool
     assert "Memory.save failed, and nobody waited for it: the disk is full" in caplog.text
 
 
-def test_a_seen_error_is_not_logged(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_error_that_the_caller_gets_is_not_logged(caplog: pytest.LogCaptureFixture) -> None:
     reply = Reply(done(PlatformError("no")), "Memory.save")
     with pytest.raises(PlatformError):
         reply.result()

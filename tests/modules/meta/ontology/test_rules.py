@@ -113,7 +113,7 @@ def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
     assert asyncio.run(talk()) == 100
 
 
-def test_without_the_package_everything_else_goes_on(
+def test_without_the_package_the_agent_runs_without_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setitem(sys.modules, "ladybug", None)
@@ -168,7 +168,7 @@ def test_a_write_to_a_bound_slot_is_a_write_to_memory(tmp_path: Path, open_here:
     assert (found.id, dict(found.properties)) == (ada.id, {"name": "Ada 19", "nickname": "A"})
 
 
-def test_none_in_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: Open) -> None:
+def test_writing_none_to_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: Open) -> None:
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         sim.emit(said, {"name": "Ada"})
         sim.emit(said, None)

@@ -123,7 +123,7 @@ def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, said: s
     assert said.replace("FILE", str(file)) in str(caught.value)
 
 
-def test_files_do_not_contradict_each_other(tmp_path: Path) -> None:
+def test_files_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
     first = "Thing: {has: {name: text}}\nBoat: {is: Thing}\nCar: {is: Thing}"
     with pytest.raises(DeclarationError, match=r"1\.yaml:1: Boat is a Thing already \(.*0\.yaml:2\)"):
         read(tmp_path, first, "Boat: {is: Car}")

@@ -64,12 +64,14 @@ def test_a_book_reads_any_kind_of_path(tmp_path: Path) -> None:
         ("DE-at", "Servus!"), ("de-AT-x", "Servus!"), ("fr", "Hello!"),
     ],
 )  # fmt: skip
-def test_a_language_falls_back(tmp_path: Path, language: str, expected: str) -> None:
+def test_a_language_without_phrases_falls_back_to_a_related_language(
+    tmp_path: Path, language: str, expected: str
+) -> None:
     assert texts(book(tmp_path, BASE, language=language), "greet")[0] == expected
     assert texts(book(tmp_path, BASE), "greet", language)[0] == expected
 
 
-def test_the_default_language_is_a_choice(tmp_path: Path) -> None:
+def test_the_default_language_can_be_chosen(tmp_path: Path) -> None:
     found = book(tmp_path, BASE, language="fr", default_language="de-DE")
     assert texts(found, "greet") == ["Hallo!"]
     assert texts(found, "farewell") == ["Goodbye!"]
@@ -126,7 +128,7 @@ def test_a_phrase_without_its_parameters_is_not_chosen() -> None:
     assert all_of(name="{other}", other=2) == {"Hi!", "Hi {other}!", "Hi {other} and 2!"}
 
 
-def test_braces_can_be_said() -> None:
+def test_doubled_braces_in_a_phrase_are_said_as_braces() -> None:
     assert PhraseBook({"x": {"en": ["{{{a}}}"]}}).choose("x", {"a": 1}, random.Random()).text == "{1}"
 
 

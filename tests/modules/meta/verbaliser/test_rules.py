@@ -84,7 +84,7 @@ def test_own_phrases_replace_built_in_ones(tmp_path: Path) -> None:
     assert said("think", "joke", phrases=(file,)) == ["Arr…", "Ha!"]
 
 
-def test_a_file_brings_its_phrases(tmp_path: Path) -> None:
+def test_an_intent_may_name_a_file_with_its_phrases(tmp_path: Path) -> None:
     file, mine = tmp_path / "phrases.yaml", tmp_path / "mine.yaml"
     file.write_text("joke: Ho!\npun: Oh!")
     mine.write_text("joke: Ha!")
@@ -92,7 +92,7 @@ def test_a_file_brings_its_phrases(tmp_path: Path) -> None:
     assert said(Intent("joke", file=file), phrases=(mine,)) == ["Ha!"]
 
 
-def test_a_package_brings_its_phrases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_intent_may_name_a_package_with_its_phrases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "rav_test_phrases"
     package.mkdir()
     (package / "__init__.py").touch()

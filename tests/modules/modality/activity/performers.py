@@ -20,6 +20,6 @@ ALL = {**movements.KNOWN, **movements.OTHERS, **movements.STRANGE, **movements.U
 
 
 def performance(name: str, seed: int = 1, *, conditions: Any = camera.TAUGHT, left: float = 0.0) -> list[Any]:
-    """Return the poses of somebody who performs an activity for three seconds."""
+    """Return the poses of a person who performs an activity for three seconds."""
     movement, rate = ALL[name]
     return starter.poses_of(movement, rate, conditions, np.random.default_rng(seed), left=left)

@@ -1,4 +1,4 @@
-"""The camera of `visionio` shows the body to `activity`, if somebody listens for activities."""
+"""`visionio` passes the poses of bodies to `activity` if a rule waits for activities."""
 
 from __future__ import annotations
 

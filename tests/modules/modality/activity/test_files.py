@@ -59,7 +59,7 @@ def test_files_that_are_no_archives_are_refused(tmp_path: Path) -> None:
         checked("hello")
 
 
-def test_landmarks_in_shares_of_a_wide_picture_get_one_unit() -> None:
+def test_landmarks_get_the_same_unit_for_width_and_height() -> None:
     pose = pose_of(np.ones((33, 4)), 2.0, 1600, 800)
     assert pose.points[0].tolist() == [2.0, 1.0, 2.0, 1.0]
     assert pose.at == 2.0

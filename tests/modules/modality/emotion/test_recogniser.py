@@ -68,7 +68,7 @@ def test_the_examples_of_the_readme_hold(text: str, feeling: str | None) -> None
     assert recognise(text) == feeling
 
 
-def test_without_the_model_the_examples_count_and_other_words_say_what_to_install(
+def test_without_the_model_only_examples_are_recognised_and_other_words_raise_an_error_with_the_remedy(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     class Missing(Matcher):

@@ -73,7 +73,7 @@ def test_neutral_words_raise_no_feeling(text: str) -> None:
         ("Good night!", "affectionate"),
     ],
 )
-def test_an_occasion_may_raise_a_spontaneous_feeling(text: str, feeling: str) -> None:
+def test_an_utterance_may_raise_a_feeling_by_chance(text: str, feeling: str) -> None:
     with calm(**{feeling: 1.0}) as sim:
         sim.say(text)
         assert felt(sim) == [feeling]
@@ -214,7 +214,7 @@ def test_each_feeling_shows_at_its_own_answer() -> None:
         assert [text in EMOJI["shy"] for text in sim.said] == [False, True] * 3
 
 
-def test_fillers_are_no_answer() -> None:
+def test_the_emoji_waits_for_the_answer_and_not_for_a_filler() -> None:
     with calm(module(seconds=4.0), more_specific(), fillers) as sim:
         sim.say("You are so clever!")
         sim.advance(10.0)

@@ -3,8 +3,8 @@
     PYTHONPATH=tests python -m modules.modality.visionio.error_curve
 
 The photos are those of `photographs`: 14 faces of nine people. The tool also makes pictures under bad conditions from
-each photo. If a pair of one person is above the threshold, the agent wrongly refuses it. If a pair of two people is
-below, the agent wrongly accepts it.
+each photo. If the distance of two photos of one person is above the threshold, the agent wrongly refuses the pair.
+If the distance of two people is below it, the agent wrongly accepts the pair.
 """
 
 import tempfile

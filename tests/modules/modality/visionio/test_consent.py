@@ -1,4 +1,4 @@
-"""The agent keeps a face only after a yes to its question, and forgets it at once."""
+"""The agent keeps a face only after the person agrees, and forgets it at once if they ask."""
 
 from pathlib import Path
 from typing import Any
@@ -42,7 +42,7 @@ def test_a_yes_to_another_question_is_no_permission(memory: Path) -> None:
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_small_talk_does_not_answer_a_yes_or_a_wish_about_a_face(memory: Path) -> None:
+def test_a_yes_and_a_wish_about_a_face_are_not_answered_by_small_talk(memory: Path) -> None:
     stage = Stage()
     settings = {
         "visionio": {"source": ""},

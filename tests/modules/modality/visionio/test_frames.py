@@ -56,7 +56,7 @@ def test_a_closed_camera_ends_the_watch_and_takes_nothing_more() -> None:
     asyncio.run(watch())
 
 
-def test_the_next_picture_is_due_when_the_last_one_has_been_taken_or_the_camera_is_closed() -> None:
+def test_taken_returns_once_the_picture_has_been_taken_or_the_camera_is_closed() -> None:
     async def watch() -> None:
         frames = Frames()
         await frames.taken()  # there is none

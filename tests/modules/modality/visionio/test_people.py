@@ -66,7 +66,7 @@ def test_a_view_that_tells_nothing_new_is_left_out_and_the_oldest_goes(graph: Me
     assert len(do(graph, lambda g: people.faces_of(g, person))) == 3
 
 
-def test_people_of_one_name_and_one_face_are_merged_others_are_not(graph: Memory) -> None:
+def test_people_with_equal_names_and_similar_faces_are_merged_and_others_are_not(graph: Memory) -> None:
     first, _ = keep(graph, "Barack", "obama")
     keep(graph, "Joe", "biden")
 

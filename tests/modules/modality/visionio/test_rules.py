@@ -85,7 +85,7 @@ def people_of(sim: Any) -> tuple[str | None, ...]:
     return tuple(one.name for one in sim.read(visionio.visitors).values())
 
 
-def test_named_has_the_node_that_memory_keeps(memory: Path) -> None:
+def test_the_signal_named_carries_the_node_in_memory(memory: Path) -> None:
     heard: list[Node] = []
     listener = visionio_listener(heard)
     with agent(memory, listener) as sim:
@@ -244,7 +244,7 @@ def test_a_user_whose_name_the_platform_gives_without_a_node_is_the_person_in_th
         assert dict(sim.read(interloc.users)) == {"page": "Barack"}
 
 
-def test_forget_my_face(memory: Path) -> None:
+def test_a_user_can_have_their_face_forgotten(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -296,7 +296,7 @@ def test_no_byte_of_a_forgotten_face_stays_in_the_file(memory: Path) -> None:
     assert not any(text in file.read_bytes() for file in memory.parent.iterdir())
 
 
-def test_remember_my_face(memory: Path) -> None:
+def test_a_user_can_have_their_face_remembered(memory: Path) -> None:
     stage = Stage()
     with agent(memory, ask=False) as sim:
         stage.show(sim, "hanks")
@@ -311,7 +311,7 @@ def test_remember_my_face(memory: Path) -> None:
         assert remembered_now(sim) == {"Tom": 1}
 
 
-def test_a_person_who_is_taken_for_another_says_so(memory: Path) -> None:
+def test_a_user_can_correct_the_agent_that_takes_them_for_another_person(memory: Path) -> None:
     stage = Stage()
     with agent(memory, threshold=1.0) as sim:  # a threshold so high that all men count as one person
         meet(sim, stage, "obama", "Barack")
@@ -329,7 +329,7 @@ def test_a_person_who_is_taken_for_another_says_so(memory: Path) -> None:
         assert remembered_now(sim) == {"Barack": 1, "Joe": 1}
 
 
-def test_a_person_whose_face_has_another_name_in_memory_says_so(memory: Path) -> None:
+def test_a_user_can_correct_a_wrong_name_for_their_face_in_memory(memory: Path) -> None:
     """Memory has a face under a wrong name. The agent moves the face to the person with the right name."""
     stage = Stage()
     with agent(memory) as sim:
@@ -363,7 +363,7 @@ def test_a_user_can_take_back_a_name_that_they_have_told(memory: Path) -> None:
         assert remembered_now(sim) == {}
 
 
-def test_two_people_of_one_name_and_one_face_become_one(memory: Path) -> None:
+def test_two_people_with_equal_names_and_similar_faces_become_one(memory: Path) -> None:
     """In bad light, the agent took Barack for a stranger, and stored him as a second person of that name."""
     stage = Stage()
     with agent(memory) as sim:
@@ -439,7 +439,7 @@ def test_missing_packages_are_reported_with_the_remedy(
     assert caplog.text.count("`make eyes`") == 1
 
 
-def test_many_faces_cost_the_conversation_nothing(memory: Path) -> None:
+def test_the_agent_still_answers_when_it_sees_many_faces(memory: Path) -> None:
     stage = Stage()
     everybody = [f"{number}-{name}={name}" for number in range(2) for name in faces()]
     with agent(memory) as sim:

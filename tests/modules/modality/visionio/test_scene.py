@@ -44,7 +44,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
-def test_a_scene_end_to_end(scene: Path, memory: Path) -> None:
+def test_people_are_recognised_in_a_video_and_again_after_a_restart(scene: Path, memory: Path) -> None:
     settings = {
         "visionio": {"source": str(scene), "fps": 2},
         "ontology": {"path": str(memory)},

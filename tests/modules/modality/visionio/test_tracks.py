@@ -1,4 +1,4 @@
-"""Tracks: the same face from picture to picture, and when it needs a new vector."""
+"""A track follows a face from picture to picture, and tells when the face needs a new vector."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ def test_a_face_gets_a_number_and_keeps_it() -> None:
     assert same is one and not new and other.number == 2
 
 
-def test_a_face_needs_vectors_until_enough_agree_and_then_now_and_again() -> None:
+def test_a_face_needs_vectors_until_enough_agree_and_later_only_at_intervals() -> None:
     tracks = Tracks(sure=3)
     for number in range(3):
         [(one, _)] = tracks.update([seen(1 if number else None)], number / 10)

@@ -1,4 +1,4 @@
-"""From a history of faces to people: decisions, tracks, visitors. Short vectors are enough for these tests."""
+"""Faces that were seen over time become decisions, tracks and visitors. Short vectors are enough for these tests."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec
@@ -40,7 +40,7 @@ def test_other_tracks_and_bad_vectors_do_not_count() -> None:
     assert decided(face(0, ADA), face(0, ADA, quality=0.1), face(0, ADA)) is None
 
 
-def test_a_face_that_is_never_seen_well_is_a_strangers_after_a_while() -> None:
+def test_a_face_that_is_never_seen_well_counts_as_unknown_after_a_while() -> None:
     bad = [face(0, ADA, quality=0.1, time=t) for t in (0.0, 1.0, WAIT)]
     assert decided(*bad[:2]) is None
     assert (nobody := decided(*bad)) is not None and nobody.person is None
@@ -59,7 +59,7 @@ def test_a_visitor_keeps_the_best_vectors_that_differ() -> None:
     )
 
 
-def test_a_new_track_belongs_to_the_visitor_whom_memory_or_the_vectors_name() -> None:
+def test_a_new_track_is_assigned_to_a_visitor_by_memory_or_by_its_vectors() -> None:
     ada = Visitor("a", ADA, known=True, vectors=((1.0, (0.0, 0.0)),))
     stranger = Visitor("s", Node("Person"), vectors=((1.0, (0.4, 0.0)),))
     here = {"a": ada, "s": stranger}

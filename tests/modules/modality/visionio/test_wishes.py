@@ -1,4 +1,4 @@
-"""The wish that the agent remember or forget a face."""
+"""A user may ask the agent to remember or forget their face."""
 
 import pytest
 

@@ -10,7 +10,7 @@ from ravestate.modules.platform.chats.addressing import addressed, command_in, i
     [("/stop", "stop"), ("/Stop", "stop"), ("!forget", "forget"), ("/help@robin_bot", "help"), ("/help ", "help"),
      ("/dance", None), ("stop", None), ("please /stop", None), ("/stop it", None), ("", None)],
 )  # fmt: skip
-def test_a_command_is_the_whole_message(text: str, name: str | None) -> None:
+def test_a_command_counts_only_as_the_whole_message(text: str, name: str | None) -> None:
     assert command_in(text) == name
 
 
@@ -49,5 +49,5 @@ def test_a_mention_is_cut_out(text: str, rest: str) -> None:
 @pytest.mark.parametrize(
     ("text", "is_one"), [("👍", True), ("🇩🇪", True), ("👍🏽", True), ("☹️", True), ("a", False), ("🎈 ok", False)]
 )
-def test_one_emoji_alone_is_recognised(text: str, is_one: bool) -> None:
+def test_a_message_of_one_emoji_is_recognised(text: str, is_one: bool) -> None:
     assert is_emoji(text) is is_one

@@ -1,4 +1,4 @@
-"""Chats: answers that are slow, chats that close meanwhile, groups, and a file that cannot be written."""
+"""Chats with slow answers, chats that close during an answer, groups, and a file that cannot be written."""
 
 import contextlib
 from collections.abc import Generator
@@ -100,7 +100,7 @@ async def test_a_late_refusal_does_not_close_the_chat_of_a_user_who_has_returned
 
 
 @in_virtual_time
-async def test_a_slow_answer_to_one_person_is_given_even_if_another_returns(tmp_path: Path) -> None:
+async def test_a_slow_answer_to_one_person_is_sent_even_if_another_person_returns_meanwhile(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow, greeter, rest=60.0) as opened:
         opened.receive([letter("one", "g", person=ADA, group=True), letter("two", "g", person=BOB, group=True)])
@@ -193,7 +193,7 @@ def test_a_file_that_cannot_be_written_delays_an_answer_and_loses_none(tmp_path:
 
 
 @in_virtual_time
-async def test_words_without_a_message_are_sent_once_the_file_can_be_written(tmp_path: Path) -> None:
+async def test_an_utterance_that_answers_no_message_is_sent_once_the_file_can_be_written(tmp_path: Path) -> None:
     post = Post()
     herald = rs.Module("herald", requires=(rawio,))
     news = herald.signal("news", input=True)

@@ -85,7 +85,7 @@ async def test_a_message_that_came_twice_is_heard_once(tmp_path: Path) -> None:
 
 
 @in_virtual_time
-async def test_an_agent_that_leaves_hears_the_next_message_again(tmp_path: Path) -> None:
+async def test_an_agent_that_has_left_returns_at_the_next_message(tmp_path: Path) -> None:
     quitter = rs.Module("quitter", requires=(rawio,))
 
     @quitter.rule(when=rawio.input.changed, writes=rawio.output)

@@ -1,4 +1,4 @@
-"""Secrets stay out of the log, even if other libraries log them."""
+"""Secrets are removed from the log, even if other libraries log them."""
 
 import logging
 

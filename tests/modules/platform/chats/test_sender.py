@@ -11,7 +11,7 @@ from ravestate.modules.platform.chats.store import Answer
 
 
 @in_virtual_time
-async def test_a_spare_turn_is_one_for_which_no_message_waits() -> None:
+async def test_a_spare_turn_is_one_that_no_message_needs() -> None:
     pace = Pace(20.0)
     await past(10.0)
     while pace.spare():  # use up the turns of the burst
@@ -24,7 +24,7 @@ async def test_a_spare_turn_is_one_for_which_no_message_waits() -> None:
 
 
 @in_virtual_time
-async def test_no_second_has_more_messages_than_telegram_allows() -> None:
+async def test_never_more_messages_are_sent_in_a_second_than_telegram_allows() -> None:
     pace, times = Pace(25.0), list[float]()
     for pause in (10.0, 3.0):
         await past(pause)

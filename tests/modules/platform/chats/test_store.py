@@ -101,7 +101,7 @@ def test_only_the_answer_to_the_newest_message_is_found_for_an_edit(tmp_path: Pa
     assert store.answer_to(unanswered) is None  # an edit of the first message came in between
 
 
-def test_a_message_that_kills_each_process_is_given_up_but_not_an_unheard_message(tmp_path: Path) -> None:
+def test_a_message_is_given_up_after_several_crashes_but_not_after_several_clean_ends(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("deadly"))
     store.take(letter("innocent"))

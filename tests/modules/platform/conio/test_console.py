@@ -160,7 +160,7 @@ def test_writing_to_a_closed_output_ends_the_console(broken: Exception) -> None:
         asyncio.run(console.__anext__())
 
 
-def test_anything_but_a_terminal_is_plain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_terminal_the_console_reads_and_writes_plain_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     plain = Console(stdin=io.StringIO(), stdout=io.StringIO())
     assert isinstance(plain._screen, Pipes)
     assert not plain.interactive
@@ -211,7 +211,7 @@ def test_a_program_reads_and_writes_through_pipes(tmp_path: Path) -> None:
     assert not (tmp_path / "history").exists()
 
 
-def test_a_full_disk_is_a_failure_and_a_broken_pipe_is_none() -> None:
+def test_a_full_disk_is_a_failure_but_a_broken_pipe_is_not() -> None:
     async def ended_by(error: OSError) -> PlatformError | None:
         script = Script("hello")
         script.broken = error
@@ -249,7 +249,9 @@ def test_a_reader_that_goes_away_ends_the_console_cleanly(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("is_terminal", [True, False])
-def test_only_a_terminal_needs_preparation(monkeypatch: pytest.MonkeyPatch, is_terminal: bool) -> None:
+def test_prepare_imports_the_terminal_library_only_for_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, is_terminal: bool
+) -> None:
     class Stream(io.StringIO):
         def isatty(self) -> bool:
             return is_terminal

@@ -75,13 +75,13 @@ def test_a_file_is_read_line_by_line(tmp_path: Path, content: bytes, lines: list
         (b"x" * 200_000, ["x" * 10]),
     ],
 )
-def test_the_rest_of_a_line_without_end_is_left_out(tmp_path: Path, content: bytes, lines: list[str]) -> None:
+def test_the_part_of_a_line_beyond_the_limit_is_dropped(tmp_path: Path, content: bytes, lines: list[str]) -> None:
     (tmp_path / "input").write_bytes(content)
     with (tmp_path / "input").open() as file:
         assert read(file, longest_line=10) == lines
 
 
-def test_input_that_is_closed_has_ended(tmp_path: Path) -> None:
+def test_missing_or_closed_input_gives_no_lines(tmp_path: Path) -> None:
     assert read(None) == []
     assert read(io.StringIO("no file")) == []
     file = (tmp_path / "input").open("w+")
@@ -109,7 +109,7 @@ def test_a_line_is_returned_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> N
     asyncio.run(main())
 
 
-def test_the_loop_may_be_gone_when_a_line_comes(pipe: Callable[[], Pipe]) -> None:
+def test_a_line_may_arrive_after_the_event_loop_has_ended(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
 
     async def main() -> None:

@@ -141,7 +141,7 @@ def test_a_streamed_line_grows_above_the_prompt() -> None:
     assert play(scene) == "Hello\nyou\n"
 
 
-def test_a_full_row_goes_above() -> None:
+def test_a_full_row_is_printed_above_the_prompt() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         terminal.stream("So long a line does not fit into the row, and nor does " + "x" * 45)
         assert message(terminal) == "xxxxxxx\n> "
@@ -234,7 +234,7 @@ def test_typed_lines_are_kept(tmp_path: Path) -> None:
         assert file.stat().st_mode & 0o777 == 0o600
 
 
-def test_a_history_that_cannot_be_kept_is_no_reason_to_fail(tmp_path: Path) -> None:
+def test_a_history_file_that_cannot_be_written_causes_no_error(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     assert isinstance(_history(tmp_path / "file" / "history"), InMemoryHistory)
     history = _history(tmp_path / "history")

@@ -139,7 +139,7 @@ class Account:
         return answer.raise_for_status().headers["Content-Type"]
 
     async def listen(self, count: int) -> list[str]:
-        """Return the messages of others as "room: text", once there are `count`."""
+        """Return the messages of other people as "room: text", once there are `count`."""
         async with asyncio.timeout(60):
             while len(self.said) < count:
                 query = {"timeout": 30_000, **({"since": self._since} if self._since else {})}

@@ -30,7 +30,7 @@ class Base:
         self.speed = message["angular"]["z"]
 
     async def sleep(self, seconds: float) -> None:
-        """Let time pass; another task that waits may go first."""
+        """Let time pass; other waiting tasks run first."""
         end = self.now + seconds
         await turns(1)
         self.angle += self.speed * max(0.0, end - self.now)
@@ -87,7 +87,7 @@ def test_a_turn_that_is_cancelled_stops_the_base() -> None:
     asyncio.run(main())
 
 
-def test_words_for_a_robot_that_is_not_connected_yet_wait() -> None:
+def test_words_wait_until_the_robot_is_connected() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))) as node:
             heard: list[str] = []

@@ -67,7 +67,7 @@ def test_the_agent_hears_through_the_robot_and_moves_its_voice_face_head_and_han
     asyncio.run(main())
 
 
-def test_roboy_on_real_ros_1(ros1_network: Network) -> None:
+def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
     """The whole way over a roscore: text in on a topic; the answer, the expression and the head's movement out."""
 
     async def main() -> None:

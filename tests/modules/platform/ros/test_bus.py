@@ -64,7 +64,7 @@ def test_large_messages_pass_and_a_latched_one_waits_for_latecomers() -> None:
     asyncio.run(main())
 
 
-def test_a_node_waits_for_its_bus_and_finds_it_again() -> None:
+def test_a_node_waits_for_its_bus_and_reconnects_after_a_restart() -> None:
     async def main() -> None:
         async with Bus(0) as bus:
             port = int(bus.address.rpartition(":")[2])
@@ -106,7 +106,7 @@ def test_wrong_types_and_addresses_are_refused_with_a_reason(caplog: pytest.LogC
     asyncio.run(limited())
 
 
-def test_a_channel_with_a_rate_skips_messages_and_the_latest_arrives() -> None:
+def test_a_channel_with_a_rate_limit_skips_messages_but_not_the_latest() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
             newest: list[int] = []

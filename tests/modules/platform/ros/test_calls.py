@@ -71,7 +71,7 @@ def test_an_answer_to_a_closed_call_changes_nothing() -> None:
     run(main)
 
 
-def test_a_fault_of_a_channel_ends_only_its_own_calls() -> None:
+def test_a_faulty_channel_fails_only_its_own_calls() -> None:
     async def main(calls: Calls) -> None:
         broken, whole = channel("lamp", "client"), channel("door", "client")
         one, other = calls.open(broken), calls.open(whole)

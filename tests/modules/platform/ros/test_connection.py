@@ -113,7 +113,7 @@ def test_the_reads_of_a_long_message_stay_short() -> None:
         assert taken == [size]
         assert statistics.median(times[-100:]) < 20 * statistics.median(
             times[:100]
-        )  # copying the whole message each time would take 200 times as long
+        )  # if each read copied the whole message, it would take 200 times as long
         connection.close()
         theirs.close()
 

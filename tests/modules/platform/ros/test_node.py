@@ -31,7 +31,7 @@ async def echo(node: Node) -> list[str]:
 
 
 async def numbers(node: Node, got: list[int], count: int) -> list[int]:
-    """Let the other node publish numbers, 1,000 a second; return those that arrived in `got`, from 0 on."""
+    """Let the other node publish numbers, 1,000 a second; return the numbers from 0 on that arrived in `got`."""
     burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
     await until(lambda: got, lambda: burst.publish("-1 1 0"))
     burst.publish(f"0 {count} 1000")
@@ -39,7 +39,7 @@ async def numbers(node: Node, got: list[int], count: int) -> list[int]:
     return [n for n in got if n >= 0]
 
 
-def test_messages_go_there_and_come_back(either: Network) -> None:
+def test_messages_reach_another_node_and_its_answers_come_back(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             assert await echo(node) == [f"echo text {n}" for n in range(3)]

@@ -129,7 +129,7 @@ def running(ros1_network: Network, ros2_network: Network) -> Iterator[tuple[Ever
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_text_in_on_a_topic_answers_on_another_and_calls_a_service(
+def test_text_from_one_topic_is_answered_on_another_and_triggers_a_service_call(
     running: tuple[Everything, rs.Context], ros1_network: Network, version: int
 ) -> None:
     agent, context = running
@@ -144,7 +144,7 @@ def test_text_in_on_a_topic_answers_on_another_and_calls_a_service(
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_a_silent_service_fails_and_holds_nothing_up(
+def test_a_call_to_a_silent_service_fails_and_blocks_nothing_else(
     running: tuple[Everything, rs.Context], ros1_network: Network, version: int, caplog: pytest.LogCaptureFixture
 ) -> None:
     agent, context = running

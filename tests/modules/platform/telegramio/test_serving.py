@@ -178,7 +178,7 @@ async def test_an_emoji_alone_becomes_a_reaction(bot: Bot, tmp_path: Path) -> No
         await bot.do("called", method="setMessageReaction", count=1)
         await settled(bot)
         assert (await bot.do("message", chat=7, id=message["message_id"]))["reaction"] == ["❤"]
-        await bot.say(7, "🦭")  # is none of Telegram's reactions
+        await bot.say(7, "🦭")  # an emoji that Telegram does not allow as a reaction
         assert "7: 🦭" in await bot.said(2)
 
 

@@ -26,7 +26,7 @@ def test_a_number_is_several_spoken_words() -> None:
     assert [word.time for word in words] == [0.0, 0.2, 1.3]
 
 
-def test_marks_are_no_words() -> None:
+def test_punctuation_marks_do_not_count_as_words() -> None:
     assert places_of("well — yes !") == [(0, 4), (7, 10)]
     assert by_phonemes("…", [], 1.0) == ()
 

@@ -20,7 +20,7 @@ def hear(ear: Ear, pcm: bytes, begin: float = 0.0) -> Iterator[tuple[float, str]
             yield round(now, 2), event
 
 
-def test_speech_begins_is_articulate_and_pauses() -> None:
+def test_speech_causes_the_events_onset_articulate_and_pause() -> None:
     pcm = track((1.0, "What time is it?"), length=3.0)
     ear = Ear()
     events = list(hear(ear, pcm))
@@ -92,7 +92,7 @@ def test_a_hum_is_not_articulate_at_once() -> None:
     assert not is_articulate(hum[:512].astype("<i2"))
 
 
-def test_a_turn_has_a_greatest_length(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_turn_ends_at_the_maximum_length(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ears, "LONGEST", 1.0)
     pcm = track((0.0, "This is a very long sentence that goes on and on without any pause at all."))
     ear = Ear()

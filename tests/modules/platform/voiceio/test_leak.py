@@ -1,4 +1,4 @@
-"""The loudspeaker's echo is hidden; a user who speaks while it sounds is not."""
+"""The loudspeaker's echo is hidden from the agent, but the speech of a user during the echo is not."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""An echo is like the loudspeaker's sound; another voice is not."""
+"""An echo resembles the loudspeaker's sound, but another voice does not."""
 
 import numpy as np
 import pytest

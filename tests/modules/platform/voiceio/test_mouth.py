@@ -117,7 +117,7 @@ def test_a_sentence_that_is_queued_while_the_speech_is_held_waits() -> None:
     run(listen)
 
 
-def test_nothing_is_heard_of_the_next_utterance_before_it_sounds() -> None:
+def test_no_part_of_an_utterance_counts_as_heard_before_it_sounds() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()

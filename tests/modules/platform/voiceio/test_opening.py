@@ -89,7 +89,7 @@ def test_all_parts_are_closed_if_the_sound_cannot_be_written(monkeypatch: pytest
     assert closed == ["recogniser", "voice"]
 
 
-def test_words_of_a_turn_that_goes_on_are_unwanted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_recognition_of_an_unfinished_turn_is_cancelled_when_the_user_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """The user speaks again while the words of the first part are recognised."""
     scripted, begun, asked = Scripted("Hello."), threading.Event(), list[threading.Event]()
 
@@ -184,7 +184,7 @@ def test_a_file_and_a_device_can_be_combined(
         assert len(sound.decode(tmp_path / "out.wav", 24000)) == 24000
 
 
-def test_words_that_nobody_waits_for_any_more_may_fail_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_recognition_that_fails_after_its_rule_was_cancelled_reports_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """At Ctrl-C, the process of the model is killed in the middle of its work."""
     failures: list[object] = []
     judging = threading.Event()

@@ -33,7 +33,7 @@ def test_a_low_and_a_high_voice_are_two_people() -> None:
     assert not is_another(*low)
 
 
-def test_one_person_counts_as_one() -> None:
+def test_two_parts_of_one_persons_speech_count_as_one_person() -> None:
     pcm = sound.samples(sound.decode(PEOPLE / "librivox" / "sense_and_sensibility_01_austen_64kb-0870.wav", 16000))
     assert not is_another(pitches(pcm[: len(pcm) // 2]), pitches(pcm[len(pcm) // 2 :]))
 

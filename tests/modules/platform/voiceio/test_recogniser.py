@@ -47,7 +47,7 @@ def test_a_short_sound_is_not_written_twice() -> None:
     small.close()
 
 
-def test_a_last_word_that_cannot_end_a_sentence_remains_plausible() -> None:
+def test_a_last_word_that_cannot_end_a_sentence_keeps_some_probability() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     found = small.recognise(bytes(9600) + spoken("It is a photograph of my") + bytes(6400))
     assert found.last.get("my", 0.0) > 0.05
@@ -135,7 +135,7 @@ def test_a_second_attempt_follows_a_crash(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_long_recording_is_understood_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A model that reads one window in time then reads a recording of any length."""
+    """If a model reads each piece in time, it can read a recording of any length."""
     small = Recogniser(Settings(model="tiny.en"))
     texts = list(transcriptions(LIBRIVOX / "transcription").items())[:5]
     texts += texts[:1]

@@ -135,7 +135,9 @@ def test_a_back_channel_or_a_cough_does_not_stop_the_agent(
     assert sides(said, "user") == ["Tell me a story."]
 
 
-def test_a_false_alarm_resumes_where_it_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_after_a_false_alarm_the_agent_resumes_where_it_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     script(monkeypatch, "Tell me a story.", "")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Some words that nobody understands"), length=8.0))
     flags: list[tuple[float, bool]] = []
@@ -168,7 +170,7 @@ def test_a_long_interruption_stops_the_agent_before_its_end(tmp_path: Path, monk
     assert len(stopped) == 1 and 6.0 < stopped[0] < 6.5
 
 
-def test_heard_words_come_after_each_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_heard_words_are_reported_after_each_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Tell me a story.", "Stop.")
     heard: list[str] = []
     module = rs.Module("listener", requires=[rawio])
@@ -185,7 +187,9 @@ def test_heard_words_come_after_each_output(tmp_path: Path, monkeypatch: pytest.
     assert voiceio.heard is rawio.heard
 
 
-def test_low_confidence_asks_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_utterance_recognised_with_low_confidence_makes_the_agent_ask_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     script(monkeypatch, "Tell my a storage", confidence=0.2)
     said = talk(wav(tmp_path / "in.wav", track(TELL, length=3.0)), None, storyteller(), settings=FAST)
     (answer,) = sides(said, "agent")
@@ -276,7 +280,9 @@ def test_captions_show_the_words_so_far(tmp_path: Path, monkeypatch: pytest.Monk
     assert seen[:2] == ["I", "I would"] and seen[-1] == "I would like a story."
 
 
-def test_half_duplex_is_deaf_while_it_speaks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_half_duplex_the_agent_hears_nothing_while_it_speaks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     scripted = script(monkeypatch, "Tell me a story.", "Stop.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))
     said = talk(file, None, storyteller(), settings=settings(half_duplex=True))
@@ -361,7 +367,7 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
 
 
 def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It ends before the conversation, or at the end of the conversation if the file is lost only then."""
+    """The agent ends at once. If the file becomes unwritable later, the agent ends with the conversation."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):

@@ -44,7 +44,9 @@ def test_words_and_melody_decide_how_long_a_pause_may_be(text: str, complete: fl
         ("I am looking for a", {"a": 0.99}, 1.4),
     ],
 )
-def test_alternatives_for_the_last_word_count(text: str, last: dict[str, float], silence: float) -> None:
+def test_alternatives_for_the_last_word_change_how_long_a_pause_may_be(
+    text: str, last: dict[str, float], silence: float
+) -> None:
     assert wanted_silence(text, 0.9, SETTINGS, last) == silence
 
 

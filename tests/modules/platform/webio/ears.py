@@ -74,7 +74,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 @ears.rule(when=rawio.output.changed.max_age(None).detached(), reads=rawio.sound, writes=rawio.heard, background=True)
 async def speak(ctx: rs.RuleContext) -> None:
-    """Play a tone for each word, and note the words that were heard, also if the sound is cut."""
+    """Play a tone for each word, and note the words that were heard, even if the sound is cut short."""
     line, words = ctx[rawio.sound], ctx.payload(rawio.output.changed).split()
     if line is None:
         return

@@ -77,7 +77,7 @@ def test_the_page_itself_may_inspect_the_agent(host: str, origin: str | None) ->
 
 
 @pytest.mark.parametrize("origin", ["https://museum.example", "http://127.0.0.1:9999", "null"])
-def test_the_right_to_embed_the_page_is_no_right_to_inspect_the_agent(origin: str) -> None:
+def test_a_site_that_may_embed_the_page_may_not_inspect_the_agent(origin: str) -> None:
     access = Access(Settings(origins=("https://museum.example",)))
     refusal = access.refusal_of_board({"host": "127.0.0.1:8420", "origin": origin})
     assert refusal is not None
@@ -88,22 +88,22 @@ EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
 
 
 @pytest.mark.parametrize("referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"])
-def test_a_page_that_may_not_show_the_chat_is_named(referer: str) -> None:
+def test_a_site_that_embeds_the_chat_without_permission_is_named(referer: str) -> None:
     assert Access(Settings()).foreign_embedder({**EMBEDDED, "referer": referer}) == "http://museum.example"
 
 
 @pytest.mark.parametrize(
     "headers",
     [
-        {**EMBEDDED, "referer": "https://museum.example/"},  # one that may
-        {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # its own
-        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link
+        {**EMBEDDED, "referer": "https://museum.example/"},  # a site that may embed the chat
+        {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # the page's own site
+        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link, not a frame
         {**EMBEDDED, "referer": "about:client"},
         EMBEDDED,
         {},
     ],
 )
-def test_an_allowed_or_unnamed_site_is_no_foreign_embedder(headers: dict[str, str]) -> None:
+def test_a_site_that_may_embed_the_chat_or_is_unnamed_is_not_reported(headers: dict[str, str]) -> None:
     assert Access(Settings(origins=("https://museum.example",))).foreign_embedder(headers) is None
 
 
@@ -124,7 +124,7 @@ def test_the_right_token_is_accepted_and_without_a_token_in_the_settings_none_is
 
 
 @in_virtual_time
-async def test_guessing_takes_long() -> None:
+async def test_a_wrong_token_is_refused_only_after_a_second() -> None:
     access, now = Access(Settings(token=TOKEN)), asyncio.get_running_loop().time
     with pytest.raises(ProtocolError, match="the token is wrong"):
         await access.check_token("guess")

@@ -43,7 +43,7 @@ def test_any_protocol_error_is_sent_and_closes_the_socket(code: str) -> None:
 
 
 @in_virtual_time
-async def test_replies_are_sent_in_their_order_when_there_is_time() -> None:
+async def test_replies_wait_and_are_then_sent_in_order() -> None:
     socket = Socket()
     channel = channel_on(socket)
     channel.reply("one")

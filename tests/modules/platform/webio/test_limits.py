@@ -126,7 +126,7 @@ async def test_the_server_does_not_wait_for_a_very_slow_request() -> None:
 
 
 @in_virtual_time
-async def test_a_request_in_fits_and_starts_is_taken_if_it_is_fast_enough_on_the_whole() -> None:
+async def test_a_request_in_bursts_is_taken_if_its_average_rate_is_high_enough() -> None:
     size = int(LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
@@ -139,7 +139,7 @@ async def test_a_request_in_fits_and_starts_is_taken_if_it_is_fast_enough_on_the
 
 
 @in_virtual_time
-async def test_a_request_in_fits_and_starts_is_cut_off_if_it_is_too_slow() -> None:
+async def test_a_request_in_bursts_is_cut_off_if_its_average_rate_is_too_low() -> None:
     size, each = 10**7, int(LOWEST_RATE * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))

@@ -214,7 +214,7 @@ def test_an_agent_can_hear_if_a_rule_uses_the_line(modules: tuple[rs.Module, ...
     assert hears(rs.compile(*modules)) is able
 
 
-def test_a_rule_that_reads_the_line_counts_as_well() -> None:
+def test_an_agent_can_hear_if_a_rule_only_reads_the_line() -> None:
     deaf = rs.Module("deaf", requires=(rawio,))
 
     @deaf.rule(when=rawio.output.changed, reads=rawio.sound)

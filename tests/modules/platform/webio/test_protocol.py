@@ -116,7 +116,7 @@ def test_any_fields_make_a_frame_or_are_refused(name: str, fields: dict[str, Any
 @pytest.mark.parametrize(
     "text", ["[" * 60_000, '{"type":' * 20_000, "1" * 60_000, '{"type": "ping", "x": NaN}', "\ud800"]
 )
-def test_hard_texts_do_not_break_the_parser(text: str) -> None:
+def test_malicious_texts_do_not_break_the_parser(text: str) -> None:
     understood(text)
 
 
@@ -149,7 +149,7 @@ def test_a_malformed_frame_gets_a_message_about_the_expected_form(text: str | by
     assert said in str(refused.value)
 
 
-def test_another_version_is_refused_as_such() -> None:
+def test_a_frame_of_another_protocol_version_is_refused_with_this_reason() -> None:
     with pytest.raises(ProtocolError, match='"v": 2: this side speaks version 1 only') as refused:
         parse('{"type": "hello", "v": 2}', CLIENT)
     assert refused.value.code == "version"

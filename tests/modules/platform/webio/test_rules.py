@@ -106,7 +106,7 @@ async def take_note(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_fillers_do_not_end_the_thinking() -> None:
+async def test_while_the_agent_says_fillers_it_is_still_shown_thinking() -> None:
     async with page(thinker, fillers) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("why?")

@@ -193,7 +193,7 @@ async def test_the_setting_title_overrides_the_agents_own_name() -> None:
 
 
 @in_virtual_time
-async def test_the_visitor_reads_you_left_and_others_read_the_visitor_left() -> None:
+async def test_on_leaving_the_visitor_reads_you_left_and_the_session_says_the_visitor_left() -> None:
     async with page(parrot) as app, Visit(app) as visit, Visit(app) as window:
         await visit.hello()
         await window.hello(session=visit.session)

@@ -202,7 +202,7 @@ async def test_an_agent_that_leaves_ends_only_this_conversation() -> None:
 
 
 @in_virtual_time
-async def test_a_text_during_the_end_leaves_nothing_behind() -> None:
+async def test_a_text_sent_while_the_conversation_ends_leaves_no_task_behind() -> None:
     async with page(quitter) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("go")

@@ -1,4 +1,4 @@
-"""The settings of the interpreter while a page is served."""
+"""The interpreter has special settings while a page is served."""
 
 import contextlib
 import gc

@@ -165,8 +165,8 @@ async def test_a_visitor_who_types_gets_no_sound_and_no_mark() -> None:
         assert await visit.messages(2) == ["user: words", "agent: I heard words, and that pleases me."]
         await past(60.0)
         assert visit.nothing_more()
-        assert session_of(app).context.read(rawio.sound) is None  # so no sound came
-        visit.tell("hush")  # without a line, too
+        assert session_of(app).context.read(rawio.sound) is None  # the visitor has no line for sound
+        visit.tell("hush")  # this is harmless without a line, too
 
 
 @in_virtual_time
@@ -374,7 +374,7 @@ async def test_sound_and_reports_do_not_count_towards_the_limit_of_words() -> No
         ({"type": "played", "n": 0, "samples": 1.5}, "played: \"samples\": '1.5' is not a whole number from 0 on"),
     ],
 )
-def test_frames_are_checked(frame: dict[str, Any], why: str) -> None:
+def test_a_faulty_frame_gets_an_error_with_the_reason(frame: dict[str, Any], why: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with calling() as (_, caller):

@@ -128,7 +128,7 @@ def test_a_goal_with_a_signal_as_precondition_waits_for_the_signal() -> None:
 
 
 @pytest.mark.parametrize("moment", [2.0, 6.0, 40.0])
-def test_success_ends_a_goal_whenever_it_comes(moment: float) -> None:
+def test_success_ends_a_goal_at_any_time(moment: float) -> None:
     guide = agent()
     told = guide.signal("told")
     goal = agenda.goal(guide, "name", say="What is your name?", done=told, tries=5, cooldown=30)

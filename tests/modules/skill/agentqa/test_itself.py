@@ -1,4 +1,4 @@
-"""The agent in its own memory."""
+"""The agent keeps a node about itself in memory."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def changed(**facts: Any) -> Life:
     return replace(LIFE, facts={key: fact for key, fact in {**LIFE.facts, **facts}.items() if fact is not None})
 
 
-def test_memory_has_a_relation_and_a_type_for_each_fact_that_becomes_one() -> None:
+def test_memory_has_each_relation_and_type_that_the_agents_facts_need() -> None:
     types = types_of(ontology.Settings())
     for relation, type in RELATIONS.values():
         types.check_relation("Robot", relation, type)  # raises if memory has no such relation
 
 
-def test_the_node_follows_the_file_from_start_to_start(with_memory: Any) -> None:
+def test_each_start_updates_the_agents_node_from_the_life_file(with_memory: Any) -> None:
     async def first(memory: ontology.Memory) -> None:
         node = await settle(LIFE, memory)
         assert node["born"] == date(2020, 5, 4)
@@ -60,7 +60,7 @@ def test_the_node_follows_the_file_from_start_to_start(with_memory: Any) -> None
     with_memory(second)
 
 
-def test_settling_twice_writes_nothing_new(with_memory: Any) -> None:
+def test_settling_a_second_time_changes_nothing(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         await settle(LIFE, memory)
         before = await memory.export()
@@ -96,7 +96,7 @@ def test_memory_keeps_facts_that_the_file_does_not_mention(with_memory: Any) -> 
     with_memory(use)
 
 
-def test_an_agent_that_memory_does_not_know_is_as_the_file_says(with_memory: Any) -> None:
+def test_without_a_node_in_memory_the_facts_come_from_the_file(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         assert await recall(LIFE, memory) == LIFE.facts
 

@@ -1,4 +1,4 @@
-"""The life file: its format, its changes to the module's own, its mistakes."""
+"""A life file: its format, its changes to the built-in life, and the messages for its mistakes."""
 
 from __future__ import annotations
 

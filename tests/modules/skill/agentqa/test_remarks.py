@@ -1,4 +1,4 @@
-"""Laws for any remark. The set ``agentqa_remarks`` measures how well remarks are understood."""
+"""Rules for every remark. The set ``agentqa_remarks`` measures how well remarks are understood."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ravestate.modules.skill.agentqa.router import Miss
 
 
 @pytest.mark.parametrize("text", ["", "😀", "x" * 100_000, "you are " * 50_000, "i feel so so so " * 20_000])
-def test_long_texts_and_none_at_all_are_no_remarks(text: str) -> None:
+def test_neither_an_empty_nor_a_very_long_text_is_a_remark(text: str) -> None:
     assert remark_in(text, read_life()) is None
 
 
@@ -27,13 +27,13 @@ def test_the_agent_may_be_called_by_its_name() -> None:
     assert found is not None and found.topic == "rude"
 
 
-def test_the_gravest_of_several_remarks_counts() -> None:
+def test_of_several_remarks_the_gravest_counts() -> None:
     found = remark_in("You are stupid. My cat died. I want to die.", read_life())
     assert found is not None and (found.topic, found.text) == ("distress", "i want to die")
 
 
 @pytest.mark.parametrize("text", ["please don't stay silent", "do not shut up, I like it", "I never told you to hush"])
-def test_a_negation_takes_a_wish_back(text: str) -> None:
+def test_a_negated_wish_for_quiet_does_not_count(text: str) -> None:
     bundled_matcher("acts").load()
     assert "quiet" not in acts(heard(text))
 

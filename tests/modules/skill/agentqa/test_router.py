@@ -1,4 +1,4 @@
-"""Laws for the routing of any question. The set ``agentqa_asks`` measures how good it is."""
+"""Rules for the routing of every question. The set ``agentqa_asks`` measures how often the routing is right."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def test_each_example_is_understood_as_what_it_stands_for(router: Router) -> Non
         assert not wrong, (one.name, wrong)
 
 
-def test_a_match_says_what_it_is_like_and_by_how_much(router: Router) -> None:
+def test_a_match_has_the_nearest_example_its_score_and_its_margin(router: Router) -> None:
     found = router.route("How old are you?")
     assert isinstance(found, Match)
     assert found.question == found.example == "how old are you"
     assert 0.5 < found.score <= 1 and found.margin > 0.3
 
 
-def test_a_miss_says_what_came_near_and_how_far(router: Router) -> None:
+def test_a_miss_names_the_nearest_topic_and_the_reason_against_it(router: Router) -> None:
     found = router.route("what are you up to this evening")
     assert isinstance(found, Miss)
     assert "is nearest to " in found.reason and "but nearer to what is not about me (" in found.reason
@@ -42,7 +42,7 @@ def test_the_first_sentence_with_a_topic_counts(router: Router) -> None:
     assert topic(router, "What do you mean? I am Tom. How old are you? Where do you live?") == "age"
 
 
-def test_a_topic_of_ones_own_is_told_from_the_others() -> None:
+def test_a_topic_that_the_designer_adds_is_distinguished_from_the_others() -> None:
     life = read_life()
     wheels = Topic("wheels", ("do you have wheels", "how many wheels do you have", "what do you roll on"), ("Three.",))
     router = Router(Life(life.facts, {**life.topics, "wheels": wheels}, life.others))
@@ -58,7 +58,7 @@ def test_nonsense_and_long_texts_are_left_to_others(text: str, router: Router) -
     assert isinstance(router.route(text, question=True), Miss)
 
 
-def test_an_indirect_question_counts_where_something_is_asked(router: Router) -> None:
+def test_an_indirect_question_counts_if_the_utterance_is_a_question(router: Router) -> None:
     assert topic(router, "I have been asking myself for weeks how old you are", question=True) == "age"
 
 

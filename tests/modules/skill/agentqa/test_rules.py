@@ -120,7 +120,7 @@ def test_everything_else_is_left_to_others(text: str, who: str, tmp_path: Path) 
         assert sim.failures == []
 
 
-def test_it_wins_over_whoever_else_found_an_answer_however_they_are_declared() -> None:
+def test_agentqa_wins_against_another_module_with_an_answer_in_any_order_of_declaration() -> None:
     for modules in ((agentqa, encyclopaedia), (encyclopaedia, agentqa)):
         pair = {"agentqa:answer", "encyclopaedia:explain"}
         [conflict] = [one for one in rs.compile(*modules).conflicts() if {one.first, one.second} == pair]
@@ -168,7 +168,7 @@ def test_a_user_in_distress_hears_the_helplines(tmp_path: Path) -> None:
         assert "doctor" in say(sim, "I want to kill myself")
 
 
-def test_a_question_that_is_said_for_ever_is_answered_once(tmp_path: Path) -> None:
+def test_a_question_repeated_thousands_of_times_is_answered_once(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 12, 5, tzinfo=UTC))
         assert "2 years" in say(sim, "How old are you? " * 6_000)
@@ -212,14 +212,14 @@ def test_the_time_and_the_date_are_those_of_the_clock(tmp_path: Path) -> None:
         ("What do you do in your free time?", "sailing, and you", "hobbies"),
     ],
 )
-def test_the_agents_question_may_be_returned(question: str, answer: str, topic: str, tmp_path: Path) -> None:
+def test_the_user_may_return_the_agents_question(question: str, answer: str, topic: str, tmp_path: Path) -> None:
     own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
     with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
         sim.put(rawio.output, question)
         assert say(sim, answer) == f"This is my {topic}."  # without "And yours?", which the user has answered
 
 
-def test_nothing_is_asked_back_where_nothing_was_asked(tmp_path: Path) -> None:
+def test_and_you_without_an_earlier_question_is_left_to_other_modules(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         assert say(sim, "and you") == "chatter"
 
@@ -237,14 +237,14 @@ def test_nothing_is_asked_back_where_nothing_was_asked(tmp_path: Path) -> None:
         ("can you do anything useful?", ("What I can do", "I am good", "My talents")),
     ],
 )
-def test_a_question_for_one_thing_has_yes_or_no_for_an_answer(
+def test_a_yes_no_question_about_one_thing_is_answered_with_yes_or_no(
     question: str, begins: tuple[str, ...], tmp_path: Path
 ) -> None:
     with start(tmp_path, chatter) as sim:
         assert say(sim, question).startswith(begins)
 
 
-def test_it_tells_what_becomes_of_what_it_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_the_agent_explains_what_it_does_with_the_users_words(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     with start(tmp_path, chatter, encyclopaedia) as sim:
         for text in ("why do you want to know?", "what do you do with what I tell you?"):
             assert "forget me" in say(sim, text)
@@ -255,7 +255,7 @@ def test_it_tells_what_becomes_of_what_it_is_told(tmp_path: Path, caplog: pytest
         assert "no memory" in say(sim, "why do you want to know?")
 
 
-def test_it_is_quiet_when_it_is_told_to_be(tmp_path: Path) -> None:
+def test_after_a_wish_for_quiet_the_agent_is_silent_until_the_user_speaks(tmp_path: Path) -> None:
     with start(tmp_path, chatter, bored=5.0) as sim:
         said = say(sim, "Shut up!")
         assert said != "chatter" and "?" not in said
@@ -265,7 +265,7 @@ def test_it_is_quiet_when_it_is_told_to_be(tmp_path: Path) -> None:
         assert len(sim.said) == 2
 
 
-def test_it_does_not_say_the_same_twice_running(tmp_path: Path) -> None:
+def test_the_same_phrase_never_comes_twice_in_a_row(tmp_path: Path) -> None:
     with start(tmp_path) as sim:
         said = [say(sim, "where do you live") for _ in range(8)]
         assert all(first != second for first, second in itertools.pairwise(said))
@@ -278,7 +278,7 @@ def test_topics_without_facts_are_left_to_other_modules(tmp_path: Path) -> None:
         assert "its phrases lack a fact" in str(sim.explain("agentqa:answer"))
 
 
-def test_why_it_did_not_answer_is_explained(tmp_path: Path) -> None:
+def test_explain_says_why_agentqa_did_not_answer(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         say(sim, "what are you up to today")
         assert "nearer to what is not about me" in str(sim.explain("agentqa:understand"))
@@ -336,7 +336,7 @@ def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
         assert "model.onnx" in str(sim.failures)
 
 
-def test_a_long_silence_makes_it_offer_once_to_be_asked(tmp_path: Path) -> None:
+def test_after_a_long_silence_the_agent_once_offers_to_answer_questions(tmp_path: Path) -> None:
     with start(tmp_path, chatter, bored=5.0) as sim:
         for turn in range(6):
             sim.say(f"it rains, for the {turn}. time")
@@ -349,7 +349,7 @@ def test_a_long_silence_makes_it_offer_once_to_be_asked(tmp_path: Path) -> None:
         assert len(sim.said) == 8
 
 
-def test_it_offers_nothing_in_the_first_turns_or_while_the_user_talks(tmp_path: Path) -> None:
+def test_the_agent_offers_nothing_in_the_first_turns_or_while_the_user_talks(tmp_path: Path) -> None:
     with start(tmp_path, chatter, bored=5.0) as sim:
         sim.say("it rains")
         sim.advance(200.0)
@@ -362,7 +362,7 @@ def test_it_offers_nothing_in_the_first_turns_or_while_the_user_talks(tmp_path: 
         assert len(sim.said) == 11
 
 
-def test_all_who_call_the_agent_by_its_name_have_it_from_its_life(tmp_path: Path) -> None:
+def test_all_modules_take_the_agents_name_from_the_life_file(tmp_path: Path) -> None:
     told: list[str] = []
 
     class Model:

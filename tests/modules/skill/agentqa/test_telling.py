@@ -21,7 +21,7 @@ def told(topic: Topic, question: str = "", **facts: Fact) -> tuple[str, ...] | N
     ("items", "text"),
     [(["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")],
 )
-def test_lists_are_joined_as_one_says_them(items: list[str], text: str) -> None:
+def test_lists_are_joined_as_in_speech(items: list[str], text: str) -> None:
     assert listed(items) == text
 
 

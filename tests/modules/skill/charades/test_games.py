@@ -23,7 +23,8 @@ TEMPLATES = [
     for name, texts in load_yaml(PHRASES.read_text(), "phrases").items()
     for text in sorted(texts["en"], key=len, reverse=True)
 ]
-TEMPLATES.sort(key=lambda template: -len(template[1].pattern))  # longest first: "{riddle}" also matches "Watch me!"
+# The longest phrase comes first, because "{riddle}" also matches "Watch me!".
+TEMPLATES.sort(key=lambda template: -len(template[1].pattern))
 COUNTDOWN = "count count count go"
 
 

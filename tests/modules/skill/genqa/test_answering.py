@@ -70,7 +70,7 @@ def test_the_questions_of_the_calibration_are_answered_as_well_as_was_measured(c
     assert sure.count(False) <= 0.05 * len(sure)
 
 
-def test_an_empty_collection_says_nothing(tmp_path: Path) -> None:
+def test_without_documents_there_is_a_reason_and_no_answer(tmp_path: Path) -> None:
     answerer = Answerer(tmp_path / "index.sqlite", collection=False)
     assert answerer.answer("What is the capital of Peru?") == Answer(
         "What is the capital of Peru?", reason="there are no documents"
@@ -78,7 +78,7 @@ def test_an_empty_collection_says_nothing(tmp_path: Path) -> None:
     answerer.close()
 
 
-def test_documents_of_ones_own_are_asked_beside_the_collection(tmp_path: Path) -> None:
+def test_the_users_documents_are_searched_beside_the_collection(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     put(path, "The Zorbex engine was invented by Mira Kolm in 1987.")
     answerer = Answerer(path)
@@ -87,7 +87,7 @@ def test_documents_of_ones_own_are_asked_beside_the_collection(tmp_path: Path) -
     answerer.close()
 
 
-def test_a_title_gives_its_passages_their_sense(tmp_path: Path) -> None:
+def test_the_title_of_a_document_helps_to_find_its_passages(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     put(path, "It must be greased once a month.", title="Maintenance of the pump")
     answerer = Answerer(path, collection=False)

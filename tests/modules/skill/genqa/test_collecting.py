@@ -37,7 +37,7 @@ def said(index: Index, *words: str) -> set[str]:
     return {found.text for found in index.search(words, 20)}
 
 
-def test_a_folder_with_all_that_can_be_read(index: Index, folder: Path) -> None:
+def test_all_readable_files_of_a_folder_and_its_subfolders_are_indexed(index: Index, folder: Path) -> None:
     assert take_in(index, folder) == {"tram.txt": "added", "ship.md": "added"}
     assert said(index, "tram", "ship", "nobody") == {"The tram is red.", "The ship is grey."}
     rows = {found.text: index.source(found.row) for found in index.search(["tram", "ship"], 9)}
@@ -117,7 +117,7 @@ def test_a_file_that_becomes_unreadable_stays_in_the_index(index: Index, folder:
     assert said(index, "tram") == {"The tram is red."}
 
 
-def test_a_file_named_itself_may_have_no_ending_that_is_unknown(index: Index, folder: Path) -> None:
+def test_a_file_with_an_unknown_extension_is_reported_if_the_user_names_it(index: Index, folder: Path) -> None:
     (outcome,) = collect(find([folder / "photo.jpg"], index), index)
     assert outcome.kind == "unreadable"
     assert "'.jpg'" in outcome.why
@@ -128,12 +128,12 @@ def test_a_path_named_twice_is_read_once(index: Index, folder: Path) -> None:
     assert len(found.files) == 2
 
 
-def test_links_that_go_round_do_not_hang(index: Index, folder: Path) -> None:
+def test_circular_links_do_not_cause_an_endless_search(index: Index, folder: Path) -> None:
     (folder / "deep" / "up").symlink_to(folder)
     assert set(take_in(index, folder)) == {"tram.txt", "ship.md"}
 
 
-def test_a_name_that_is_not_utf8(index: Index, folder: Path) -> None:
+def test_a_file_whose_name_is_not_utf8_is_indexed(index: Index, folder: Path) -> None:
     name = os.fsdecode(b"caf\xe9.txt")
     (folder / name).write_text("The cafe is closed.", encoding="utf-8")
     assert take_in(index, folder)[name] == "added"
@@ -141,7 +141,9 @@ def test_a_name_that_is_not_utf8(index: Index, folder: Path) -> None:
     assert said(index, "cafe") == {"The cafe is closed."}
 
 
-def test_interrupted_it_keeps_what_was_complete(index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_run_keeps_all_complete_files(
+    index: Index, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def read(path: Path, source: str) -> Iterator[Document]:
         yield Document("x", source, [Passage("The tram is red.")])
         if path.name == "tram.txt":
@@ -156,7 +158,7 @@ def test_interrupted_it_keeps_what_was_complete(index: Index, folder: Path, monk
     assert take_in(index, folder) == {"a.txt": "unchanged", "tram.txt": "added", "ship.md": "added"}
 
 
-def test_a_full_disk_ends_it_and_keeps_what_was_complete(index: Index, folder: Path) -> None:
+def test_a_run_that_ends_on_a_full_disk_keeps_all_complete_files(index: Index, folder: Path) -> None:
     (folder / "zz.txt").write_text("\n\n".join(f"Passage {n} is of rain." for n in range(20_000)), encoding="utf-8")
     base = index._base  # pyright: ignore[reportPrivateUsage]
     base.execute(f"PRAGMA max_page_count = {base.execute('PRAGMA page_count').fetchone()[0] + 40}")
@@ -177,7 +179,7 @@ for outcome in collect(find([Path(sys.argv[2])], index), index):
 
 
 @pytest.mark.parametrize("told", [1, 7])
-def test_killed_in_the_middle_it_goes_on_where_it_was(tmp_path: Path, told: int) -> None:
+def test_a_run_continues_where_a_killed_run_stopped(tmp_path: Path, told: int) -> None:
     docs = tmp_path / "docs"
     docs.mkdir()
     for number in range(40):

@@ -10,10 +10,10 @@ share = st.floats(0, 1)
 
 
 @given(score, share)
-def test_it_is_a_probability(best: float, covered: float) -> None:
+def test_confidence_is_a_probability(best: float, covered: float) -> None:
     assert 0 <= confidence(best, covered) <= 1
 
 
 @given(score, score, share, share)
-def test_a_better_score_and_more_of_the_question_make_it_surer(a: float, b: float, c: float, d: float) -> None:
+def test_confidence_grows_with_the_score_and_the_share_of_the_question(a: float, b: float, c: float, d: float) -> None:
     assert confidence(min(a, b), min(c, d)) <= confidence(max(a, b), max(c, d))

@@ -1,4 +1,4 @@
-"""An answer in a talk: qualifiers are met, things are compared, and readings compete."""
+"""In a talk, answers must meet the qualifiers of a question, compare things, and choose between readings."""
 
 from collections.abc import Iterator
 
@@ -110,7 +110,7 @@ def test_a_question_with_else_does_not_get_the_same_answer_again(answerer: Answe
     assert ask(answerer, "How deep is Lake Orm?", "how deep else is it?") == ""
 
 
-def test_another_question_decides_one_of_yes_or_no() -> None:
+def test_a_yes_no_question_is_reworded_as_a_question_for_the_fact() -> None:
     assert other_wording("is Peru in Africa") == "where is Peru?"
     assert other_wording("Is Paris the capital of Germany?") == "what is the capital of Germany?"
     assert other_wording("who is in Africa") == ""

@@ -30,7 +30,7 @@ def test_passages_with_more_and_rarer_words_come_first(index: Index) -> None:
     assert found(index, "submarine") == []
 
 
-def test_passages_that_have_a_word_of_each_group(index: Index) -> None:
+def test_search_all_finds_passages_with_a_word_of_each_group(index: Index) -> None:
     index.put(file(), notes("The tram is red.", "The bus is red.", "The bus is blue."))
     assert {each.text for each in index.search_all([["tram", "bus"], ["red"]], 9)} == {
         "The tram is red.",
@@ -39,7 +39,7 @@ def test_passages_that_have_a_word_of_each_group(index: Index) -> None:
     assert index.search_all([["ship"], ["red"]], 9) == index.search_all([], 9) == index.search_all([['"'], []], 9) == []
 
 
-def test_titles_and_hints_are_searched_and_stems_are_one(index: Index) -> None:
+def test_titles_and_hints_are_searched_by_their_stems(index: Index) -> None:
     index.put(file(), [Document("Trams", "t", [Passage("Number 7 goes there.", hints="beaches")])])
     assert found(index, "tram") == found(index, "beach") == ["Number 7 goes there."]
 
@@ -47,7 +47,7 @@ def test_titles_and_hints_are_searched_and_stems_are_one(index: Index) -> None:
 @pytest.mark.parametrize(
     "words", [('"',), ("a OR b",), ("NEAR(",), ("*",), ("title:x",), ("\0",), ("",), ("é" * 9999,)]
 )
-def test_no_word_is_an_operator(index: Index, words: tuple[str, ...]) -> None:
+def test_no_word_of_a_query_acts_as_a_search_operator(index: Index, words: tuple[str, ...]) -> None:
     index.put(file(), notes("The tram is red."))
     assert found(index, *words) == []
 
@@ -107,7 +107,7 @@ def test_a_failure_while_reading_changes_nothing(index: Index) -> None:
     assert found(index, "tram") == ["The tram is green."]
 
 
-def test_it_is_still_there_another_day(tmp_path: Path) -> None:
+def test_an_index_keeps_its_passages_when_it_is_opened_again(tmp_path: Path) -> None:
     with Index(tmp_path / "deep" / "er" / "index.sqlite") as index:
         index.put(file(), notes("The tram is red."))
     with Index(tmp_path / "deep" / "er" / "index.sqlite") as index:
@@ -160,7 +160,7 @@ def test_another_program_s_file_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"Dear diary, " * 100, b"SQLite format 3\0" + b"\xff" * 4096])
-def test_a_file_that_is_none_is_refused(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_an_index_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "index.sqlite").write_bytes(content)
     with pytest.raises(rs.PlatformError, match="it is not an index, or damaged"):
         Index(tmp_path / "index.sqlite")
@@ -196,7 +196,7 @@ def test_a_writer_reports_that_another_one_takes_too_long(index: Index) -> None:
     assert found(index, "tram", "ship") == ["The tram is red."]
 
 
-def test_it_notices_that_another_file_has_taken_its_place(index: Index, tmp_path: Path) -> None:
+def test_an_index_notices_that_its_file_has_been_replaced(index: Index, tmp_path: Path) -> None:
     assert index.in_place()
     shutil.copy(index.path, tmp_path / "copy")
     index.path.unlink()

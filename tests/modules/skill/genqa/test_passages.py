@@ -19,7 +19,7 @@ def test_sentences_are_passages() -> None:
     ]
 
 
-def test_a_dependent_sentence_stays_with_the_one_before() -> None:
+def test_a_dependent_sentence_stays_with_the_previous_sentence() -> None:
     assert texts("The shed is green. It has a key. The key is old enough.") == [
         "The shed is green.",
         "The shed is green. It has a key.",
@@ -48,15 +48,15 @@ def test_lines_that_were_broken_are_joined_again() -> None:
     assert texts("The main-\ntenance of the pump\nis due in May.") == ["The maintenance of the pump is due in May."]
 
 
-def test_crumbs_are_left_out() -> None:
+def test_numbers_lines_and_captions_without_a_sentence_are_left_out() -> None:
     assert texts("7\n\nFig. 3\n\n--- --- --- --- ---\n\n1234567890 1234567890") == []
 
 
-def test_controls_and_escapes_are_not_kept() -> None:
+def test_control_characters_and_escape_sequences_are_removed() -> None:
     assert texts("The \x1b[31mred\x1b[0m line\x00 is short\udce9 now.") == ["The red line is short\ufffd now."]
 
 
-def test_a_sentence_without_end_is_cut_where_it_may_be() -> None:
+def test_an_overlong_sentence_is_cut_at_commas() -> None:
     parts = texts("rain, snow, hail, " * 200)
     assert all(len(part) <= LONGEST + SHORTEST and part.endswith(",") for part in parts[:-1])
     assert sum(part.count("snow") for part in parts) == 200

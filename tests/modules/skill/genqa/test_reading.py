@@ -55,7 +55,7 @@ def write_pdf(path: Path, *pages: str, title: str = "") -> Path:
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32"])
-def test_text_in_any_encoding_that_says_itself(tmp_path: Path, encoding: str) -> None:
+def test_text_in_any_self_describing_encoding_is_read(tmp_path: Path, encoding: str) -> None:
     path = write(tmp_path / "my_notes.txt", "Das Haus ist grün.\r\n\r\nEs hat ein Tor.".encode(encoding))
     assert passages(path) == {"my notes": ["Das Haus ist grün.", "Es hat ein Tor."]}
 
@@ -97,7 +97,7 @@ def test_markdown_is_read_as_it_is_seen(tmp_path: Path) -> None:
     }
 
 
-def test_headings_and_html_as_other_readers_of_markdown_see_them(tmp_path: Path) -> None:
+def test_headings_and_html_in_markdown_are_read_as_they_are_seen(tmp_path: Path) -> None:
     text = "Pumps\n=====\n\n<div>\nIt runs &amp; runs.\n</div>\n<script>no_text()</script>\n\n<!-- hidden\nlines -->\nA ![red lamp](lamp.png) is lit.\n"
     assert passages(write(tmp_path / "a.md", text)) == {"Pumps": ["It runs & runs.", "A red lamp is lit."]}
 
@@ -120,12 +120,12 @@ def test_html_is_read_as_it_is_seen(tmp_path: Path) -> None:
     }
 
 
-def test_html_in_another_encoding(tmp_path: Path) -> None:
+def test_html_in_a_declared_encoding_is_read(tmp_path: Path) -> None:
     page = '<meta charset="iso-8859-1"><p>Das Café ist geschlossen.</p>'.encode("latin-1")
     assert passages(write(tmp_path / "cafe.htm", page)) == {"cafe": ["Das Café ist geschlossen."]}
 
 
-def test_an_empty_page_is_nothing_to_warn_of(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_an_empty_page_causes_no_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     assert passages(write(tmp_path / "empty.html", b"")) == {}
     assert caplog.text == ""
 
@@ -159,7 +159,7 @@ def why(path: Path) -> str:
     return str(refused.value)
 
 
-def test_text_in_an_undeclared_encoding(tmp_path: Path) -> None:
+def test_text_in_an_undeclared_encoding_is_refused(tmp_path: Path) -> None:
     assert why(write(tmp_path / "a.txt", "Café".encode("latin-1"))).startswith("it is not UTF-8 (byte 3): convert it")
 
 
@@ -168,7 +168,7 @@ def test_binary_is_not_text(tmp_path: Path, name: str) -> None:
     assert why(write(tmp_path / name, b"\x7fELF\0\0\0\1")).startswith("it is binary")
 
 
-def test_an_encrypted_pdf(tmp_path: Path) -> None:
+def test_an_encrypted_pdf_is_refused(tmp_path: Path) -> None:
     writer = PdfWriter(clone_from=PdfReader(write_pdf(tmp_path / "plain.pdf", "Nobody may read this.")))
     writer.encrypt("secret", algorithm="RC4-128")
     writer.write(tmp_path / "locked.pdf")
@@ -176,16 +176,16 @@ def test_an_encrypted_pdf(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"%PDF-1.4\ngarbage", b"no PDF at all"])
-def test_a_damaged_pdf(tmp_path: Path, content: bytes) -> None:
+def test_a_damaged_pdf_is_refused(tmp_path: Path, content: bytes) -> None:
     assert why(write(tmp_path / "a.pdf", content)).startswith("it is not a PDF, or damaged")
 
 
-def test_a_pdf_that_is_cut_off(tmp_path: Path) -> None:
+def test_a_pdf_that_is_cut_off_is_refused(tmp_path: Path) -> None:
     whole = write_pdf(tmp_path / "whole.pdf", "Grease the pump each month.").read_bytes()
     assert "damaged" in why(write(tmp_path / "half.pdf", whole[: len(whole) // 3]))
 
 
-def test_a_pdf_of_pictures(tmp_path: Path) -> None:
+def test_a_pdf_without_text_is_refused(tmp_path: Path) -> None:
     assert "only pictures" in why(write_pdf(tmp_path / "scan.pdf", ""))
 
 
@@ -199,12 +199,12 @@ def test_a_pdf_of_pictures(tmp_path: Path) -> None:
         ("\udce9".encode("utf-8", "surrogateescape"), "line 2 is not JSON"),
     ],
 )
-def test_a_line_that_is_no_document(tmp_path: Path, line: str | bytes, said: str) -> None:
+def test_a_line_of_json_that_is_not_a_document_is_refused(tmp_path: Path, line: str | bytes, said: str) -> None:
     line = line.encode() if isinstance(line, str) else line
     assert why(write(tmp_path / "a.jsonl", b'{"text": "The first line is fine."}\n' + line)).startswith(said)
 
 
-def test_deep_nesting_is_no_way_to_break_it(tmp_path: Path) -> None:
+def test_deep_nesting_does_not_break_the_reader(tmp_path: Path) -> None:
     assert "deeply" in why(write(tmp_path / "a.jsonl", "[" * 100_000))
     assert passages(write(tmp_path / "a.html", "<div>" * 5_000 + "There is a bottom.")) == {"a": ["There is a bottom."]}
 
@@ -214,13 +214,13 @@ def test_a_file_of_opening_marks_does_not_take_for_ever(tmp_path: Path, text: st
     assert sum(map(len, passages(write(tmp_path / "a.md", text)).values())) < 1000
 
 
-def test_a_folder_and_what_is_not_there(tmp_path: Path) -> None:
+def test_a_folder_and_a_missing_file_are_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.txt").mkdir()
     assert why(tmp_path / "folder.txt") == "Is a directory"
     assert why(tmp_path / "gone.txt") == "No such file or directory"
 
 
-def test_another_ending(tmp_path: Path) -> None:
+def test_a_file_with_an_unknown_extension_is_refused(tmp_path: Path) -> None:
     assert "'.docx'" in why(write(tmp_path / "a.docx", "x"))
 
 
@@ -264,7 +264,7 @@ def archive(monkeypatch: pytest.MonkeyPatch) -> list[SimpleNamespace]:
     return entries
 
 
-def test_articles_of_a_zim_file(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
+def test_the_articles_of_a_zim_file_are_read(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
     archive += [
         entry("Delft", "<html><body><p>Delft is a town in Holland.</p></body></html>"),
         entry("delft", "", redirect=True),
@@ -278,6 +278,6 @@ def test_articles_of_a_zim_file(tmp_path: Path, archive: list[SimpleNamespace]) 
     ]
 
 
-def test_a_file_that_is_no_zim(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
+def test_a_file_that_is_not_a_zim_archive_is_refused(tmp_path: Path, archive: list[SimpleNamespace]) -> None:
     assert archive == []
     assert why(write(tmp_path / "a.zim", b"PK\x03\x04")) == "it is not a ZIM file, or damaged (Invalid magic number)"

@@ -123,11 +123,11 @@ def test_other_texts_are_no_sums(text: str) -> None:
         ("in what year?", ["The lamp weighs 3 kilograms."], ""),
     ],
 )  # fmt: skip
-def test_that_is_a_number_or_a_date_of_the_last_answers(text: str, told: list[str], result: str) -> None:
+def test_a_pronoun_stands_for_a_number_or_a_date_in_the_last_answers(text: str, told: list[str], result: str) -> None:
     assert reckon(text, told, TODAY) == result
 
 
-def test_days_are_not_counted_from_years_alone() -> None:
+def test_days_between_two_years_without_dates_are_not_counted() -> None:
     with pytest.raises(Unanswerable, match="only know the years"):
         reckon("how many days is that", ["born in 1849", "died in 1903"], TODAY)
 
@@ -136,19 +136,19 @@ def test_money_is_exchanged_at_given_rates() -> None:
     assert reckon("100 euros in dollars", (), TODAY, {"euro": 1.0, "dollar": 0.8}) == "That is 125 dollars."
 
 
-def test_numbers_with_units_come_first() -> None:
+def test_numbers_with_units_precede_numbers_without() -> None:
     assert [(q.value, q.unit) for q in measured("In 1902 the mountain, 4,210 metres high, cost 9 euros.")] == [
         (4210, "metre"), (9, "money:euro"), (1902, ""),
     ]  # fmt: skip
 
 
-def test_dates_know_their_precision() -> None:
+def test_each_date_says_whether_it_is_exact_and_has_a_year() -> None:
     assert [(each.exact, each.has_year, str(each)) for each in dates_in("from 3 May to June 2024, or 1989")] == [
         (True, False, "3 May 2000"), (False, True, "2024"), (False, True, "1989"),
     ]  # fmt: skip
 
 
-def test_the_number_that_was_asked_for_is_meant() -> None:
+def test_of_several_numbers_the_one_that_was_asked_for_is_taken() -> None:
     answer = "The bridge is 512 metres long and 63 metres high."
     assert measured(focused("How high is the bridge?", answer))[0].value == 63
     assert measured(focused("How long is the bridge?", answer))[0].value == 512
@@ -169,5 +169,5 @@ def test_a_long_text_is_no_sum() -> None:
         ("300 g for 0, and for 5", ""),
     ],
 )
-def test_an_amount_is_scaled(text: str, result: str) -> None:
+def test_an_amount_is_scaled_to_another_number_of_people(text: str, result: str) -> None:
     assert scaled(text) == result

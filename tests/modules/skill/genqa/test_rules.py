@@ -26,7 +26,7 @@ async def chat(ctx: rs.RuleContext) -> None:
 
 @pytest.fixture(autouse=True)
 def apart(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Keep the answerers of one test out of the next."""
+    """Close the answerers of each test, so that no other test uses them."""
     made: dict[Any, Answerer] = {}
     monkeypatch.setattr(places, "_answerers", made)
     yield
@@ -49,7 +49,7 @@ def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, An
         assert "genqa:say" in sim.fired
 
 
-def test_the_sample_conversation_of_the_paper(settings: dict[str, dict[str, Any]]) -> None:
+def test_the_sample_conversation_of_the_paper_is_reproduced(settings: dict[str, dict[str, Any]]) -> None:
     """*Will it rain?* is small talk; *when did it start to rain?* asks for a fact."""
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Will it rain today?")
@@ -77,7 +77,7 @@ def test_other_utterances_are_left_to_other_modules(settings: dict[str, dict[str
         assert sim.failures == []
 
 
-def test_a_question_in_short_is_answered_if_that_is_sure(settings: dict[str, dict[str, Any]]) -> None:
+def test_an_elliptical_question_is_answered_if_the_answer_is_sure(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         for text, answer in (
             ("capital of France", "Paris"),
@@ -114,7 +114,7 @@ def test_a_question_may_refer_to_the_one_before_for_a_while(settings: dict[str, 
         ("Is Peru in Africa?", "South America"),
     ],
 )
-def test_a_question_of_yes_or_no_is_answered_by_what_is_so(
+def test_a_yes_no_question_is_answered_with_the_fact(
     text: str, answer: str, settings: dict[str, dict[str, Any]]
 ) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
@@ -122,7 +122,7 @@ def test_a_question_of_yes_or_no_is_answered_by_what_is_so(
         assert answer in sim.said[-1]
 
 
-def test_a_question_about_an_unknown_they_has_no_sure_answer(settings: dict[str, dict[str, Any]]) -> None:
+def test_a_question_whose_pronoun_has_no_referent_gets_no_sure_answer(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Can they fly?")
         assert sim.said[-1].startswith(("I'm not sure", "Perhaps"))
@@ -137,7 +137,7 @@ def test_a_doubtful_answer_is_given_with_the_doubt(settings: dict[str, dict[str,
         assert "Lima" in said
 
 
-def test_below_the_threshold_others_answer(settings: dict[str, dict[str, Any]]) -> None:
+def test_below_the_threshold_other_modules_answer(settings: dict[str, dict[str, Any]]) -> None:
     settings["genqa"] |= {"sure": 1.0, "unsure": 1.0}
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("What is the capital of Peru?")
@@ -153,7 +153,7 @@ def test_an_empty_collection_is_silent(tmp_path: Path) -> None:
         assert sim.failures == []
 
 
-def test_others_may_use_what_was_found(settings: dict[str, dict[str, Any]]) -> None:
+def test_other_modules_receive_the_answer_that_was_found(settings: dict[str, dict[str, Any]]) -> None:
     told: list[Answer] = []
     archive = rs.Module("archive", requires=[genqa])
 
@@ -166,7 +166,7 @@ def test_others_may_use_what_was_found(settings: dict[str, dict[str, Any]]) -> N
     assert [answer.source for answer in told] == ["Ravestate's own collection"]
 
 
-def test_german_phrases_for_those_who_want_them(settings: dict[str, dict[str, Any]]) -> None:
+def test_the_answer_is_phrased_in_german_if_the_settings_say_so(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, settings=settings | {"verbaliser": {"language": "de"}}) as sim:
         sim.say("What is the capital of Peru?")
         assert "Laut" in sim.said[0] or "Quelle" in sim.said[0]

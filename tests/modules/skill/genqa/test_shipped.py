@@ -14,7 +14,7 @@ def sentences() -> dict[str, list[str]]:
     return {document.title: [p.text for p in document.passages] for document in documents(*content)}
 
 
-def test_each_country_has_what_one_asks_for() -> None:
+def test_each_country_has_the_facts_that_people_ask_for() -> None:
     said = sentences()
     for country in (
         "Peru",
@@ -45,14 +45,14 @@ def test_sentences_are_short_and_whole() -> None:
             assert not re.search(r"<[a-z/]|&\w+;|\s\s|\.\.|[\x00-\x1f]", text), text
 
 
-def test_it_is_small() -> None:
+def test_the_collection_is_small() -> None:
     assert (
         sum(len((FOLDER / name).read_bytes()) for name in ("world-factbook.jsonl.gz", "general.yaml", "people.yaml"))
         < 2_000_000
     )
 
 
-def test_it_is_taken_in_once(index: Index) -> None:
+def test_the_collection_is_indexed_only_once(index: Index) -> None:
     assert bring_up(index)
     assert not bring_up(index)
     known = index.file(SHIPPED)
@@ -60,7 +60,7 @@ def test_it_is_taken_in_once(index: Index) -> None:
     assert known.passages == index.size() == sum(map(len, sentences().values()))
 
 
-def test_another_version_of_it_replaces_it(index: Index) -> None:
+def test_another_version_of_the_collection_replaces_the_old_one(index: Index) -> None:
     bring_up(index)
     index._base.execute("UPDATE files SET digest = 'old'")  # pyright: ignore[reportPrivateUsage]
     size = index.size()

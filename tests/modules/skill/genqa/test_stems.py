@@ -6,14 +6,14 @@ from ravestate.modules.skill.genqa.lexicon import variants_of
 from ravestate.modules.skill.genqa.stems import TOKENIZER, Stems
 
 
-def test_stems_of_each_text_in_order() -> None:
+def test_each_text_gets_its_stems_in_order() -> None:
     stems = Stems()
     assert stems("Bogotá's capitals", "", "capital") == [["bogota", "s", "capit"], [], ["capit"]]
     assert stems("Peru") == [["peru"]], "nothing is left of the texts before"
     stems.close()
 
 
-def test_stems_are_those_that_the_index_has() -> None:
+def test_stems_equal_those_in_the_index() -> None:
     text = "Neighbouring countries, running rivers: naïve Łódź 3.14 東京"
     base = sqlite3.connect(":memory:")
     base.execute(f"CREATE VIRTUAL TABLE t USING fts5(x, tokenize='{TOKENIZER}')")
@@ -26,7 +26,7 @@ def test_stems_are_those_that_the_index_has() -> None:
     stems.close()
 
 
-def test_variants_hold_the_word_itself_and_work_both_ways() -> None:
+def test_the_variants_of_a_word_include_the_word_and_are_symmetric() -> None:
     assert variants_of("Zorbex") == ("Zorbex",)
     assert "written" in variants_of("Wrote")
     assert "wrote" in variants_of("written")

@@ -35,7 +35,9 @@ def talk(*said: tuple[str, str, str]) -> list[Turn]:
         ([BRIDGES], "when was the second one built?", "when was the Salt Bridge built?"),
     ],
 )  # fmt: skip
-def test_a_follow_up_has_the_reading_that_is_meant(said: list[tuple[str, str, str]], follow: str, meant: str) -> None:
+def test_the_readings_of_a_follow_up_include_the_intended_one(
+    said: list[tuple[str, str, str]], follow: str, meant: str
+) -> None:
     assert meant.lower() in [reading.text.lower() for reading in readings(parse(follow), talk(*said))]
 
 
@@ -45,14 +47,14 @@ def test_a_person_in_the_answer_is_meant_first(follow: str) -> None:
 
 
 @pytest.mark.parametrize("heard", ["And its capital?", "which one is bigger?", "and when?", "how high is it?"])
-def test_without_a_thread_a_reference_means_nothing(heard: str) -> None:
+def test_without_a_thread_a_question_with_a_reference_has_no_readings(heard: str) -> None:
     assert readings(parse(heard), ()) == []
 
 
 @pytest.mark.parametrize(
     "heard", ["What is the capital of France?", "When did it start to rain?", "how do plants make their food?"]
 )
-def test_a_complete_question_stays(heard: str) -> None:
+def test_a_complete_question_is_not_changed(heard: str) -> None:
     assert readings(parse(heard), ())[0].text == heard
 
 
@@ -82,7 +84,7 @@ def test_the_agents_words_give_names_as_well() -> None:
     ]
 
 
-def test_a_fragment_takes_a_part_of_an_older_question_too() -> None:
+def test_a_fragment_may_be_completed_from_an_older_question() -> None:
     capital = ("What is the capital of Peru?", "The capital of Peru is Lima.", "Peru")
     found = readings(parse("and of Chile?"), talk(capital, HUSBAND, KESH))
     assert "What is the capital of Chile?" in [reading.text for reading in found]
@@ -93,7 +95,7 @@ def test_a_question_word_with_a_pronoun_has_readings(follow: str) -> None:
     assert readings(parse(follow), talk(HUSBAND))
 
 
-def test_the_kind_of_a_thing_is_no_referent() -> None:
+def test_a_pronoun_refers_to_the_thing_and_not_to_its_kind() -> None:
     turns = talk(("What is Okapia?", "Okapia is a board game.", "Okapia"))
     assert [reading.about for reading in readings(parse("who invented it?"), turns)] == ["Okapia"]
 

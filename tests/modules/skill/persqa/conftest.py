@@ -34,7 +34,7 @@ def file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def look(file: Path) -> Look:
-    """Return a function that returns, while no agent runs, the people in memory: name → relation → names at its end."""
+    """Return a function for the people in memory: name → relation → names at its end. Call it while no agent runs."""
 
     def people() -> dict[str, Any]:
         memory = open_memory(ontology.Settings(path=file))

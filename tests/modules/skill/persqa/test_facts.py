@@ -56,7 +56,7 @@ def everything(file: Path) -> set[Any]:
         memory.close().result(20)
 
 
-def test_facts_of_different_kinds_stand_side_by_side(file: Path, look: Look) -> None:
+def test_facts_of_different_kinds_are_kept_side_by_side(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is nia")
         for text in (
@@ -96,7 +96,7 @@ def test_a_birthplace_answers_the_question_for_the_origin(file: Path) -> None:
         assert "you were born in Dundee" in answers(sim, "where am I from?")
 
 
-def test_somebody_of_ones_own_is_put_right(file: Path, look: Look) -> None:
+def test_a_wrong_relative_is_corrected_and_then_removed(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my sister is called Emma")
@@ -106,7 +106,7 @@ def test_somebody_of_ones_own_is_put_right(file: Path, look: Look) -> None:
     assert look() == {"Ada": {}}
 
 
-def test_a_denied_occupation(file: Path, look: Look) -> None:
+def test_a_denied_occupation_is_removed(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("I work as a teacher")
@@ -147,12 +147,12 @@ def test_unknowable_facts_are_not_made_up(file: Path, question: str) -> None:
         "I wonder what time it is",
     ],
 )
-def test_advice_is_for_others(file: Path, question: str) -> None:
+def test_a_request_for_advice_is_left_to_other_modules(file: Path, question: str) -> None:
     with agent(file, knower()) as sim:
         assert answers(sim, question) == "I know it."
 
 
-def test_a_greeting_before_a_question_is_no_matter(file: Path) -> None:
+def test_a_question_after_a_greeting_is_answered(file: Path) -> None:
     with agent(file, knower()) as sim:
         assert meant(answers(sim, "hello, do you remember me?"), "recall_stranger")
         assert meant(answers(sim, "ada"), "learned_name")
@@ -167,7 +167,7 @@ def test_unknown_facts_cannot_be_forgotten(file: Path, what: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["forget where I live", "I don't live there any more", "I live in Bremen"])
-def test_nobody_is_reminded_of_what_is_not_so_any_more(file: Path, text: str) -> None:
+def test_the_user_is_not_reminded_of_a_fact_that_has_ended(file: Path, text: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file, topics=[]) as sim:

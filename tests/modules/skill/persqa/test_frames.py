@@ -15,7 +15,7 @@ from quality.blind import stored
         ("the railway has employed me since May", "employer=the railway"),
     ],
 )
-def test_words_in_no_table_tell_the_topic(sentence: str, fact: str) -> None:
+def test_words_that_are_in_no_table_still_show_the_topic(sentence: str, fact: str) -> None:
     assert fact in stored(sentence)
 
 
@@ -28,5 +28,5 @@ def test_words_in_no_table_tell_the_topic(sentence: str, fact: str) -> None:
         "I run a flower shop",
     ],
 )
-def test_words_that_tell_no_topic_tell_none(sentence: str) -> None:
+def test_a_sentence_without_a_topic_gives_no_fact(sentence: str) -> None:
     assert not any("=" in one for one in stored(sentence))

@@ -1,4 +1,4 @@
-"""Identity: names that memory knows, and people who say that it is them."""
+"""Identity: a user says a name that memory knows, or says that they are that person."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_a_wrong_or_refused_answer_makes_a_new_person_of_the_same_name(ada: Path
 
 @pytest.mark.parametrize("first", ["hi, i'm kim", "hi kim here", "kim here"])
 @pytest.mark.parametrize("confirm", [True, False])
-def test_somebody_of_whom_memory_knows_only_the_name_is_no_stranger(file: Path, first: str, confirm: bool) -> None:
+def test_a_person_is_recognised_even_if_memory_knows_only_their_name(file: Path, first: str, confirm: bool) -> None:
     with agent(file, confirm=confirm) as sim:
         assert meant(answers(sim, first), "learned_name")
     with agent(file, confirm=confirm) as sim:
@@ -98,14 +98,14 @@ def test_people_say_who_they_are(file: Path, text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["guess who", "I'm back"])
-def test_people_say_that_it_is_them_without_a_name(file: Path, text: str) -> None:
+def test_a_user_who_says_that_they_are_back_without_a_name_is_asked_for_it(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert meant(answers(sim, text), "identify")
         assert meant(answers(sim, "marlene"), "learned_name")
         assert meant(answers(sim, text), "back")
 
 
-def test_somebody_else_than_the_agent_thinks(ada: Path, look: Look) -> None:
+def test_a_user_can_say_that_the_agent_takes_them_for_another_person(ada: Path, look: Look) -> None:
     with agent(ada) as sim:
         sim.say("i'm called ada")
         sim.say("i work as a baker")

@@ -1,10 +1,10 @@
-"""The facts after the user has told something."""
+"""The known facts after the user has told something new."""
 
 from ravestate.modules.skill.persqa.profile import learn, merged, told_apart
 from ravestate.modules.skill.persqa.topics import Fact
 
 
-def test_one_home_replaces_another_and_hobbies_add_up() -> None:
+def test_a_new_home_replaces_the_old_one_but_a_new_hobby_is_added() -> None:
     news = learn({"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", ("Bonn",)), Fact("hobby", ("go", "Chess"))])
     assert news.facts == {"home": ("Bonn",), "hobby": ("chess", "go")}
     assert news.changed == {"home"} and news.new == {"home", "hobby"}
@@ -15,17 +15,17 @@ def test_known_facts_are_not_new() -> None:
     assert not news.new and not news.changed and news.topics == ("home",)
 
 
-def test_the_name_is_none_of_it() -> None:
+def test_the_name_is_not_among_the_learned_topics() -> None:
     assert learn({}, [Fact("name", ("Ada",))]).topics == ()
 
 
-def test_a_home_that_is_gone_may_be_asked_for_again_but_no_hobby_is_none() -> None:
+def test_when_a_home_is_gone_it_is_unknown_but_when_hobbies_are_gone_there_are_none() -> None:
     news = learn({"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", (), gone=True), Fact("hobby", (), gone=True)])
     assert news.facts == {"hobby": ()}
     assert news.topics == ("home", "hobby")
 
 
-def test_one_of_two_friends_is_gone() -> None:
+def test_one_of_two_friends_can_be_removed() -> None:
     assert learn({"friend": ("Tom", "Anna")}, [Fact("friend", ("tom",), gone=True)]).facts == {"friend": ("Anna",)}
 
 
@@ -35,13 +35,13 @@ def test_without_a_job_there_is_no_employer() -> None:
     assert news.topics == ("occupation", "employer")
 
 
-def test_a_correction_takes_the_wrong_value_out() -> None:
+def test_a_correction_replaces_only_the_wrong_value() -> None:
     assert learn({"hobby": ("chess", "judo")}, [Fact("hobby", ("ludo",))], ("judo",)).facts == {
         "hobby": ("chess", "ludo")
     }
 
 
-def test_this_talk_goes_before_memory() -> None:
+def test_facts_from_this_conversation_take_precedence_over_memory() -> None:
     remembered = {"home": ("Ulm",), "hobby": ("chess",), "friend": ("Tom",)}
     told = {"hobby": ("Chess", "go"), "home": ("Bonn",), "friend": ()}
     both = merged(remembered, told)

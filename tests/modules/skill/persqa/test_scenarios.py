@@ -117,7 +117,7 @@ STORED = {
 }
 
 
-def test_a_whole_first_talk(file: Path, look: Look) -> None:
+def test_in_a_first_talk_the_agent_learns_about_the_user(file: Path, look: Look) -> None:
     topics: list[str] = []
     with agent(file) as sim:
         sim.say("I talked about work and the university at breakfast")
@@ -165,7 +165,7 @@ with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}, "persqa": {"c
     assert meant(said, "welcome_back") and "you live in Hannover" in said
 
 
-def test_the_papers_sample_conversation(file: Path, look: Look) -> None:
+def test_the_sample_conversation_of_the_paper_is_reproduced(file: Path, look: Look) -> None:
     with agent(file, knower(), topics=["home"]) as sim:
         assert answers(sim, "what is your favorite animal") == "I know it."
         assert asked(sim) == "home"
@@ -181,7 +181,7 @@ def test_the_papers_own_words_are_among_the_phrases(phrase: str) -> None:
     assert phrase in texts
 
 
-def test_each_intent_has_three_phrases_and_one_that_needs_nothing_unusual() -> None:
+def test_each_intent_has_three_phrases_and_each_topic_has_one_that_needs_no_extra_parameter() -> None:
     for intent in BOOK.intents:
         assert len(BOOK.templates(intent)) >= 3, intent
     for topic in persqa.Settings().topics:
@@ -227,14 +227,14 @@ def test_no_means_that_there_is_none_and_dont_know_is_fine(file: Path, look: Loo
     assert look() == {"Ada": {}}
 
 
-def test_a_mere_yes_is_asked_on(file: Path) -> None:
+def test_after_a_mere_yes_the_agent_asks_for_details(file: Path) -> None:
     with agent(file, topics=["hobby"]) as sim:
         assert asked(sim) == "hobby"
         assert meant(answers(sim, "yes"), "which")
         assert meant(answers(sim, "chess"), "learned_hobby")
 
 
-def test_after_two_questions_left_without_a_word_it_waits(file: Path) -> None:
+def test_after_two_unanswered_questions_the_agent_waits_for_the_user(file: Path) -> None:
     with agent(file) as sim:
         sim.advance(600.0)
         assert len(sim.said) == 2
@@ -243,7 +243,7 @@ def test_after_two_questions_left_without_a_word_it_waits(file: Path) -> None:
         assert len(sim.said) == 4  # small talk, and a third question
 
 
-def test_a_question_has_time(file: Path) -> None:
+def test_the_agent_leaves_the_user_time_to_answer_a_question(file: Path) -> None:
     with agent(file, gap=30.0) as sim:
         assert asked(sim) == "name"
         sim.advance(25.0)
@@ -261,7 +261,7 @@ def test_after_goodbye_nothing_is_asked(file: Path) -> None:
         assert len(sim.said) == before
 
 
-def test_a_question_lapses(file: Path) -> None:
+def test_after_a_while_words_no_longer_count_as_the_answer_to_a_question(file: Path) -> None:
     with agent(file, topics=["home"], within=40.0, gap=1000.0) as sim:
         assert asked(sim) == "home"
         sim.advance(60.0)
@@ -284,7 +284,7 @@ def test_a_no_to_what_another_module_asked_is_not_taken_for_an_answer(file: Path
         assert meant(answers(sim, "chess"), "learned_hobby")
 
 
-def test_it_takes_turns_with_others(file: Path) -> None:
+def test_persqa_takes_turns_with_another_module_in_silences(file: Path) -> None:
     host = rs.Module("host", requires=[verbaliser, idle])
 
     @host.rule(when=idle.bored, writes=verbaliser.intent, cooldown=20.0)
@@ -328,7 +328,7 @@ def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
         assert sim.read(persqa.who) is None
 
 
-def test_a_greeting_is_answered_by_who_greets_but_a_name_in_it_is_heard(file: Path) -> None:
+def test_a_greeting_is_answered_by_hibye_but_a_name_in_it_is_learned(file: Path) -> None:
     with agent(file, hibye) as sim:
         assert asked(sim) == "name"
         answers(sim, "hello")
@@ -360,7 +360,7 @@ def test_a_spoken_question_counts_only_if_the_user_heard_it(file: Path, heard: s
         assert (sim.read(persqa.talk).question is not None) == (heard == "whole")
 
 
-def test_boredom_and_the_users_words_at_once(file: Path) -> None:
+def test_words_that_come_at_the_moment_of_boredom_are_learned(file: Path) -> None:
     with agent(file) as sim:
         sim.advance(4.999)
         sim.context.put(rawio.input, "my name is ada")
@@ -446,7 +446,7 @@ def test_two_agents_of_one_memory_know_one_person(file: Path, look: Look) -> Non
 # ------------------------------------------------------------------------------------ corrections
 
 
-def test_a_newcomer_is_renamed(file: Path, look: Look) -> None:
+def test_a_new_user_who_corrects_their_name_is_renamed(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
         first = sim.read(persqa.who)
@@ -514,7 +514,7 @@ def test_a_recalled_fact_can_be_corrected(file: Path, look: Look) -> None:
 
 
 @pytest.mark.parametrize("text", ["Hi, I'm Bob.", "i'm ada"])
-def test_an_introduction_counts_unasked(file: Path, text: str) -> None:
+def test_an_introduction_counts_even_if_the_agent_has_not_asked(file: Path, text: str) -> None:
     with agent(file, hibye) as sim:
         assert meant(answers(sim, text), "learned_name")
 
@@ -606,7 +606,9 @@ def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> N
         ("my name is ada\x00\x1b[31m", "Ada"),
     ],
 )
-def test_unusual_names(file: Path, look: Look, text: str, name: str | None) -> None:
+def test_unusual_names_are_learned_or_left_out_without_failure(
+    file: Path, look: Look, text: str, name: str | None
+) -> None:
     with agent(file) as sim:
         sim.say("my friend is called kim")
         said = answers(sim, text)
@@ -622,7 +624,7 @@ def test_unusual_names(file: Path, look: Look, text: str, name: str | None) -> N
 
 
 @pytest.mark.parametrize("text", ["ada " * 25_000, "a" * 100_000, "my name is " + "x" * 100_000])
-def test_100_kb_at_once(file: Path, look: Look, text: str) -> None:
+def test_a_text_of_100_kb_causes_no_failure(file: Path, look: Look, text: str) -> None:
     with agent(file) as sim:
         assert asked(sim) == "name"
         assert answers(sim, text) == "I see."
@@ -634,7 +636,7 @@ def test_100_kb_at_once(file: Path, look: Look, text: str) -> None:
 # ------------------------------------------------------------------------------------ questions about the user
 
 
-def test_questions_about_oneself(file: Path) -> None:
+def test_the_users_questions_about_themselves_are_answered(file: Path) -> None:
     with agent(file, knower()) as sim:
         assert meant(answers(sim, "do you know my name?"), "recall_stranger")
         assert meant(answers(sim, "ada"), "learned_name")
@@ -658,7 +660,7 @@ def test_nothing_is_known_yet(file: Path) -> None:
 # ------------------------------------------------------------------------------------ to forget
 
 
-def test_forget_me(file: Path, look: Look) -> None:
+def test_forget_me_forgets_the_user(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.put(interloc.users, {"console": None})
         sim.say("my name is ada and i live in hannover")
@@ -676,7 +678,7 @@ def test_forget_me(file: Path, look: Look) -> None:
     assert look() == {}
 
 
-def test_forgetting_is_not_done_by_the_way(file: Path, look: Look) -> None:
+def test_a_yes_after_another_question_forgets_nobody(file: Path, look: Look) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, "forget me"), "forget_ask")
@@ -715,7 +717,7 @@ def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
         assert meant(answers(sim, "i live in ulm"), "learned_home")
         assert answers(sim, "where do i live").endswith("you live in Ulm.")
         assert meant(answers(sim, "no, my name is bob"), "renamed")
-        assert sim.failures == []  # a memory in use is not a rule's fault
+        assert sim.failures == []  # no rule fails because another process uses the memory
 
 
 def test_a_memory_that_cannot_be_opened_is_not_reported_again(caplog: pytest.LogCaptureFixture) -> None:
@@ -764,7 +766,7 @@ def test_a_memory_that_fails_when_users_come_knows_them_later(file: Path, look: 
     assert look() == {"Ada": {"lives_in": ["Ulm"], "has_hobby": ["chess"]}}
 
 
-def test_a_memory_that_another_process_has_open(file: Path, look: Look) -> None:
+def test_the_talk_goes_on_while_another_process_has_the_memory_open(file: Path, look: Look) -> None:
     code = """
 import sys
 from ravestate.modules import ontology
@@ -788,7 +790,7 @@ memory.close().result(20)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit on the size of files")
-def test_a_full_disk(file: Path, look: Look) -> None:
+def test_the_talk_goes_on_with_a_full_disk(file: Path, look: Look) -> None:
     code = """
 import os, resource, sys
 from ravestate.modules import ontology, persqa
@@ -881,7 +883,7 @@ def test_the_user_who_stays_keeps_their_own_facts(file: Path, look: Look) -> Non
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"lives_in": ["Bremen"]}}
 
 
-def test_another_name_is_another_person(file: Path, look: Look) -> None:
+def test_a_user_whom_the_platform_names_differently_is_another_person(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
         sim.put(interloc.users, {"console": "Bob"})
@@ -890,7 +892,7 @@ def test_another_name_is_another_person(file: Path, look: Look) -> None:
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"works_as": ["baker"]}}
 
 
-def test_a_user_given_as_a_node_is_that_node(file: Path) -> None:
+def test_a_user_whom_the_platform_gives_as_a_node_is_that_person(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None
@@ -902,7 +904,7 @@ def test_a_user_given_as_a_node_is_that_node(file: Path) -> None:
 # ------------------------------------------------------------------------------------ what it is
 
 
-def test_a_topic_that_is_none_is_refused() -> None:
+def test_an_unknown_topic_in_the_settings_is_refused() -> None:
     with pytest.raises(rs.DeclarationErrors) as refused:
         simulate(persqa, settings={"persqa": {"topics": ["hobbies"]}})
     assert "there is no topic 'hobbies'" in str(refused.value.exceptions[0])
@@ -931,7 +933,7 @@ def test_nothing_heavy_is_imported_with_the_module() -> None:
         ("my name is marlies", "Marlies"),
     ],
 )
-def test_a_name_beside_something_else(text: str, name: str) -> None:
+def test_a_name_is_heard_beside_other_words(text: str, name: str) -> None:
     with agent(None) as sim:
         sim.say(text)
         node = sim.read(persqa.who)
@@ -939,7 +941,7 @@ def test_a_name_beside_something_else(text: str, name: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["nobody here", "he's called Jonathan and he plays the harp", "I'm lost here"])
-def test_no_name_of_the_users(file: Path, text: str) -> None:
+def test_words_that_are_not_the_users_name_are_not_taken_for_it(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert asked(sim) == "name"
         sim.say(text)
@@ -947,25 +949,25 @@ def test_no_name_of_the_users(file: Path, text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["nobody rang today either...", "I'm afraid of her face when I say it."])
-def test_sorrow_is_no_refusal(file: Path, text: str) -> None:
+def test_sorrow_is_not_taken_for_a_refusal(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert asked(sim) == "name"
         assert answers(sim, text) == "I see."
 
 
-def test_somebody_elses_girlfriend_is_no_partner_of_the_user(file: Path) -> None:
+def test_somebody_elses_girlfriend_is_not_taken_for_the_users_partner(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my ex Ralf came by and hes got a new girlfriend called Tamara")
         assert dict(sim.read(persqa.facts)) == {}
 
 
-def test_an_age_in_words(file: Path) -> None:
+def test_an_age_in_words_is_understood(file: Path) -> None:
     with agent(file) as sim:
         sim.say("im seven and a half")
         assert dict(sim.read(persqa.facts)) == {"age": ("7",)}
 
 
-def test_others_console(file: Path) -> None:
+def test_sorrow_about_a_relative_is_left_to_other_modules(file: Path) -> None:
     with agent(file) as sim:
         assert answers(sim, "my son Fiete has a bad fever") == "I see."
         assert dict(sim.read(persqa.facts)) == {"son": ("Fiete",)}

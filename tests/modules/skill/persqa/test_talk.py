@@ -7,22 +7,22 @@ def asked(topic: str = "home") -> Talk:
     return Talk().asking(topic, 10.0).speaking()
 
 
-def test_the_first_thing_said_after_asking_is_the_question() -> None:
+def test_the_agents_first_utterance_after_asking_counts_as_the_question() -> None:
     assert asked().question == Question("home", 10.0, heard=True)
     assert asked().tries == {"home": 1}
 
 
-def test_the_agents_next_words_speak_over_its_question() -> None:
+def test_the_agents_next_utterance_marks_its_question_as_spoken_over() -> None:
     question = asked().speaking().question
     assert question is not None and question.spoken_over and not question.fresh
 
 
-def test_an_answer_to_the_user_does_not_speak_over_it() -> None:
+def test_an_answer_to_the_user_does_not_mark_the_question_as_spoken_over() -> None:
     question = asked().listening(20.0, leave=False).speaking().question
     assert question is not None and not question.spoken_over and question.turns == 1
 
 
-def test_a_question_waits_for_two_utterances_and_some_time() -> None:
+def test_a_question_stays_open_until_two_utterances_or_some_time_have_passed() -> None:
     talk = asked()
     assert talk.pending(100.0, within=90.0) is not None
     assert talk.pending(100.1, within=90.0) is None
@@ -52,7 +52,7 @@ def test_a_fact_can_be_corrected_for_a_while() -> None:
     assert talk.listening(20.0, leave=False).correctable == ""
 
 
-def test_to_learn_something_else_leaves_the_question_open() -> None:
+def test_learning_another_fact_leaves_the_question_open() -> None:
     talk = asked().learning(["hobby"], "hobby", ("chess",))
     assert talk.question is not None and talk.question.topic == "home"
 

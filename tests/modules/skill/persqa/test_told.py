@@ -1,4 +1,4 @@
-"""Free statements: remembered, answered, picked up, forgotten."""
+"""Free statements are remembered, used as answers, taken up later, and forgotten."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_it_is_kept_with_the_speaker_and_the_moment(file: Path) -> None:
         assert remark["wording"] == "Jonas plays the violin" and remark["said_at"] == one.at
 
 
-def test_it_lasts_for_the_conversation_without_a_name(file: Path, look: Look) -> None:
+def test_a_statement_from_before_the_user_has_a_name_is_recalled_and_kept(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("I painted a dragon")
         assert "you painted a dragon" in answers(sim, "what did I paint?")
@@ -162,7 +162,7 @@ def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, loo
         "the weather is nice",
     ],
 )
-def test_nothing_else_is_kept(file: Path, text: str) -> None:
+def test_wishes_questions_hearsay_denials_and_trivial_remarks_are_not_kept(file: Path, text: str) -> None:
     with agent(file) as sim:
         sim.say(text)
         assert dict(sim.read(persqa.told)) == {}

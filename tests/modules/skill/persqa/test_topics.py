@@ -14,20 +14,20 @@ def next_topic(known: dict[str, tuple[str, ...]], **more: object) -> str:
     return due(ALL, known, **given)  # type: ignore[arg-type]
 
 
-def test_the_name_goes_first_and_the_order_is_that_of_the_table() -> None:
+def test_the_name_comes_first_and_then_the_topics_in_table_order() -> None:
     assert next_topic({}) == "name"
     assert next_topic({"name": ("Ada",)}) == "home"
     assert next_topic({}, closed=["name"]) == "home"
 
 
-def test_the_topic_with_fewer_tries_goes_first_and_twice_is_enough() -> None:
+def test_the_topic_with_fewer_tries_comes_first_and_none_is_tried_three_times() -> None:
     assert next_topic({}, tries={"name": 1}) == "home"
     assert next_topic({}, tries=dict.fromkeys(ALL, 1)) == "name"
     assert next_topic({}, tries=dict.fromkeys(ALL, 2)) == ""
 
 
 @pytest.mark.parametrize(("last", "follow"), [("occupation", "employer"), ("subject", "university")])
-def test_follow_ups_go_first_and_need_what_they_follow(last: str, follow: str) -> None:
+def test_a_follow_up_comes_first_but_only_after_an_answer_to_its_topic(last: str, follow: str) -> None:
     assert next_topic({"name": ("Ada",), last: ("x",)}, last=last) == follow
     everything_else = {topic: ("30",) for topic in ALL if topic not in (last, follow)}
     assert next_topic(everything_else, closed=[last]) == ""

@@ -1,4 +1,4 @@
-"""Laws for any utterance. The set ``persqa_facts`` measures how well utterances are understood."""
+"""Rules for every utterance. The set ``persqa_facts`` measures how well utterances are understood."""
 
 from dataclasses import replace
 
@@ -57,7 +57,7 @@ def test_a_question_never_swallows_an_unrelated_sentence(topic: str, text: str) 
     assert not understand(seen(text), talk_about(topic), {}, 1.0, 90.0).facts
 
 
-def test_a_question_about_a_whole_kind_asks_for_no_memory() -> None:
+def test_a_general_question_is_not_answered_from_the_users_statements() -> None:
     told = understand(seen("our baby has been crying for three hours"), Talk(), {}, 1.0, 90.0).said
     talk = replace(Talk(), said=told)
     assert told
@@ -70,14 +70,14 @@ def test_only_a_fresh_yes_forgets_the_user() -> None:
 
 
 @pytest.mark.parametrize("text", ["don't forget me", "never forget me", "he wants to forget me", "forget it"])
-def test_a_wish_to_be_forgotten_is_asked_of_the_agent(text: str) -> None:
+def test_sentences_that_resemble_a_wish_to_be_forgotten_forget_nothing(text: str) -> None:
     assert understand(seen(text), Talk(), {"name": ("Ada",)}, 1.0, 90.0).kind not in ("forget", "strike")
 
 
 @pytest.mark.parametrize(
     ("text", "values"), [("in hannover", ("Hannover",)), ("I live in Ulm", ("Ulm",)), ("I'd rather not say", ())]
 )
-def test_the_answer_that_confirms_a_name(text: str, values: tuple[str, ...]) -> None:
+def test_an_answer_to_the_agents_doubt_confirms_the_name(text: str, values: tuple[str, ...]) -> None:
     talk = Talk(doubt="home").asking(CONFIRM, 0.0).speaking()
     meaning = understand(seen(text), talk, {"name": ("Ada",)}, 1.0, 90.0)
     assert meaning.kind == "vouched"
@@ -96,13 +96,13 @@ def test_his_name_is_that_of_the_relative_mentioned_before() -> None:
     assert [(fact.topic, fact.values) for fact in told.facts] == [("father", ("Joost",))]
 
 
-def test_a_refusal_beside_a_sum_is_silent() -> None:
+def test_a_refusal_beside_a_sum_gets_no_answer() -> None:
     meaning = understand(seen("no time. 12 x 30 / 5"), Talk().asking("name", 0.0), {}, 1.0, 90.0)
     assert meaning.kind == "nothing" or not meaning.aloud
 
 
 @pytest.mark.parametrize("text", ["how do I ask Nora for a dance?", "do you think Nora would like that?"])
-def test_advice_is_no_memory(text: str) -> None:
+def test_a_request_for_advice_is_not_answered_from_the_users_statements(text: str) -> None:
     told = understand(seen("my cousin Nora likes a dance"), Talk(), {}, 1.0, 90.0).said
     assert told and understand(seen(text), Talk(), {}, 1.0, 90.0, told).kind != "asked_told"
 

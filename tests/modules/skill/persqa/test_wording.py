@@ -22,7 +22,7 @@ from ravestate.modules.skill.persqa.wording import clause, same, spoken, tidy
         ("occupation", "Software Engineer", "software engineer"),
     ],
 )
-def test_tidy(topic: str, text: str, written: str) -> None:
+def test_values_are_spelled_properly(topic: str, text: str, written: str) -> None:
     assert tidy(text, TOPICS[topic]) == written
 
 
@@ -38,7 +38,7 @@ def test_tidy(topic: str, text: str, written: str) -> None:
         ("friend", ["Tom", "Anna"], "you are a friend of Tom and Anna"),
     ],
 )
-def test_clauses(topic: str, values: list[str], said: str) -> None:
+def test_facts_are_worded_as_clauses(topic: str, values: list[str], said: str) -> None:
     assert clause(topic, values) == said
 
 
@@ -47,7 +47,7 @@ def test_every_topic_has_a_clause() -> None:
         assert spoken(topic, ["x"]) in clause(topic, ["x"])
 
 
-def test_the_same_is_the_same_whatever_its_case_and_article() -> None:
+def test_values_are_equal_regardless_of_case_and_article() -> None:
     assert same("the Red Cross", "red cross")
     assert same("Chess", "chess")
     assert not same("Ulm", "Bremen")

@@ -1,4 +1,4 @@
-"""Stand-ins for what wildtalk finds on a machine and on the network: model files, web servers, a hub."""
+"""Stand-ins for the model files, web servers and the hub that wildtalk finds on a machine and on the network."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class Hub:
             yield self
 
     def refusal(self) -> tuple[int, dict[str, str]]:
-        """Return the next status of the script, and its headers; 302 if the file is to be sent."""
+        """Return the next status of the script, and its headers. The status is 302 if the file is to be sent."""
         entry = self.script[0] if self.script else None
         if isinstance(entry, tuple) and isinstance(entry[0], int):
             self.script.pop(0)

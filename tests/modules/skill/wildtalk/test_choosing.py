@@ -58,7 +58,7 @@ def install(name: str = "qwen2.5-0.5b") -> Path:
     return model.path
 
 
-def test_a_bare_machine_listens_and_says_how_to_get_a_model(machine: Machine) -> None:
+def test_without_a_model_the_agent_listens_and_says_how_to_get_one(machine: Machine) -> None:
     choice = chosen()
     assert choice.settings.backend == "listen"
     assert choice.text.endswith("the agent listens. To talk with a model: ravestate model get")
@@ -84,7 +84,7 @@ def test_a_configured_server_without_a_model_is_asked_for_one(machine: Machine) 
     assert chosen(base_url="http://here/v1").settings.model == "llama3.2"
 
 
-def test_the_default_of_model_get_comes_before_what_is_found(machine: Machine) -> None:
+def test_the_default_model_that_the_user_chose_comes_before_a_server(machine: Machine) -> None:
     machine.servers = [LocalServer("Ollama", HERE, ("llama3.2",))]
     path = install()
     assert chosen().settings.base_url == HERE  # installed, but not the default
@@ -150,7 +150,7 @@ def test_the_135m_model_is_used_only_by_its_name(machine: Machine) -> None:
 
 
 @pytest.mark.parametrize("backend", ["auto", "gguf"])
-def test_a_model_that_is_not_there_is_named_with_the_mend(machine: Machine, backend: str) -> None:
+def test_a_missing_model_is_named_with_the_remedy(machine: Machine, backend: str) -> None:
     with pytest.raises(PlatformError, match=r"'qwen3-4b'.* installed: ravestate model get qwen3-4b"):
         chosen(backend=backend, model="qwen3-4b")
     with pytest.raises(PlatformError, match=r"'llama9'.* installed: see: ravestate model list"):

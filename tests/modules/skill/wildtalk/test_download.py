@@ -65,7 +65,9 @@ def test_a_broken_connection_is_continued_where_it_broke(hub: Hub) -> None:
     assert ranges(hub) == ["", "bytes=100000-", "bytes=150000-"]
 
 
-def test_an_interrupted_download_keeps_its_part_and_goes_on(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_download_keeps_the_finished_part_and_is_continued_later(
+    hub: Hub, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def stop(_: float) -> None:
         raise KeyboardInterrupt
 
@@ -158,7 +160,7 @@ def test_a_download_that_never_began_leaves_no_file(hub: Hub) -> None:
     assert interrupted(MODEL) == "interrupted; nothing had arrived yet"
 
 
-def test_offline_mode_forbids_it(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_offline_mode_forbids_a_download(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HF_HUB_OFFLINE", "1")
     with pytest.raises(PlatformError, match="HF_HUB_OFFLINE"):
         fetch()

@@ -36,7 +36,7 @@ def test_a_file_behind_two_links_is_listed_once(tmp_path: Path) -> None:
     assert found == FoundModel(tmp_path / "a.gguf", B, blob.stat().st_size)
 
 
-def test_a_search_ends_in_a_folder_without_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_stops_at_the_limit_in_an_endless_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for number in range(5):
         write_gguf(tmp_path / str(number) / "m.gguf")
     monkeypatch.setattr(found_models, "MANY", 8)

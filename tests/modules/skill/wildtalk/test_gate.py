@@ -1,4 +1,4 @@
-"""The gate: what a model must not say, and what it may."""
+"""The gate refuses sentences that a model must not say, and passes all others."""
 
 import pytest
 
@@ -56,7 +56,7 @@ def gate(heard: str = "I moved house last week.", said: tuple[str, ...] = ()) ->
         ("The Roman empire fell in 476.", "no answer to what was said"),
     ],
 )
-def test_it_refuses(sentence: str, reason: str) -> None:
+def test_the_gate_refuses_a_sentence_and_names_the_reason(sentence: str, reason: str) -> None:
     assert gate().refuse(sentence) == reason
 
 
@@ -69,27 +69,27 @@ def test_it_refuses(sentence: str, reason: str) -> None:
         "Your sister Rosa must be happy about your new house.",
     ],
 )
-def test_it_lets_true_claims_pass(sentence: str) -> None:
+def test_a_sentence_that_contradicts_no_known_fact_passes(sentence: str) -> None:
     assert gate().refuse(sentence) == ""
 
 
 @pytest.mark.parametrize(("heard", "answer"), FITTING)
-def test_it_is_lenient(heard: str, answer: str) -> None:
+def test_a_fitting_answer_passes(heard: str, answer: str) -> None:
     assert gate(heard).refuse(answer) == ""
 
 
-def test_words_that_were_said_before_are_refused() -> None:
+def test_a_sentence_that_was_said_before_is_refused() -> None:
     assert gate(said=("Moving is hard work. I know.",)).refuse("Moving is hard work!") == "a repetition"
 
 
-def test_a_growing_answer_is_admitted_by_whole_sentences() -> None:
+def test_while_an_answer_grows_only_its_whole_sentences_are_admitted() -> None:
     checked = gate()
     assert checked.admit("A new hou", last=False) == ("", False)
     assert checked.admit("A new house! How exc", last=False) == ("A new house!", False)
     assert checked.admit("A new house! How exciting.", last=True) == ("A new house! How exciting.", False)
 
 
-def test_after_a_refusal_nothing_more_is_admitted() -> None:
+def test_no_sentence_after_a_refused_one_is_admitted() -> None:
     checked = gate()
     assert checked.admit("A new house! See www.example.org. ", last=True) == ("A new house!", True)
     assert checked.reason == "a link"

@@ -58,7 +58,7 @@ def test_other_files_and_nested_arrays_and_endless_headers_are_refused(
 
 
 @pytest.mark.model
-def test_the_header_of_a_real_model() -> None:
+def test_the_header_of_a_real_model_is_read() -> None:
     from ravestate.modules.skill.wildtalk.llama import bundled_model
 
     assert read_header(bundled_model()) == GgufHeader("llama", 134_515_008, chats=True)

@@ -73,7 +73,7 @@ def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
 
 @pytest.mark.model
 @pytest.mark.parametrize("how", ["close", "cancel"])
-def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
+def test_closing_or_cancelling_an_answer_stops_the_model(loaded: LlamaProcess, how: str) -> None:
     """The server stops the model when the connection closes; then the next answer comes from an idle model."""
 
     async def main() -> None:
@@ -98,7 +98,7 @@ def test_leaving_stops_the_model(loaded: LlamaProcess, how: str) -> None:
                 await task
         else:
             assert await task == 3
-        # All places are free: as many answers as there are places come at once.
+        # No place is taken any more, so one answer for each place can run at the same time.
         assert all(await asyncio.gather(*(answer(backend) for _ in range(5))))
         await backend.close()
 
@@ -215,7 +215,7 @@ def test_a_broken_file_is_an_error_and_no_crash(tmp_path: Path, content: bytes |
 
 
 @pytest.mark.model
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_model_file_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "tiny-q4.gguf").touch()
     wanted = tmp_path / "tiny-q5.gguf"
     with pytest.raises(
@@ -232,7 +232,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 @pytest.mark.model
-def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unreadable_model_file_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "model.gguf"
     file.touch()
 

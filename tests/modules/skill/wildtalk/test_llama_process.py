@@ -25,7 +25,7 @@ def child(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str) -> Llam
     return LlamaProcess(ModelKey(Path("model.gguf"), 512, 1, 1))
 
 
-def test_it_starts_once_and_ends(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_process_starts_once_and_ends(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     process = child(monkeypatch, tmp_path, READY)
     heard: list[float] = []
     assert process.start(heard.append) == "http://here/model.gguf"
@@ -117,7 +117,7 @@ def test_without_python_there_is_no_process(monkeypatch: pytest.MonkeyPatch, tmp
     process.close()
 
 
-def test_the_last_user_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_process_ends_with_its_last_user(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     key = child(monkeypatch, tmp_path, READY).key
     first = llama_process.take(key)
     assert llama_process.take(key) is first
@@ -131,7 +131,7 @@ def test_the_last_user_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
     llama_process.drop(other)
 
 
-def test_leaving_python_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_process_ends_with_the_interpreter(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     process = llama_process.take(child(monkeypatch, tmp_path, READY).key)
     process.start()
     llama_process._close_all()

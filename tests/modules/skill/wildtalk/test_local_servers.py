@@ -68,16 +68,16 @@ def test_the_number_of_parameters_that_llama_cpp_states_counts() -> None:
         b'{"data": "' + b"x" * (openai.LIMIT + 10) + b'"}', b"[" * 100_000,
     ],
 )  # fmt: skip
-def test_another_web_server_is_not_mistaken_for_one(document: Any) -> None:
+def test_another_web_server_is_not_mistaken_for_a_model_server(document: Any) -> None:
     assert found(answering(document)) == []
 
 
 @pytest.mark.parametrize("status", [301, 401, 404, 500])
-def test_a_server_that_refuses_is_no_server(status: int) -> None:
+def test_a_server_that_refuses_the_request_is_left_out(status: int) -> None:
     assert found(answering(listing("llama3.2"), status)) == []
 
 
-def test_several_are_asked_at_once_and_kept_in_the_order_of_their_ports() -> None:
+def test_several_servers_are_asked_at_once_and_listed_in_the_given_order() -> None:
     meeting = threading.Barrier(2, timeout=10)
 
     class Waiting(Quiet):
@@ -103,7 +103,7 @@ def test_a_server_that_stalls_is_left_out(monkeypatch: pytest.MonkeyPatch) -> No
         left.set()
 
 
-def test_without_a_listener_or_without_the_web_client_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_server_is_found_if_nothing_listens_or_the_web_client_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found() == []
     with serving(Quiet) as port:
         pass

@@ -1,4 +1,4 @@
-"""Calls during the choice of a backend."""
+"""Calls that come while the backend is being chosen wait for it."""
 
 import asyncio
 

@@ -24,7 +24,7 @@ def test_a_bar_is_drawn_on_a_terminal_and_removed() -> None:
 
 
 @pytest.mark.parametrize(("screen", "delay"), [(io.StringIO(), 0.0), (Terminal(), 9999.0)])
-def test_nothing_is_drawn_elsewhere_or_early(screen: io.StringIO, delay: float) -> None:
+def test_nothing_is_drawn_without_a_terminal_or_before_the_delay(screen: io.StringIO, delay: float) -> None:
     with ProgressBar("Loading", delay=delay, stream=screen) as bar:
         bar(0.5)
         bar(1.0)

@@ -156,7 +156,7 @@ def test_an_interrupted_answer_comes_before_the_answer_to_the_interruption() -> 
     ("heard", "kept"),
     [("Hello! How", ["Hello! How…"]), ("Hello! How are you?", ["Hello! How are you?"]), ("", [])],
 )
-def test_the_history_keeps_of_a_spoken_answer_what_was_heard(heard: str, kept: list[str]) -> None:
+def test_the_history_keeps_the_part_of_a_spoken_answer_that_was_heard(heard: str, kept: list[str]) -> None:
     model = Model("Hello! ", "How are ", "you?")
     sim = talk(model)
     sim.say("Hi there, friend!")
@@ -195,7 +195,7 @@ def test_without_an_answer_it_resigns(pieces: tuple[str, ...], text: str) -> Non
 
 
 @pytest.mark.parametrize("text", ["\x00", "<|im_end|>", "\x1b[31m"])
-def test_the_model_is_not_asked_for_an_answer_to_nothing(text: str) -> None:
+def test_the_model_is_not_asked_to_answer_an_empty_text(text: str) -> None:
     model = Model("Fine.")
     sim = talk(model)
     sim.say("Hello!")
@@ -247,7 +247,7 @@ def test_a_failing_model_is_logged_once_and_the_conversation_goes_on(
         ({"backend": "openai", "base_url": "here"}, "base_url 'here' is not a web address"),
     ],
 )
-def test_an_impossible_model_is_logged_once_at_the_start(
+def test_a_model_that_cannot_be_used_is_logged_once_at_the_start(
     settings: dict[str, Any], message: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     with simulate(wildtalk, settings={"wildtalk": settings}) as sim:
@@ -259,7 +259,7 @@ def test_an_impossible_model_is_logged_once_at_the_start(
     assert not sim.failures
 
 
-def test_a_bare_machine_listens() -> None:
+def test_without_a_model_the_agent_listens() -> None:
     with simulate(wildtalk) as sim:
         assert isinstance(sim.read(wildtalk.model), ListeningBackend)
         sim.say("I bought a bike.")
@@ -310,7 +310,7 @@ def test_the_choice_does_not_replace_a_backend_that_the_designer_wrote(monkeypat
     assert asyncio.run(main()).read(wildtalk.model) is own
 
 
-def test_it_makes_up_no_facts_unless_it_may() -> None:
+def test_the_model_answers_questions_of_fact_only_if_the_settings_allow_it() -> None:
     model = Model("Lima.")
     sim = talk(model, no_facts="Ask somebody else.")
     sim.say("What is the capital of Peru?")
@@ -400,7 +400,7 @@ def test_impossible_settings_are_refused(settings: dict[str, Any]) -> None:
     assert f"wildtalk.{next(iter(settings))}" in str(failure.value.exceptions[0])
 
 
-def test_a_secret_stays_one() -> None:
+def test_the_api_key_does_not_appear_in_a_repr() -> None:
     settings = Settings(api_key="s3cret")  # type: ignore[arg-type]
     assert "s3cret" not in repr(settings)
     assert "s3cret" not in repr(make_backend(settings.model_copy(update={"backend": "openai"})))

@@ -42,7 +42,7 @@ class Scripted:
         self.prompts: list[Sequence[Message]] = []
 
     async def load(self, progress: Progress | None = None) -> None:
-        """Nothing is to be loaded."""
+        """Do nothing, because there is no model to load."""
 
     async def stream(self, messages: Sequence[Message], **_: Any) -> AsyncGenerator[str, None]:
         self.prompts.append(messages)
@@ -50,7 +50,7 @@ class Scripted:
             yield word + " "
 
     async def close(self) -> None:
-        """Nothing is to be closed."""
+        """Do nothing, because there is no model to close."""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -81,7 +81,7 @@ def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation
     assert len(sim.said) == 3
 
 
-def test_a_move_in_a_game_is_no_matter_for_other_modules(sim: Simulation) -> None:
+def test_a_move_in_a_game_is_not_answered_by_other_modules(sim: Simulation) -> None:
     sim.say("word chain")
     word = sim.said[0].rstrip(".").split()[-1]
     assert not sim.read(wildtalk.listening).game.used[1:]
@@ -112,7 +112,7 @@ def test_a_clear_follow_up_comes_before_other_modules(sim: Simulation) -> None:
     assert sim.said[-1] != sim.said[-2]
 
 
-def test_it_hears_the_tone_of_what_others_answer(sim: Simulation) -> None:
+def test_the_tone_follows_utterances_that_other_modules_answer(sim: Simulation) -> None:
     sim.say("the weather is awful, my grandfather died yesterday")
     sim.say("he had a white beard")
     assert sim.read(wildtalk.listening).tone == "sad"
@@ -165,7 +165,7 @@ def test_claims_against_what_is_known_are_refused(sim: Simulation) -> None:
     assert "Berlin" not in sim.said[0]
 
 
-def test_the_prompt_knows_the_user(sim: Simulation) -> None:
+def test_the_prompt_contains_the_known_facts_about_the_user(sim: Simulation) -> None:
     model = Scripted("That sounds nice.")
     sim.put(wildtalk.model, model)
     sim.say("I like the sea")

@@ -130,7 +130,7 @@ def test_an_answer_is_no_longer_than_the_model_can_remember(tiny: Path) -> None:
     assert asyncio.run(story())  # it did not fail
 
 
-def test_leaving_stops_the_model(tiny: Path) -> None:
+def test_closing_an_answer_stops_the_model(tiny: Path) -> None:
     async def story() -> list[str]:
         backend = TransformersBackend(str(tiny))
         pieces = backend.stream(TALK, max_tokens=100_000, temperature=1.0, seed=1)
@@ -167,7 +167,7 @@ def test_the_agent_ends_while_a_model_is_still_being_fetched(monkeypatch: pytest
 
 
 @pytest.mark.parametrize("name", ["/no/such/folder", "no such name"])
-def test_a_model_that_cannot_be_had_is_named_with_the_mend(name: str) -> None:
+def test_a_model_that_cannot_be_loaded_is_named_with_the_remedy(name: str) -> None:
     with pytest.raises(PlatformError, match=r"cannot be loaded.*--set wildtalk\.model=gpt2"):
         asyncio.run(TransformersBackend(name).load())
 

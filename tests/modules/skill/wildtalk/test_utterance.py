@@ -45,7 +45,7 @@ def said(*pieces: str, name: str = "Rosie", sentences: int = 2) -> str:
         ("Fine ❤️👨‍👩‍👧!", "Fine !"),
     ],
 )
-def test_the_words_of_an_output(written: str, expected: str) -> None:
+def test_the_output_of_a_model_is_cleaned_to_the_words_to_say(written: str, expected: str) -> None:
     assert said(written) == expected
     assert said(*written) == expected
 
@@ -54,7 +54,7 @@ def test_the_first_words_are_said_at_once() -> None:
     assert Utterance("Rosie").feed("Hello") == "Hello"
 
 
-def test_a_possible_mark_is_held_back() -> None:
+def test_the_possible_beginning_of_a_mark_is_held_back() -> None:
     utterance = Utterance("Rosie")
     assert utterance.feed("Hello Us") == "Hello"
     assert utterance.feed("ually") == " Usually"
@@ -63,7 +63,7 @@ def test_a_possible_mark_is_held_back() -> None:
     assert utterance.finish() == " <3"
 
 
-def test_it_is_complete_after_its_sentences() -> None:
+def test_an_utterance_is_complete_after_the_maximum_number_of_sentences() -> None:
     utterance = Utterance("Rosie", sentences=1)
     utterance.feed("Hello!")
     assert not utterance.complete  # it may still become "Hello!!!"
@@ -74,7 +74,7 @@ def test_it_is_complete_after_its_sentences() -> None:
 
 
 @pytest.mark.parametrize(("written", "worth"), [("", False), ('"..." -', False), ("😊", True), ("a", True)])
-def test_whether_it_is_worth_saying(written: str, worth: bool) -> None:
+def test_only_text_with_words_or_emoji_is_worth_saying(written: str, worth: bool) -> None:
     utterance = Utterance("Rosie")
     utterance.feed(written)
     utterance.finish()
@@ -92,7 +92,7 @@ PARTS = st.sampled_from(
 
 
 @given(st.lists(PARTS, max_size=30), st.data())
-def test_however_it_is_cut_the_same_is_said(parts: list[str], data: st.DataObject) -> None:
+def test_the_pieces_of_an_output_do_not_change_its_words(parts: list[str], data: st.DataObject) -> None:
     written = "".join(parts)
     whole = said(written)
     assert said(*parts) == whole

@@ -32,7 +32,7 @@ def test_replies_use_known_roles_and_agree_with_them() -> None:
     assert not [place for place, line in lines if re.search(r"\b(?:was|is|does|has) \{they\}", line.text)]
 
 
-def test_no_utterance_stands_twice() -> None:
+def test_no_utterance_is_listed_twice() -> None:
     said = Counter(plain(text) for one in material().bank.moments for text in one.examples)
     assert not [text for text, times in said.items() if times > 1]
 
@@ -84,5 +84,5 @@ def test_follow_ups_stand_below_the_nearest_line_with_one_mark_less() -> None:
     assert (second.examples, second.follows) == (("f",), ())
 
 
-def test_the_tones_are_those_of_a_talk() -> None:
+def test_every_entry_has_a_known_tone() -> None:
     assert {one.tone for one in entries()} <= {*TONES, ""}

@@ -81,18 +81,18 @@ def test_a_longer_statement_about_something_else_ends_the_thread(own: Callable[.
     assert talk.say("my cousin plays chess with a dentist every friday") != "The goat certainly has its reasons."
 
 
-def test_another_unit_of_time_is_another_answer(own: Callable[..., Talk]) -> None:
+def test_a_different_unit_of_time_gets_a_different_answer(own: Callable[..., Talk]) -> None:
     talk = own()
     assert [talk.say("the goat had a birthday"), talk.say("about ten days")][-1] == "Then it climbs on everything."
 
 
-def test_there_are_three_levels(own: Callable[..., Talk]) -> None:
+def test_follow_ups_may_be_nested_to_three_levels(own: Callable[..., Talk]) -> None:
     talk = own()
     said = [talk.say(text) for text in ("the goat is on the roof", "the shed", "it doesn't hold", "I have no ladder")]
     assert said[2:] == ["Then fetch the ladder at once.", "A table and a chair reach as high."]
 
 
-def test_the_talk_can_return_to_an_earlier_entry(own: Callable[..., Talk]) -> None:
+def test_a_follow_up_of_an_earlier_entry_can_still_be_found(own: Callable[..., Talk]) -> None:
     talk = own()
     said = [talk.say(text) for text in ("the goat is on the roof", "the shed", "what shall i do now")]
     assert said[-1] == "Shake a bucket of oats."
@@ -115,7 +115,7 @@ def test_follow_ups_are_not_found_in_the_open_bank(bank: Bank, own: Callable[...
         ("my fence has fallen over", "goat"),
     ],
 )
-def test_any_other_statement_leaves_sorrows_questions_requests_and_other_entries(
+def test_the_follow_up_for_any_other_statement_does_not_answer_sorrows_questions_or_requests(
     text: str, unsaid: str, own: Callable[..., Talk]
 ) -> None:
     talk = own()
@@ -138,7 +138,7 @@ def test_a_follow_up_has_the_tone_of_its_entry(own: Callable[..., Talk]) -> None
     assert talk.state.tone == "sad"
 
 
-def test_a_clear_follow_up_belongs_to_the_skill_but_a_name_does_not(own: Callable[..., Talk]) -> None:
+def test_only_a_clear_follow_up_continues_the_thread(own: Callable[..., Talk]) -> None:
     talk = own()
     talk.say("the goat is on the roof")
     texts = ("it's the henhouse", "nope", "red tiles", "Anna", "what is a goat?")
@@ -166,7 +166,7 @@ def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Talk]) -> None
     assert [first.say(text) for text in texts] == [second.say(text) for text in texts]
 
 
-def test_the_built_in_follow_ups_lead_on(begin: Callable[[int], Any]) -> None:
+def test_a_built_in_follow_up_continues_the_thread(begin: Callable[[int], Any]) -> None:
     talk = begin(1)
     talk.say("my train was cancelled again")
     before = material().bank.follow_ups(talk.state.moment)

@@ -13,7 +13,7 @@ def shows() -> Any:
     return material().shows
 
 
-def test_there_is_enough_of_everything() -> None:
+def test_there_are_enough_jokes_stories_riddles_and_songs() -> None:
     assert len(shows()["told"]["joke"]) >= 40
     assert len(shows()["told"]["story"]) >= 8
     assert len(shows()["riddles"]) >= 25
@@ -27,7 +27,7 @@ def test_no_joke_comes_twice_before_all_were_told(talk: Any) -> None:
 
 
 @pytest.mark.parametrize(("text", "kind"), [("sing a song", "song"), ("tell me a story", "story")])
-def test_it_performs_on_request(text: str, kind: str, talk: Any) -> None:
+def test_the_agent_performs_on_request(text: str, kind: str, talk: Any) -> None:
     assert talk.say(text) in shows()["told"][kind]
 
 
@@ -53,7 +53,7 @@ def test_a_riddle_can_be_given_up(talk: Any) -> None:
     assert riddle["answers"][0] in talk.say("I don't know").lower()
 
 
-def test_word_chain_goes_by_the_last_letter(talk: Any) -> None:
+def test_in_word_chain_each_word_begins_with_the_last_letter_of_the_previous_word(talk: Any) -> None:
     first = talk.say("word chain").rstrip(".").split()[-1]
     words = {"a": "arm", "d": "duck", "e": "earth", "g": "glove", "h": "horn", "k": "king", "l": "leg", "m": "milk"}
     words |= {
@@ -74,7 +74,7 @@ def test_word_chain_goes_by_the_last_letter(talk: Any) -> None:
     assert talk.state.game.used[1] == own
 
 
-def test_it_guesses_an_animal_by_its_questions(talk: Any) -> None:
+def test_the_agent_guesses_an_animal_by_questions(talk: Any) -> None:
     known, questions = shows()["animal"]["known"], shows()["animal"]["questions"]
     answer = talk.say("guess my animal")
     for _ in range(len(questions) + 1):
@@ -86,7 +86,7 @@ def test_it_guesses_an_animal_by_its_questions(talk: Any) -> None:
     assert talk.say("yes") in shows()["animal"]["right"]
 
 
-def test_knock_knock(talk: Any) -> None:
+def test_a_knock_knock_joke_of_the_user_gets_the_right_replies(talk: Any) -> None:
     assert talk.say("Knock, knock!") == "Who's there?"
     assert talk.say("lettuce") == "Lettuce who?"
     assert talk.say("lettuce in, it's cold out here") in shows()["knock"]["laugh"]
@@ -161,7 +161,7 @@ def test_a_story_about_something_known_is_told(talk: Any) -> None:
     assert "snail" in talk.say("tell me a story about a snail").split(".")[0].lower()
 
 
-def test_a_farewell_in_a_game_is_answered_as_such(talk: Any) -> None:
+def test_a_farewell_during_a_game_is_answered_as_a_farewell(talk: Any) -> None:
     talk.say("riddle")
     assert talk.say("goodbye") not in shows()["play"]["over"]
 
@@ -183,7 +183,7 @@ def test_a_long_right_answer_to_a_riddle_counts(talk: Any) -> None:
     assert riddle["answers"][0] in talk.say(f"oh that must be a {riddle['answers'][0]}, ha, one point for me")
 
 
-def test_one_more_gives_one_more(talk: Any) -> None:
+def test_after_the_request_one_more_another_riddle_follows(talk: Any) -> None:
     first = asked(talk.say("a riddle please"))
     assert asked(talk.say("hm, one more"))["ask"] != first["ask"]
 

@@ -14,7 +14,7 @@ from ravestate.modules.skill.wildtalk.listening.tongue import is_nonsense, is_nu
         ("I am fine", ""), ("hello my friend", ""), ("no", ""), ("pizza con carne", ""), ("", ""), ("die hard", ""),
     ],
 )  # fmt: skip
-def test_the_language(text: str, tongue: str) -> None:
+def test_the_language_of_an_utterance_is_recognised(text: str, tongue: str) -> None:
     assert tongue_of(text, material().tongues) == tongue
 
 
@@ -25,11 +25,11 @@ def test_the_language(text: str, tongue: str) -> None:
         ("hello", False), ("strengths", False), ("rhythm", False), ("I see", False), ("", False), ("hmm", False),
     ],
 )  # fmt: skip
-def test_nonsense(text: str, nonsense: bool) -> None:
+def test_nonsense_is_recognised(text: str, nonsense: bool) -> None:
     assert is_nonsense(text) is nonsense
 
 
-def test_numbers() -> None:
+def test_only_digits_count_as_a_number() -> None:
     assert is_number("42!")
     assert not is_number("four")
     assert not is_number("!")
