@@ -1,4 +1,4 @@
-"""An engine that notices when an instant has no end."""
+"""An engine that detects an endless instant."""
 
 from __future__ import annotations
 
