@@ -1,4 +1,4 @@
-"""The tools of every question: contestants, the number of repetitions, and progress messages."""
+"""Tools that all questions share: contestants, the number of repetitions, and progress messages."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Bench(contextlib.ExitStack):
         return self._started(Child.peer(environments.clips(self.progress), "clips_rules.py"))
 
     def peer(self, script: str) -> Child:
-        """Return a process of a further peer, by its file in ``peers``."""
+        """Return a process of another peer; `script` is its file in ``peers``."""
         return self._started(Child.peer(environments.peers(self.progress), script))
 
     def reference(self) -> Child:

@@ -112,7 +112,7 @@ def compete(rules: int, inputs: int) -> list[Seconds]:
 
 
 def build(rules: int) -> Seconds:
-    """Return the time to build so many rules, each on a signal of its own."""
+    """Return the time to build this number of rules, each on its own signal."""
     begin = time.perf_counter()
     Agent(1, "raise", unrelated=rules)
     return time.perf_counter() - begin

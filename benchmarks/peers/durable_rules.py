@@ -15,7 +15,7 @@ Seconds = float
 
 
 def build(name: str, k: int, said: list[str]) -> None:
-    """Declare a set of rules with the chain."""
+    """Declare the rules of the chain."""
     with ruleset(name):
         last = "input"
         for i in range(1, k + 1):

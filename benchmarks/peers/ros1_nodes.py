@@ -1,4 +1,4 @@
-"""Bare nodes of ROS 1 (rospy): an echo, the floor that talks with it, and a source of numbers and images."""
+"""Bare nodes of ROS 1 (rospy): an echo, a node that talks with it (the floor), and a source of numbers and images."""
 
 import itertools
 import struct

@@ -1,4 +1,4 @@
-"""Bare nodes of ROS 2 (rclpy): an echo, the floor that talks with it, and a source of numbers and images."""
+"""Bare nodes of ROS 2 (rclpy): an echo, a node that talks with it (the floor), and a source of numbers and images."""
 
 import itertools
 import threading

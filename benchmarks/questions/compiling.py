@@ -28,7 +28,7 @@ def compiling(unrelated: int) -> float:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare many rules with CLIPS, and each rule of many with each rule of few."""
+    """Compare many rules with CLIPS, and the time for each rule in a large policy with that in a small one."""
     ours, clips = bench.ours("benchmarks.questions.compiling"), bench.clips()
     many, few, theirs = [], [], []
     for _ in bench.rounds(5, 2):

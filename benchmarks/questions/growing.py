@@ -139,7 +139,7 @@ def burst(size: int, *, writes: bool) -> float:
 
 
 def timed(engine: Engine, given: Sequence[Event], expected: int, until: float = 0.0) -> float:
-    """Return the seconds of processor time from events to their runs; `until` is the end of the wait for rivals."""
+    """Return the seconds of processor time from events to their runs; at `until`, the wait for rivals ends."""
     begin = time.process_time()
     runs = play(engine, given)
     while (due := engine.next_deadline()) is not None and due <= until:

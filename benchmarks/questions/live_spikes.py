@@ -52,7 +52,7 @@ def burst(spikes: int) -> float:
 
 
 def in_wait(spikes: int) -> dict[str, float]:
-    """Return the seconds for one more spike beside so many waiting spikes, and for an answer beside them."""
+    """Return the seconds for one more spike while `spikes` spikes wait, and for an answer while they wait."""
 
     async def measure() -> dict[str, float]:
         module = rs.Module("waiting")

@@ -135,7 +135,7 @@ def add(steps: int) -> int:
 
 
 def constant_server(dues: Sequence[float], each: float) -> list[float]:
-    """Return how long inputs at these times take with a server that takes `each` seconds for one (seconds)."""
+    """Return how long each input takes (seconds) if a server handles one input in `each` seconds."""
     free, times = 0.0, []
     for due in dues:
         free = max(free, due) + each

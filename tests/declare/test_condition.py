@@ -93,7 +93,7 @@ def test_the_message_about_a_slot_beside_a_condition_names_its_signal() -> None:
 
 
 @pytest.mark.parametrize("age", ["2", None, True, object()])
-def test_an_age_that_is_no_number_and_no_setting_is_refused(age: object) -> None:
+def test_an_age_that_is_neither_a_number_nor_a_setting_is_refused(age: object) -> None:
     with pytest.raises(rs.DeclarationError, match=r"min_age\(.*\): expected seconds as a number, or a setting"):
         a.min_age(age)
     if age is not None:
@@ -101,7 +101,7 @@ def test_an_age_that_is_no_number_and_no_setting_is_refused(age: object) -> None
             a.max_age(age)
 
 
-def test_a_predicate_that_is_no_function_is_refused() -> None:
+def test_a_predicate_that_is_not_a_function_is_refused() -> None:
     with pytest.raises(rs.DeclarationError, match=r"demo:a\.where\('yes'\): expected a function of the payload"):
         a.where("yes")
     with pytest.raises(rs.DeclarationError, match=r"demo:mood\.holds\('calm'\): expected a function of the value"):

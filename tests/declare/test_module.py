@@ -109,7 +109,7 @@ def test_the_message_about_a_wrong_requirement_names_the_module_that_requires_it
 
 
 @pytest.mark.parametrize("name", ["", "two words", "a:b", "1st", "a.b", None, 3])
-def test_a_name_that_is_no_identifier_is_refused(name: Any, demo: rs.Module) -> None:
+def test_a_name_that_is_not_an_identifier_is_refused(name: Any, demo: rs.Module) -> None:
     for declare in (
         lambda: rs.Module(name),
         lambda: demo.signal(name),
@@ -126,7 +126,7 @@ def test_identifiers_with_or_without_hyphens_are_names(name: str) -> None:
 
 
 @pytest.mark.parametrize("settings", [Options(), {"late": 1}, dict, "Options"])
-def test_settings_that_are_no_settings_class_are_refused(settings: Any) -> None:
+def test_settings_that_are_not_a_settings_class_are_refused(settings: Any) -> None:
     refused("write class Settings(rs.Settings): ...", lambda: rs.Module("m", settings=settings))
     assert rs.Module("m", settings=Options).settings is Options
 
@@ -169,7 +169,7 @@ def test_a_function_without_an_argument_is_refused(demo: rs.Module) -> None:
     assert demo.rule(when=demo.signal("ok"))(takes_any).name == "demo:takes_any"
 
 
-def test_a_rule_needs_a_function(demo: rs.Module) -> None:
+def test_a_value_that_is_not_a_function_cannot_become_a_rule(demo: rs.Module) -> None:
     go = demo.signal("go")
     refused("@demo.rule(...) must decorate a function, not 3", lambda: demo.rule(when=go)(3))
     rule = demo.rule(when=go)(do)
@@ -204,7 +204,7 @@ def test_the_message_about_a_slot_as_condition_names_its_signal(demo: rs.Module)
 
 @pytest.mark.parametrize("what", ["weight", "cooldown", "patience", "timeout"])
 @pytest.mark.parametrize("number", ["2", True, [1]])
-def test_a_value_that_is_no_number_is_refused(what: str, number: Any, demo: rs.Module) -> None:
+def test_a_value_that_is_not_a_number_is_refused(what: str, number: Any, demo: rs.Module) -> None:
     options: dict[str, Any] = {what: number}
     refused(
         f"{what}={number!r} is not a number; write {what}=1.0 or a setting",

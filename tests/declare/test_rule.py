@@ -11,7 +11,7 @@ go = demo.signal("go")
 
 @demo.rule(when=go)
 def double(ctx: int) -> int:
-    """Twice as much."""
+    """Return twice the argument."""
     return 2 * ctx
 
 
@@ -27,7 +27,7 @@ def test_calling_a_rule_calls_its_function() -> None:
 
 def test_a_rule_looks_like_its_function() -> None:
     assert inspect.unwrap(double) is double.function
-    assert inspect.getdoc(double) == "Twice as much."
+    assert inspect.getdoc(double) == "Return twice the argument."
     assert list(inspect.signature(double).parameters) == ["ctx"]
 
 

@@ -1,4 +1,4 @@
-"""Signals are values, equal to themselves alone."""
+"""Signals are values; a signal equals only itself."""
 
 import ravestate as rs
 from ravestate.declare.condition import Constraint
@@ -27,7 +27,7 @@ def test_signals_of_one_name_are_different_signals() -> None:
     assert len({one, other}) == 2
 
 
-def test_a_signal_equals_no_text() -> None:
+def test_a_signal_does_not_equal_its_name() -> None:
     """If a signal equalled its name, two signals with one name would equal the name, but not each other."""
     assert rs.Module("twin").signal("s") != "twin:s"
 

@@ -52,7 +52,7 @@ class Text(str):
         (None, str | int, 1, 1.5),
     ],
 )
-def test_a_slot_with_a_type_takes_no_other(default: Any, kind: Any, good: Any, bad: Any) -> None:
+def test_a_slot_with_a_type_refuses_values_of_other_types(default: Any, kind: Any, good: Any, bad: Any) -> None:
     slot = demo.slot("s", default, type=kind)
     slot.check(good, "the writer")
     with pytest.raises(
@@ -94,7 +94,7 @@ def test_the_message_about_a_misspelt_signal_of_a_slot_names_the_nearest(
         getattr(slot, attribute)
 
 
-def test_a_slot_is_no_condition() -> None:
+def test_a_slot_is_not_a_condition() -> None:
     signal = demo.signal("go")
     for combine in (lambda: mood & signal, lambda: mood | signal, lambda: mood & lit, lambda: True & mood):
         with pytest.raises(rs.DeclarationError, match=r"write \.changed \(its signal\) or \.holds\(predicate\)"):

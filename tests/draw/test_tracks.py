@@ -15,7 +15,7 @@ def gaps(draw: st.DrawFn) -> list[Segment]:
 
 
 @given(gaps())
-def test_verticals_of_different_nets_do_not_touch(segments: list[Segment]) -> None:
+def test_vertical_lines_of_different_nets_do_not_touch(segments: list[Segment]) -> None:
     found = tracks(segments)
     for (p, q, y, z), (r, s, a, b), (one, two) in (
         zip(*zip(*combinations(segments, 2), strict=True), combinations(found.of, 2), strict=True)

@@ -1,4 +1,5 @@
-"""Benches: first spikes of a sole writer share a counterpart, and the runs are the same as without benches."""
+"""Benches: the first spikes for a rule that alone writes its slot share one second spike; the runs are the same as
+without benches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Explanations are exact among many rules, too: the end of a wait, and the lead of a rival."""
+"""Explanations give the exact end of a wait and lead of a rival, even among many rules."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_followers_name_the_rivals_of_their_leader(traced: bool) -> None:
     }
 
 
-def test_a_new_rule_that_only_looks_needs_no_deadline_for_earlier_spikes() -> None:
+def test_earlier_spikes_set_no_deadline_for_an_added_rule_that_only_looks() -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     declared(m, "both", when=b & a.detached())

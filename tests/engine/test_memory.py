@@ -1,4 +1,4 @@
-"""An engine at rest has only its memory; it borrows the parts of its policy for its work."""
+"""An engine at rest keeps only its memory; to work, it borrows parts from its policy."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def rest(engine: Engine, now: float) -> None:
     finish(engine, now)
 
 
-def test_engines_that_take_turns_share_parts_and_nothing_else() -> None:
+def test_engines_that_take_turns_share_only_parts() -> None:
     policy = rs.compile(m)
     one, two = Engine(policy), Engine(policy)
     for turn in range(3):
@@ -95,7 +95,7 @@ def test_an_event_that_concerns_no_rule_leaves_the_engine_at_rest() -> None:
     assert len(policy.spare) == 1
 
 
-def test_an_engine_that_is_traced_does_not_rest() -> None:
+def test_a_traced_engine_keeps_its_parts() -> None:
     policy = rs.compile(m)
     engine = Engine(policy)
     records: list[Any] = []

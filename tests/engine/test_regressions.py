@@ -1,7 +1,4 @@
-"""Faults that random worlds have found: the smallest example of each, and the law that it broke.
-
-Each world was shrunk from one that a property test had made.
-"""
+"""Faults that random worlds have found: the smallest world that shows each fault, and the law that was broken."""
 
 from __future__ import annotations
 
@@ -104,7 +101,7 @@ def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_another_signal()
     Play(world, before=bounded).play()
 
 
-def test_the_best_of_a_conflict_set_may_be_judged_against_a_rival() -> None:
+def test_judging_the_best_rule_of_a_conflict_set_against_a_rival_raises_no_error() -> None:
     # In the past, the alternatives unfolded within a loop over the members of their group, which raised a RuntimeError.
     world = World(
         S3,
@@ -307,7 +304,7 @@ def moments(world: World, rule: str) -> list[float]:
 OUT = (SlotOf(),)
 
 
-def test_an_older_activation_spares_the_younger_one_no_wait() -> None:
+def test_a_younger_activation_is_under_pressure_even_if_its_rule_has_an_older_activation() -> None:
     # L16: s1 comes at 0 s, s0 at 0.703 and 2.139 s. At 2.139 s r0's younger activation lacks s1 and is pressured.
     world = World(
         S3,
@@ -437,7 +434,7 @@ def test_events_of_one_instant_count_in_the_order_in_which_they_arrive() -> None
     assert not any("Cancel" in line for line in Play(together).play().heard)
 
 
-def test_every_stalemate_of_an_instant_is_broken() -> None:
+def test_several_stalemates_in_one_instant_are_all_broken() -> None:
     # L15: for each of two inputs, r1 waits for r0, which r3 may help; and r3 waits for r2, which r1 may help.
     world = World(
         S3,
@@ -522,7 +519,7 @@ def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_
     assert ["'m:s1': 1" in call for call in calls] == [False, True]
 
 
-def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> None:
+def test_a_stalemate_in_which_two_activations_may_help_the_same_rule_is_broken() -> None:
     # L15: r1 waits for r3. Either of two activations of r2 may help r3, but both wait for r0, which r1 may help.
     world = World(
         (*S3, SignalOf()),
@@ -549,7 +546,7 @@ def test_a_stalemate_of_which_one_activation_is_a_second_helper_is_broken() -> N
     assert moments(world, "r2") == [0.75, 2.875]
 
 
-def test_clauses_whose_utilities_differ_in_the_last_digits_are_equals() -> None:
+def test_clauses_whose_utilities_differ_only_by_a_rounding_error_are_equals() -> None:
     # L9, L15: r1's utility is rounded, then doubled by its weight; r6 needs two signals of that utility. The first declared
     # goes first, as for any equals.
     world = World(

@@ -35,7 +35,7 @@ def test_the_weight_of_rules_worth_nothing_counts() -> None:
     assert not here.is_ahead(one, other)
 
 
-def test_a_rule_worth_0_that_recovers_faster_is_behind_no_other() -> None:
+def test_a_rule_worth_0_that_recovers_faster_is_not_behind_a_rule_declared_earlier() -> None:
     here, (slow, fast) = standing({0: 5.0, 1: 5.0}, 5.0, slow={"cooldown": 20.0}, fast={"cooldown": 5.0})
     assert not here.is_ahead(slow, fast)  # they are equal now, but not in the moment after
     assert not here.is_ahead(fast, slow)  # and now the first declared goes first
@@ -75,7 +75,7 @@ def test_a_crossing_is_the_same_moment_whenever_one_asks_for_it() -> None:
     assert len(found) == 1, found
 
 
-def test_a_cooldown_that_has_passed_but_for_a_rounding_error_has_passed() -> None:
+def test_a_rounding_error_does_not_prolong_a_cooldown() -> None:
     here, (one, other) = standing({1: 1.6}, 4.6, one={}, other={"cooldown": 3.0})  # 4.6 - 1.6 is less than 3.0
     assert here.recovery(other) == (1.0, 0.0)
     assert here.is_ahead(one, other)  # equals: the first declared goes first

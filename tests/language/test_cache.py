@@ -38,7 +38,7 @@ def test_files_that_nobody_reads_any_more_are_removed(folder: Path, monkeypatch:
     assert computed("older")
 
 
-def test_many_small_files_push_out_no_large_one() -> None:
+def test_many_small_files_do_not_push_out_a_large_one() -> None:
     cached("large", lambda: {"array": np.zeros(100_000)})
     for number in range(150):
         assert computed(number)
@@ -60,7 +60,7 @@ def test_a_map_reads_the_file_of_the_first_call() -> None:
 
 
 @pytest.mark.parametrize("damage", ["short", "header", "zip", "data"])
-def test_a_broken_map_is_made_anew(folder: Path, damage: str) -> None:
+def test_a_broken_map_is_made_again(folder: Path, damage: str) -> None:
     mapped("map", lambda: np.arange(6))
     [file] = folder.glob("*.npy")
     good = file.read_bytes()
@@ -92,7 +92,7 @@ def test_a_write_that_fails_leaves_no_file(folder: Path, monkeypatch: pytest.Mon
     assert list(folder.iterdir()) == []
 
 
-def test_a_file_that_another_process_removes_meanwhile_is_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_another_process_removes_in_the_meantime_causes_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     def gone(_: Path) -> None:
         raise FileNotFoundError
 
@@ -101,7 +101,7 @@ def test_a_file_that_another_process_removes_meanwhile_is_no_fault(monkeypatch: 
     assert isinstance(mapped("map", lambda: np.arange(6)), np.memmap)
 
 
-def test_a_map_that_cannot_be_written_is_made_once(folder: Path) -> None:
+def test_a_map_that_cannot_be_written_is_made_only_once(folder: Path) -> None:
     folder.write_text("a file in the place of the folder")
     calls: list[int] = []
     for _ in range(2):

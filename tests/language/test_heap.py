@@ -29,7 +29,7 @@ def test_the_c_library_returns_the_memory_after_a_load(monkeypatch: pytest.Monke
     assert returned.wait(60)
 
 
-def test_another_load_puts_the_return_off(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_load_delays_the_return_of_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(heap, "SETTLED", 3600.0)
     note_load()
     [first] = heap._pending

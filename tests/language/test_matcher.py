@@ -43,7 +43,7 @@ def test_a_sentence_belongs_to_the_class_that_it_resembles(matcher: Matcher, sen
     assert (match and match.name) == name
 
 
-def test_the_examples_are_surer_than_what_only_resembles_them(matcher: Matcher) -> None:
+def test_the_matcher_is_surer_of_its_examples_than_of_similar_sentences(matcher: Matcher) -> None:
     example, similar = matcher.match_all(["When do you open?", "Say, until when are you open?"])
     assert example is not None and similar is not None
     assert example.score > similar.score > 0.5
@@ -57,7 +57,7 @@ def test_all_classes_and_none_are_ranked(matcher: Matcher) -> None:
     assert first.margin > 0 > second.margin >= third.margin
 
 
-def test_before_it_has_learnt_it_knows_the_examples_word_for_word() -> None:
+def test_a_matcher_that_has_not_learnt_recognises_its_examples_word_for_word() -> None:
     matcher = Matcher(EXAMPLES, NONE)
     assert not matcher.loaded
     match = matcher.match("When do u open?")

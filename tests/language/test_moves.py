@@ -26,7 +26,7 @@ def _loaded() -> None:
     bundled_moves().load()
 
 
-def test_half_of_the_moves_of_unseen_talks_are_right_and_most_of_the_sure_ones() -> None:
+def test_about_half_of_the_moves_in_unseen_talks_are_right_and_so_are_most_of_the_sure_moves() -> None:
     rows = [line.split("\t") for line in TALKS.read_text(encoding="utf-8").splitlines() if line[:1] not in ("", "#")]
     found = [(wanted, move_of(text)) for text, wanted in rows if any(map(str.isalpha, text))]
     right = [wanted == move.name for wanted, move in found]
@@ -74,7 +74,7 @@ def test_before_it_is_loaded_it_knows_nothing() -> None:
     assert Moves({"greet": ["hello"]}).move(("hello",), asks=False) is None
 
 
-def test_no_words_have_no_move() -> None:
+def test_a_text_without_words_has_no_move() -> None:
     assert bundled_moves().move(("...",), asks=False) is None
     assert bundled_moves().move((), asks=False) is None
 

@@ -157,7 +157,7 @@ def test_rules_that_read_an_utterance_share_its_normal_form(monkeypatch: pytest.
     assert normalise("hullo rosie its me", ("Rosie",)) is first
 
 
-def test_a_long_text_holds_up_no_other_text(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_text_does_not_delay_other_texts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Contexts share the normal forms. A text of 2,000 characters takes 0.1 s, and other users do not wait for it."""
     begun, go_on = threading.Event(), threading.Event()
     compute = normal._normalised

@@ -123,7 +123,7 @@ def test_pieces_come_one_by_one(chat_server: Any) -> None:
 
 
 @pytest.mark.parametrize("how", ["close", "cancel", "cancel before the first word"])
-def test_leaving_hangs_up(chat_server: Any, how: str) -> None:
+def test_leaving_the_stream_closes_the_connection(chat_server: Any, how: str) -> None:
     async def main() -> None:
         asked, hung_up = asyncio.Event(), asyncio.Event()
 
@@ -303,13 +303,13 @@ def test_a_server_that_only_keeps_the_connection_open_has_stalled(converse: Conv
         converse(answer, read_timeout=0.05)
 
 
-def test_a_server_that_is_not_there(converse: Conversation) -> None:
+def test_a_server_that_does_not_run_is_an_error(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match=r"no server answers at http://127.0.0.1:1/v1 .*ollama serve"):
         converse(hello, base_url="http://127.0.0.1:1/v1")
 
 
 @pytest.mark.parametrize("url", ["", "localhost:11434/v1", "http://", "ftp://x/v1"])
-def test_an_address_that_is_none(url: str) -> None:
+def test_a_text_that_is_not_a_web_address_is_refused(url: str) -> None:
     with pytest.raises(PlatformError, match=f"base_url '{url}' is not a web address: write for example"):
         OpenAIBackend(url, "tiny")
 

@@ -25,7 +25,7 @@ def test_like_sentences_lie_near_each_other() -> None:
     assert vectors[0] @ vectors[1] > vectors[0] @ vectors[2] + 0.1
 
 
-def test_batches_change_no_vector() -> None:
+def test_a_vector_does_not_depend_on_the_batch() -> None:
     """The encoder runs sentences in batches by length; each gets its own vector."""
     texts = [
         "Yes.",

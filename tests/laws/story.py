@@ -1,4 +1,6 @@
-"""A story that uses all features. As a program, it prints all effects and trace records of the engine."""
+"""A story that uses all features of the engine.
+
+``python -m laws.story`` plays it and prints all effects and trace records."""
 
 from __future__ import annotations
 

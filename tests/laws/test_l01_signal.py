@@ -1,4 +1,4 @@
-"""L1: a named kind of event, atomic and transient; an occurrence may carry a payload."""
+"""L1: a signal is a named kind of event, atomic and transient; an occurrence may carry a payload."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""L2: named, typed, long-lived variables, each with signals of its own."""
+"""L2: slots are named, typed, long-lived variables, each with signals of its own."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from ravestate.testing import simulate
 
 
 def heard_of(m: rs.Module, slot: rs.Slot[Any]) -> list[tuple[str, Any]]:
-    """Declare a rule for each signal of a slot, and return the list in which they note name and payload."""
+    """Declare a rule for each signal of a slot, and return the list in which these rules note the signal's name and payload."""
     heard: list[tuple[str, Any]] = []
     for signal in slot.signals:
         what = signal.name.rsplit(":", 1)[1]
@@ -150,7 +150,7 @@ def test_writing_an_equal_item_merges_no_groups(how: str) -> None:
         assert sim.fired.count("m:know") == 1
 
 
-def test_a_slot_may_say_that_every_write_signals(play: Any) -> None:
+def test_a_slot_may_be_declared_to_signal_every_write(play: Any) -> None:
     m = rs.Module("m")
     said = m.slot("said", "", always=True)
     heard = heard_of(m, said)
@@ -169,7 +169,7 @@ def test_a_value_outlives_its_signals(play: Any) -> None:
         assert sim.read(mood) == "gay"
 
 
-def test_a_default_is_each_contexts_own(play: Any) -> None:
+def test_each_context_has_its_own_copy_of_a_default(play: Any) -> None:
     m = rs.Module("m")
     notes, go = m.slot("notes", list[str]()), m.signal("go")
 
@@ -185,7 +185,7 @@ def test_a_default_is_each_contexts_own(play: Any) -> None:
     assert notes.default == []
 
 
-def test_a_slot_that_is_taken_for_a_signal_is_refused() -> None:
+def test_a_slot_in_place_of_a_signal_is_refused() -> None:
     m = rs.Module("m")
     mood, go = m.slot("mood", "calm"), m.signal("go")
     with pytest.raises(rs.DeclarationError, match=r"\.changed"):

@@ -1,4 +1,4 @@
-"""L3: an annotated function; it touches nothing that it did not declare."""
+"""L3: a rule is an annotated function; it touches nothing that it did not declare."""
 
 import inspect
 from typing import Any
@@ -10,7 +10,7 @@ from laws.short import hearer, output, writer
 from ravestate.testing import Simulation, simulate
 
 
-def test_a_rule_is_its_function_with_a_name() -> None:
+def test_a_declared_rule_is_still_the_function_with_its_name() -> None:
     m = rs.Module("m")
     go, mood, done = m.signal("go"), m.slot("mood", ""), m.signal("done")
 

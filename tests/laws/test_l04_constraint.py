@@ -1,4 +1,4 @@
-"""L4: a signal with ages, `detached`, predicates over the payload; and predicates on slots that only gate."""
+"""L4: a constraint is a signal with ages, `detached` and predicates on the payload; predicates on slots only gate."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ def pair(condition: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.
     return m, a, b, out
 
 
-def test_a_spike_counts_at_once_unless_told_otherwise(play: Any) -> None:
+def test_a_spike_counts_at_once_by_default(play: Any) -> None:
     m, a, b, out = pair(lambda a, b: a & b)
     with play(m) as sim:
         sim.advance(1.0)
@@ -27,7 +27,7 @@ def test_a_spike_counts_at_once_unless_told_otherwise(play: Any) -> None:
 
 
 @pytest.mark.parametrize(("delay", "fires"), [(4.999, True), (5.0, False), (5.001, False)])
-def test_a_spike_counts_for_five_seconds_unless_told_otherwise(play: Any, delay: float, fires: bool) -> None:
+def test_a_spike_counts_for_five_seconds_by_default(play: Any, delay: float, fires: bool) -> None:
     m, a, b, out = pair(lambda a, b: a & b)
     with play(m) as sim:
         sim.emit(a)
@@ -37,7 +37,7 @@ def test_a_spike_counts_for_five_seconds_unless_told_otherwise(play: Any, delay:
 
 
 @pytest.mark.parametrize(("delay", "fires"), [(0.2, True), (0.3, False), (2.0, False)])
-def test_max_age_says_for_how_long_a_spike_counts(play: Any, delay: float, fires: bool) -> None:
+def test_max_age_sets_for_how_long_a_spike_counts(play: Any, delay: float, fires: bool) -> None:
     m, a, b, out = pair(lambda a, b: a.max_age(0.3) & b)
     with play(m) as sim:
         sim.emit(a)
@@ -101,7 +101,7 @@ def test_where_waits_for_a_payload_that_fits(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "both")]
 
 
-def test_a_predicate_that_raises_is_an_error_of_its_rule_and_no_match(play: Any) -> None:
+def test_a_predicate_that_raises_is_an_error_of_its_rule_and_does_not_match(play: Any) -> None:
     m, a, _, out = pair(lambda a, b: a.where(lambda n: 1 / n > 0))
     writer(m, "other", a, output(m, "face"))
     with play(m) as sim:
@@ -112,7 +112,7 @@ def test_a_predicate_that_raises_is_an_error_of_its_rule_and_no_match(play: Any)
         assert moments(sim, out) == [(0.0, "both")]
 
 
-def test_a_false_predicate_of_until_spares_those_after_it(play: Any) -> None:
+def test_after_a_false_predicate_of_until_the_later_ones_are_not_called(play: Any) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     writer(m, "long", a, output(m), after=1.0, until=b.where(lambda n: n is not None).where(lambda n: n > 0))
@@ -178,7 +178,7 @@ def test_an_activation_at_a_closed_gate_is_not_ready_and_ages(play: Any) -> None
         assert given_up(sim, "gated") == [(5.0, "a", "age")]
 
 
-def test_a_detached_constraint_is_one_that_looks_only(play: Any) -> None:
+def test_a_detached_constraint_only_looks(play: Any) -> None:
     m = rs.Module("m")
     a, out, heard = m.signal("a"), output(m), list[Any]()
     writer(m, "act", a, out)

@@ -136,7 +136,7 @@ def test_all_faults_are_reported_at_once() -> None:
     assert all(text in str(caught.value) for text in messages)
 
 
-def test_a_rule_that_can_be_reached_from_outside_is_no_fault() -> None:
+def test_a_rule_that_an_input_can_reach_is_not_a_fault() -> None:
     m = rs.Module("m")
     a, b = m.signal("a", input=True), m.signal("b")
     emitter(m, "hen", a, b)

@@ -28,7 +28,7 @@ def test_a_rule_may_cause_every_signal_of_a_slot_that_it_writes() -> None:
         assert pathways(policy, f"m:hear_{number}") == {f"go {signal.name.split(':', 1)[1]}"}
 
 
-def test_a_slot_that_a_rule_only_reads_is_no_effect() -> None:
+def test_a_slot_that_a_rule_only_reads_is_not_an_effect() -> None:
     m = rs.Module("m")
     go, mood = m.signal("go"), m.slot("mood", "")
     hearer(m, "look", go, go, [], reads=mood)
@@ -36,7 +36,7 @@ def test_a_slot_that_a_rule_only_reads_is_no_effect() -> None:
     assert pathways(rs.compile(m), "m:hear") == {"mood:changed"}
 
 
-def test_an_effect_is_caused_by_all_constraints_of_a_clause() -> None:
+def test_all_constraints_of_a_clause_cause_an_effect_together() -> None:
     m = rs.Module("m")
     a, b, x = m.signal("a"), m.signal("b"), m.signal("x")
     emitter(m, "cause", a & b, x)
@@ -44,7 +44,7 @@ def test_an_effect_is_caused_by_all_constraints_of_a_clause() -> None:
     assert pathways(rs.compile(m), "m:hear") == {"a b x"}
 
 
-def test_each_clause_of_a_rule_is_a_cause_of_its_own() -> None:
+def test_each_clause_of_a_rule_is_a_separate_cause() -> None:
     m = rs.Module("m")
     a, b, c, x = m.signal("a"), m.signal("b"), m.signal("c"), m.signal("x")
     emitter(m, "cause", a & b | c, x)
@@ -60,7 +60,7 @@ def test_a_detached_constraint_causes_nothing() -> None:
     assert pathways(rs.compile(m), "m:hear") == {"a x"}
 
 
-def test_effects_of_a_detached_rule_have_no_cause() -> None:
+def test_the_effects_of_a_detached_rule_have_no_cause() -> None:
     m = rs.Module("m")
     a, x = m.signal("a"), m.signal("x")
     emitter(m, "cause", a, x, detached=True)

@@ -31,7 +31,7 @@ def test_every_constraint_is_completed() -> None:
     assert pathways(rs.compile(m), "m:hear") == {"i j x y"}
 
 
-def test_a_common_cause_stands_once() -> None:
+def test_a_common_cause_appears_once_on_a_pathway() -> None:
     m = rs.Module("m")
     i, x, y = m.signal("i"), m.signal("x"), m.signal("y")
     emitter(m, "one", i, x)
@@ -81,14 +81,14 @@ def test_cycles_are_cut() -> None:
     assert pathways(policy, "m:hen") == {"a", "a b"}
 
 
-def test_a_rule_that_causes_its_own_signal_is_cut_too() -> None:
+def test_the_cycle_of_a_rule_that_causes_its_own_signal_is_cut() -> None:
     m = rs.Module("m")
     count = m.slot("count", 0, input=True)
     writer(m, "count_up", count.changed, count)
     assert pathways(rs.compile(m), "m:count_up") == {"count:changed"}
 
 
-def test_a_caused_signal_that_is_an_input_keeps_its_bare_pathway() -> None:
+def test_an_input_that_a_rule_also_causes_has_a_pathway_without_this_cause() -> None:
     m = rs.Module("m")
     i, x = m.signal("i"), m.signal("x", input=True)
     text, plain = m.slot("text", "", input=True), m.slot("plain", "")

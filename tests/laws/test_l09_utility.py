@@ -24,7 +24,7 @@ def test_a_signal_on_every_rules_pathway_is_worth_nothing() -> None:
     assert policy.utility("m:two") == pytest.approx(log(3))
 
 
-def test_a_signal_on_one_rule_only_is_worth_the_log_of_the_number_of_rules() -> None:
+def test_a_signal_on_the_pathways_of_only_one_rule_is_worth_the_log_of_the_number_of_rules() -> None:
     m = rs.Module("m")
     signals = [m.signal(f"s{number}") for number in range(7)]
     for signal in signals:
@@ -55,7 +55,7 @@ def test_a_rule_counts_once_however_many_of_its_pathways_share_the_signal() -> N
     hearer(m, "hear", x & i | x & j | x, x, [])
     hearer(m, "other", m.signal("z"), x, [])
     policy = rs.compile(m)
-    # x is on one rule, though on five of its pathways; i and j each on `hear` and on one rule more
+    # x is on five pathways, but all of `hear`; i and j are each on those of `hear` and one more rule
     assert policy.clauses("m:hear")[2].utility == pytest.approx(log(4 / 1) + log(4 / 2))
 
 
@@ -95,7 +95,7 @@ def test_a_predicate_adds_the_log_of_two() -> None:
     assert policy.utility("m:all_of_them") == pytest.approx(log(4) + 3 * log(2))
 
 
-def test_weight_multiplies(play: Any) -> None:
+def test_weight_multiplies_utility(play: Any) -> None:
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)
     hearer(m, "other", m.signal("b"), a, [])
@@ -108,7 +108,7 @@ def test_weight_multiplies(play: Any) -> None:
         assert sim.fired == ["m:heavy"]
 
 
-def test_recovery_climbs_linearly_over_the_cooldown(play: Any) -> None:
+def test_utility_recovers_linearly_over_the_cooldown(play: Any) -> None:
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)
     hearer(m, "other", m.signal("b"), a, [])
@@ -126,7 +126,7 @@ def test_recovery_climbs_linearly_over_the_cooldown(play: Any) -> None:
         assert effective(sim, "m:rest") == pytest.approx(full)
 
 
-def test_a_rule_that_recovers_still_runs_without_a_competitor(play: Any) -> None:
+def test_a_recovering_rule_still_runs_if_nothing_competes_with_it(play: Any) -> None:
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)
     writer(m, "rest", a, out, cooldown=8.0)

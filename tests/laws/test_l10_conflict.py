@@ -10,7 +10,7 @@ def conflicting(m: rs.Module) -> list[tuple[str, str]]:
     return [(c.first.split(":")[1], c.second.split(":")[1]) for c in rs.compile(m).conflicts()]
 
 
-def test_a_shared_slot_and_a_shared_cause_exclude(play: Any) -> None:
+def test_rules_that_share_a_slot_and_a_cause_exclude_each_other(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "cause", i, x)
@@ -23,7 +23,7 @@ def test_a_shared_slot_and_a_shared_cause_exclude(play: Any) -> None:
         assert written(sim, out) == ["specific"]
 
 
-def test_one_of_several_slots_is_enough(play: Any) -> None:
+def test_rules_that_share_one_of_several_slots_exclude_each_other(play: Any) -> None:
     m = rs.Module("m")
     i, out, face, arm = m.signal("i"), output(m), output(m, "face"), output(m, "arm")
     writer(m, "first", i, out, face)
@@ -35,7 +35,7 @@ def test_one_of_several_slots_is_enough(play: Any) -> None:
         assert (written(sim, out), written(sim, face), written(sim, arm)) == (["first"], ["first"], [])
 
 
-def test_a_shared_cause_without_a_shared_slot_does_not_exclude(play: Any) -> None:
+def test_rules_that_share_only_a_cause_do_not_exclude_each_other(play: Any) -> None:
     m = rs.Module("m")
     i, out, face = m.signal("i"), output(m), output(m, "face")
     writer(m, "speak", i, out)
@@ -46,7 +46,7 @@ def test_a_shared_cause_without_a_shared_slot_does_not_exclude(play: Any) -> Non
         assert sim.fired == ["m:speak", "m:smile"]
 
 
-def test_a_shared_slot_without_a_shared_cause_does_not_exclude(play: Any) -> None:
+def test_rules_that_share_only_a_slot_do_not_exclude_each_other(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "one", i, out, after=2.0)
@@ -61,7 +61,7 @@ def test_a_shared_slot_without_a_shared_cause_does_not_exclude(play: Any) -> Non
         assert written(sim, out) == ["one", "other"]
 
 
-def test_two_causes_do_not_exclude_each_other(play: Any) -> None:
+def test_rules_that_may_exclude_each_other_run_together_for_different_causes(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x", input=True), output(m)
     emitter(m, "cause", i, x)
@@ -75,7 +75,7 @@ def test_two_causes_do_not_exclude_each_other(play: Any) -> None:
         assert written(sim, out) == ["specific", "specific"]
 
 
-def test_a_rule_that_only_looks_excludes_no_other(play: Any) -> None:
+def test_a_rule_that_only_looks_does_not_exclude_a_writer_of_its_slot(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "act", i, out)
@@ -86,7 +86,7 @@ def test_a_rule_that_only_looks_excludes_no_other(play: Any) -> None:
         assert sorted(written(sim, out)) == ["act", "look"]
 
 
-def test_detached_effects_share_no_cause(play: Any) -> None:
+def test_a_rule_on_a_detached_effect_does_not_exclude_a_rule_on_its_origin(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "cause", i, x, detached=True)
@@ -114,7 +114,7 @@ def test_a_conflict_names_the_winner_and_its_lead() -> None:
     assert not one.tie
 
 
-def test_a_rule_that_writes_nothing_excludes_no_other(play: Any) -> None:
+def test_a_rule_that_writes_nothing_does_not_exclude_other_rules(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, heard = m.signal("i"), m.signal("x"), output(m), list[Any]()
     writer(m, "act", i, out)
@@ -128,7 +128,7 @@ def test_a_rule_that_writes_nothing_excludes_no_other(play: Any) -> None:
         assert heard == [1, 1]
 
 
-def test_a_rule_that_writes_nothing_runs_once_on_a_spike(play: Any) -> None:
+def test_a_rule_that_writes_nothing_runs_only_once_on_the_same_spike(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a"), m.signal("b"), list[Any]()
     hearer(m, "hear", a & b, b, heard)

@@ -1,4 +1,4 @@
-"""L11: an occurrence with a payload, a time of birth and parents; its causal group is its parents'."""
+"""L11: a spike is an occurrence with a payload, a time of birth and parents; its causal group is that of its parents."""
 
 from typing import Any
 
@@ -53,7 +53,7 @@ def test_a_spike_belongs_to_the_group_of_its_parent(play: Any) -> None:
         assert len(set(groups(sim, i, x, text.changed))) == 1
 
 
-def test_groups_of_several_parents_merge(play: Any) -> None:
+def test_the_groups_of_several_parents_merge(play: Any) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "fuse", i & j, x)
@@ -65,7 +65,7 @@ def test_groups_of_several_parents_merge(play: Any) -> None:
         assert set(births(sim, x)[0].parents) == {births(sim, i)[0].spike, births(sim, j)[0].spike}
         assert len(set(groups(sim, i, j, x))) == 1
         sim.advance(10.0)
-        assert written(sim, out) == ["act"]  # what x did counts for j as well
+        assert written(sim, out) == ["act"]  # a rule that x started has written the slot, so no rule may write it for j
 
 
 def test_a_spike_that_is_emitted_detached_begins_a_group(play: Any) -> None:
@@ -79,7 +79,7 @@ def test_a_spike_that_is_emitted_detached_begins_a_group(play: Any) -> None:
         assert len(set(groups(sim, i, x, text.changed))) == 3
 
 
-def test_a_spike_seen_detached_is_no_parent(play: Any) -> None:
+def test_a_spike_seen_through_a_detached_constraint_is_not_a_parent(play: Any) -> None:
     m = rs.Module("m")
     i, j, x = m.signal("i"), m.signal("j"), m.signal("x")
     emitter(m, "cause", i & j.detached(), x)

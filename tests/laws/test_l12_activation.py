@@ -1,5 +1,5 @@
-"""L12: a clause and the spikes that it has acquired. One activation always stands by; several may hold a spike;
-coherence."""
+"""L12: an activation is a clause and the spikes that it has acquired. One activation always stands by; several may hold
+the same spike; the spikes of an activation cohere."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ import ravestate as rs
 from laws.short import at_rest, emitter, hearer, moments, output, started, writer, written
 
 
-def test_a_signal_that_arrives_while_the_rule_is_busy_starts_another_instance(play: Any) -> None:
+def test_a_signal_that_arrives_while_the_rule_runs_starts_another_run(play: Any) -> None:
     m = rs.Module("m")
     a, out = m.signal("a"), output(m)
     writer(m, "slow", a, out, after=10.0)
@@ -39,7 +39,7 @@ def test_an_activation_that_still_gathers_leaves_room_for_another(play: Any) -> 
         assert heard == [(1, 1), (2, 2), (3, 3)]
 
 
-def test_several_activations_may_hold_a_spike_and_consent_lets_one_have_it(play: Any) -> None:
+def test_several_activations_may_hold_a_spike_but_only_one_gets_consent(play: Any) -> None:
     m = rs.Module("m")
     a, b, c, out = m.signal("a"), m.signal("b"), m.signal("c"), output(m)
     writer(m, "with_b", a & b, out)
@@ -55,7 +55,7 @@ def test_several_activations_may_hold_a_spike_and_consent_lets_one_have_it(play:
 
 
 @pytest.mark.parametrize("writes", [True, False])
-def test_the_older_of_two_prompts_takes_the_only_answer(play: Any, writes: bool) -> None:
+def test_the_older_of_two_waiting_prompts_takes_the_only_answer(play: Any, writes: bool) -> None:
     m = rs.Module("m")
     prompt, answer = m.signal("prompt", payload=int), m.signal("answer", payload=str)
     out, answered = m.slot("out", ""), list[Any]()
@@ -108,7 +108,7 @@ def utterances() -> tuple[rs.Module, rs.Slot[str], list[Any]]:
     return m, text, answered
 
 
-def test_the_question_of_one_utterance_never_joins_the_mention_in_another(play: Any) -> None:
+def test_a_question_in_one_utterance_never_joins_a_mention_in_another(play: Any) -> None:
     m, text, answered = utterances()
     with play(m) as sim:
         for words in ("who?", "you!", "what?", "you there!"):
@@ -117,14 +117,14 @@ def test_the_question_of_one_utterance_never_joins_the_mention_in_another(play: 
         assert answered == []
 
 
-def test_constraints_of_one_utterance_join(play: Any) -> None:
+def test_the_signals_of_one_utterance_join(play: Any) -> None:
     m, text, answered = utterances()
     with play(m) as sim:
         sim.put(text, "who are you?")
         assert answered == [("who are you?", "who are you?")]
 
 
-def test_an_utterance_is_not_lost_because_another_one_gathers(play: Any) -> None:
+def test_an_utterance_is_answered_even_while_an_earlier_one_waits_for_its_second_signal(play: Any) -> None:
     m, text, answered = utterances()
     with play(m) as sim:
         for words in ("who?", "you!", "who are you?", "where are you?", "how?"):
@@ -132,7 +132,7 @@ def test_an_utterance_is_not_lost_because_another_one_gathers(play: Any) -> None
         assert answered == [("who are you?", "who are you?"), ("where are you?", "where are you?")]
 
 
-def test_inputs_that_share_nothing_may_join_from_two_groups(play: Any) -> None:
+def test_inputs_without_a_common_cause_may_join_from_two_groups(play: Any) -> None:
     m = rs.Module("m")
     point, speech, heard = m.signal("point"), m.signal("speech"), list[Any]()
     hearer(m, "fuse", point & speech, speech, heard)
@@ -142,7 +142,7 @@ def test_inputs_that_share_nothing_may_join_from_two_groups(play: Any) -> None:
         assert heard == ["there"]
 
 
-def test_coherence_reaches_over_a_chain_of_causes(play: Any) -> None:
+def test_coherence_extends_over_a_chain_of_causes(play: Any) -> None:
     m = rs.Module("m")
     i, x, y = m.signal("i", payload=str), m.signal("x"), m.signal("y")
     heard: list[Any] = []
@@ -223,15 +223,15 @@ def test_an_older_activation_takes_the_spikes_that_a_merge_brings_together(play:
         assert heard == ["first"]
 
 
-def test_a_lost_spike_no_longer_keeps_spikes_of_other_groups_out(play: Any) -> None:
+def test_an_activation_that_has_lost_a_spike_may_take_spikes_of_other_groups(play: Any) -> None:
     m = rs.Module("m")
     a, s, v, out = m.signal("a"), m.signal("s"), m.signal("v"), output(m)
     emitter(m, "cause", a, s, only_if=lambda ctx: False)  # so that `a` and `s` cohere
     writer(m, "both", s.max_age(1.0) & a & v, out)
     with play(m) as sim:
-        sim.emit(s)  # of one group
+        sim.emit(s)  # this begins one group
         sim.emit(v)
-        sim.emit(a)  # of another: the first activation cannot have both
+        sim.emit(a)  # this begins another group, so the first activation cannot hold both `s` and `a`
         sim.advance(1.0)
         held = {signal["signal"] for signal in sim.snapshot()["activations"][0]["holds"]}
         assert held == {"m:v", "m:a"}

@@ -1,4 +1,5 @@
-"""L14: ready when all constraints hold spikes old enough; only an incomplete activation loses a spike to its age."""
+"""L14: an activation is ready when all its constraints hold spikes that are old enough; only an incomplete activation
+loses a spike to its age."""
 
 from typing import Any
 
@@ -36,7 +37,7 @@ def test_a_spike_past_its_age_is_given_up_while_the_activation_is_incomplete(pla
         assert written(sim, out) == ["both"]
 
 
-def test_an_activation_that_still_ripens_is_incomplete(play: Any) -> None:
+def test_an_activation_whose_spike_is_too_young_is_incomplete(play: Any) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), output(m)
     writer(m, "both", a.min_age(10.0).max_age(None) & b, out)

@@ -16,7 +16,7 @@ def test_without_a_rival_a_ready_rule_runs_at_once(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "only")]
 
 
-def test_a_slot_that_a_running_rule_has_taken_is_refused(play: Any) -> None:
+def test_no_rule_gets_a_slot_that_a_running_rule_has_taken(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     resigner(m, "first", i, out, after=2.0)
@@ -27,7 +27,7 @@ def test_a_slot_that_a_running_rule_has_taken_is_refused(play: Any) -> None:
         assert started(sim) == [(0.0, "first"), (2.0, "second")]
 
 
-def test_a_slot_that_a_finished_rule_has_taken_is_refused(play: Any) -> None:
+def test_no_rule_gets_a_slot_that_a_finished_rule_has_taken(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     writer(m, "first", i, out, weight=10.0)
@@ -53,7 +53,7 @@ def test_the_greater_effective_utility_goes_first(play: Any) -> None:
         assert written(sim, out) == ["specific"]
 
 
-def test_weight_may_turn_the_order_round(play: Any) -> None:
+def test_weight_may_reverse_the_order(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "other", m.signal("k"), output(m, "face"))
@@ -77,7 +77,7 @@ def test_the_first_declared_of_equals_wins(play: Any) -> None:
         assert written(sim, out) == ["second"] * 3
 
 
-def test_a_rule_that_writes_another_slot_is_no_rival(play: Any) -> None:
+def test_a_rule_that_writes_another_slot_is_not_a_rival(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "specific", i & j, output(m, "face"))
@@ -87,7 +87,7 @@ def test_a_rule_that_writes_another_slot_is_no_rival(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_a_rule_that_waits_for_unrelated_things_is_no_rival(play: Any) -> None:
+def test_a_rule_that_waits_for_unrelated_signals_is_not_a_rival(play: Any) -> None:
     m = rs.Module("m")
     i, j, k, out = m.signal("i"), m.signal("j"), m.signal("k"), output(m)
     writer(m, "unrelated", j & k, out, weight=10.0)
@@ -98,7 +98,7 @@ def test_a_rule_that_waits_for_unrelated_things_is_no_rival(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_a_rule_that_runs_for_another_cause_is_no_rival(play: Any) -> None:
+def test_a_rule_that_runs_for_another_cause_is_not_a_rival(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "slow", i, out, after=10.0)
@@ -120,7 +120,7 @@ def test_a_rival_in_stand_by_has_a_stake_if_it_waits_for_an_effect_of_the_group(
         assert moments(sim, out) == [(3.0, "specific")]
 
 
-def test_a_lesser_rule_is_no_rival(play: Any) -> None:
+def test_a_rule_of_lower_utility_is_not_a_rival(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "cause", i, x, after=3.0)
@@ -140,7 +140,7 @@ def every_group(m: rs.Module) -> tuple[rs.Signal[Any], rs.Signal[Any], rs.Slot[s
     return i, j, out
 
 
-def test_each_group_must_consent_and_one_refuses_for_a_while(play: Any) -> None:
+def test_a_rule_on_two_groups_waits_while_one_of_them_refuses(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = every_group(m)
     resigner(m, "busy", j, out, weight=10.0, after=3.0)
@@ -152,7 +152,7 @@ def test_each_group_must_consent_and_one_refuses_for_a_while(play: Any) -> None:
         assert written(sim, out) == ["fuse"]
 
 
-def test_each_group_must_consent_and_one_refuses_for_good(play: Any) -> None:
+def test_a_rule_on_two_groups_never_runs_if_one_of_them_never_consents(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = every_group(m)
     writer(m, "busy", j, out, weight=10.0, after=3.0)
@@ -175,7 +175,7 @@ def test_the_group_of_a_detached_spike_is_not_asked(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "look"), (3.0, "busy")]
 
 
-def test_merged_groups_keep_the_taken_slots_of_each(play: Any) -> None:
+def test_slots_taken_in_one_group_stay_taken_after_it_merges(play: Any) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "fuse", i.min_age(1.0) & j, x)
@@ -203,7 +203,7 @@ def test_a_rule_that_waits_for_two_groups_runs_when_both_are_free(play: Any) -> 
         assert moments(sim, out) == [(5.0, "fuse")]
 
 
-def test_a_rival_that_recovers_is_counted_at_its_effective_utility(play: Any) -> None:
+def test_a_recovering_rival_competes_with_its_effective_utility(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     writer(m, "other", m.signal("k"), output(m, "face"))

@@ -53,7 +53,7 @@ def test_a_rule_waits_for_a_rival_that_ripens_in_another_group(play: Any) -> Non
         assert moments(sim, out) == [(3.0, "specific")]
 
 
-def test_a_consumed_spike_makes_no_rival_viable(play: Any) -> None:
+def test_a_consumed_spike_does_not_make_a_rival_viable(play: Any) -> None:
     m = rs.Module("m")
     i, j, never, out = m.signal("i"), m.signal("j"), m.signal("never"), output(m)
     writer(m, "hold", j.max_age(None) & never, output(m, "face"))
@@ -126,7 +126,7 @@ def test_the_horizon_shrinks_at_the_very_moment_a_link_breaks(play: Any, stops_a
         assert moments(sim, out) == [(10.0 * (stops_at + 1), "general")]
 
 
-def test_the_horizon_reaches_over_rules_that_are_still_viable(play: Any) -> None:
+def test_the_horizon_extends_over_rules_that_are_still_viable(play: Any) -> None:
     m, begin, out = chain(stops_at=-1)
     with play(m) as sim:
         sim.emit(begin)
@@ -148,7 +148,7 @@ def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> N
         assert moments(sim, out) == [(2.0, "general")]  # without x there is no z, whatever `two` still raises
 
 
-def test_alternatives_keep_a_rival_viable(play: Any) -> None:
+def test_a_rival_is_viable_as_long_as_one_rule_may_still_raise_its_signal(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "fast", i, x, after=1.0, only_if=is_never_true)
@@ -190,7 +190,7 @@ def test_a_rule_that_fails_leaves_the_horizon_too(play: Any) -> None:
         assert moments(sim, out) == [(2.0, "general")]
 
 
-def test_the_horizon_of_another_group_is_not_waited_for(play: Any) -> None:
+def test_a_rule_does_not_wait_for_the_horizon_of_another_group(play: Any) -> None:
     m, i, out = classified(after=10.0)
     with play(m) as sim:
         sim.emit(i)
@@ -233,7 +233,7 @@ def test_an_input_that_comes_in_time_makes_the_rival_ready(play: Any) -> None:
 @pytest.mark.parametrize(
     ("context", "rule", "waited"), [(4.0, None, 4.0), (4.0, 0.25, 0.25), (0.25, 4.0, 4.0), (0.0, None, 0.0)]
 )
-def test_patience_is_the_contexts_or_the_rules_own(
+def test_patience_comes_from_the_context_or_from_the_rule(
     play: Any, context: float, rule: float | None, waited: float
 ) -> None:
     m, _, speech, out = fusion(patience=rule)
@@ -278,7 +278,7 @@ def test_a_rival_that_lost_patience_gives_its_spikes_up(play: Any) -> None:
         assert moments(sim, out) == [(2.0, "fused")]
 
 
-def test_a_rule_that_is_pressed_twice_gets_no_second_patience(play: Any) -> None:
+def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_presses_it(play: Any) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech"), output(m)
     writer(m, "fused", point & speech, out)
@@ -374,7 +374,7 @@ def test_a_rule_waits_for_a_declared_input_though_another_raises_it(play: Any) -
         assert moments(sim, out) == [(1.0, "general")]
 
 
-def test_a_retired_rule_is_no_rival(play: Any) -> None:
+def test_a_retired_rule_is_not_a_rival(play: Any) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech"), output(m)
 
@@ -403,7 +403,7 @@ def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) 
         sim.emit(i)
         sim.advance(20.0)
         assert started(sim) == [(0.0, "busy"), (4.0, "plain")]
-        assert set(pressed(sim)) == {(3.0, "fuse", ("m:j",), 4.0)}  # `busy` has consumed the only one
+        assert set(pressed(sim)) == {(3.0, "fuse", ("m:j",), 4.0)}  # `busy` has consumed the only `j`
 
 
 # ---------------------------------------------------------------------------- mixtures
@@ -419,7 +419,7 @@ def mixed(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.S
     return m, i, j, out
 
 
-def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_an_effect_of_the_group(play: Any) -> None:
+def test_a_rival_with_spikes_of_another_group_has_a_stake_if_it_waits_for_an_effect_of_this_group(play: Any) -> None:
     m, i, j, out = mixed(after=3.0)
     with play(m) as sim:
         sim.emit(j)
@@ -429,7 +429,9 @@ def test_a_rival_elsewhere_has_a_stake_if_it_waits_for_an_effect_of_the_group(pl
         assert pressed(sim) == []
 
 
-def test_a_rival_elsewhere_is_none_once_the_group_cannot_cause_its_signal(play: Any) -> None:
+def test_a_rival_with_spikes_of_another_group_loses_its_stake_once_this_group_cannot_cause_its_signal(
+    play: Any,
+) -> None:
     m, i, j, out = mixed(after=3.0, only_if=is_never_true)
     with play(m) as sim:
         sim.emit(j)
@@ -447,7 +449,7 @@ def test_a_rival_that_also_lacks_an_input_is_pressed(play: Any) -> None:
 
 
 @pytest.mark.parametrize("comes", [False, True])
-def test_a_rival_that_rests_on_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
+def test_a_rival_that_needs_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "make", i & j, x)
@@ -477,7 +479,7 @@ def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
         assert at_rest(sim)
 
 
-def test_a_closed_gate_keeps_no_rule_waiting(play: Any) -> None:
+def test_no_rule_waits_for_a_rival_whose_gate_is_closed(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
@@ -491,7 +493,7 @@ def test_a_closed_gate_keeps_no_rule_waiting(play: Any) -> None:
 
 
 @pytest.mark.parametrize("fits", [False, True])
-def test_a_predicate_that_the_payload_fails_ends_the_wait(play: Any, fits: bool) -> None:
+def test_a_rule_stops_waiting_for_a_rival_whose_predicate_refuses_the_payload(play: Any, fits: bool) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x", payload=str), output(m)
     emitter(m, "classify", i, x, after=2.0)
@@ -504,7 +506,7 @@ def test_a_predicate_that_the_payload_fails_ends_the_wait(play: Any, fits: bool)
         assert at_rest(sim)
 
 
-def test_pressure_on_one_cause_leaves_another_alone(play: Any) -> None:
+def test_pressure_for_one_cause_does_not_use_up_the_patience_for_another(play: Any) -> None:
     m, point, speech, out = fusion()
     with play(m) as sim:
         sim.emit(speech)
@@ -544,7 +546,9 @@ def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_anoth
         assert moments(sim, out) == [(0.9, "fuse"), (1.4, "alone"), (1.8, "alone")]
 
 
-def test_an_old_activation_with_a_new_spike_spares_the_younger_activation_of_that_spike_its_wait(play: Any) -> None:
+def test_a_younger_activation_is_not_under_pressure_while_an_older_one_of_its_rule_holds_the_same_spike(
+    play: Any,
+) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech", limit=2), output(m)
     writer(m, "fuse", point & speech, out, after=2.0)
@@ -555,15 +559,13 @@ def test_an_old_activation_with_a_new_spike_spares_the_younger_activation_of_tha
         sim.emit(speech)
         sim.advance(0.3)
         sim.emit(speech)
-        sim.emit(speech)  # the limit withdraws the speech that it held, so it takes the next one
+        sim.emit(speech)  # the limit withdraws the speech of the waiting activation, which takes the next one
         sim.advance(1.1)
         sim.emit(point)
-        assert started(sim)[-1] == (1.4, "fuse")  # the third speech was still there for it
+        assert started(sim)[-1] == (1.4, "fuse")  # the speech that it needs was still live
 
 
-def test_a_derivation_may_be_deeper_than_the_interpreter_nests_calls(
-    play: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_chain_of_causes_may_be_longer_than_the_recursion_limit(play: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(limit: int) -> None:
         raise AssertionError(f"the engine must not change the recursion limit: {limit}")
 

@@ -42,7 +42,7 @@ def test_done_consumes_the_slots(play: Any) -> None:
         assert errors == []
 
 
-def test_done_consumes_the_slots_though_nothing_was_written(play: Any) -> None:
+def test_done_consumes_the_slots_even_if_nothing_was_written(play: Any) -> None:
     async def act(ctx: Any, out: Any) -> None: ...
 
     m, i, out, _ = two(act)
@@ -73,7 +73,7 @@ def test_done_leaves_the_spikes_for_other_slots(play: Any) -> None:
 
 
 @pytest.mark.parametrize("raised", [False, True], ids=["returned", "raised"])
-def test_after_a_resign_the_next_best_is_asked(play: Any, raised: bool) -> None:
+def test_after_a_rule_resigns_the_next_best_rule_is_asked(play: Any, raised: bool) -> None:
     async def act(ctx: Any, out: Any) -> rs.Resign:
         await ctx.sleep(2.0)
         if raised:
@@ -218,7 +218,7 @@ def test_an_undeclared_access_is_an_error() -> None:
 
 
 @pytest.mark.parametrize("nonsense", [42, "text", False, [rs.Resign("in a list")]], ids=repr)
-def test_a_result_that_means_nothing_is_an_error(play: Any, nonsense: object) -> None:
+def test_a_returned_value_that_is_not_an_outcome_is_an_error(play: Any, nonsense: object) -> None:
     async def act(ctx: Any, out: Any) -> object:
         return nonsense
 
@@ -244,7 +244,7 @@ def test_a_failure_is_logged_once_with_its_traceback(caplog: pytest.LogCaptureFi
     assert record.exc_info[2] is not None
 
 
-def test_a_rule_for_errors_that_fails_does_not_begin_a_storm(play: Any) -> None:
+def test_an_error_handler_that_fails_is_not_called_for_its_own_failure(play: Any) -> None:
     async def act(ctx: Any, out: Any) -> None:
         raise Oops("broken")
 
@@ -264,7 +264,7 @@ def test_a_rule_for_errors_that_fails_does_not_begin_a_storm(play: Any) -> None:
 
 
 @pytest.mark.parametrize("raised", [False, True], ids=["returned", "raised"])
-def test_a_rule_that_retires_leaves_this_context(play: Any, raised: bool) -> None:
+def test_a_rule_that_retires_in_one_context_still_runs_in_another(play: Any, raised: bool) -> None:
     async def act(ctx: Any, out: Any) -> rs.Retire:
         ctx[out] = "once"
         if raised:

@@ -39,7 +39,7 @@ def test_a_detached_constraint_joins_no_groups(play: Any) -> None:
         assert groups["m:x"] == groups["m:i"] != groups["m:j"]
 
 
-def test_one_spike_may_be_looked_at_more_than_once(play: Any) -> None:
+def test_a_detached_constraint_may_look_at_one_spike_more_than_once(play: Any) -> None:
     m = rs.Module("m")
     i, j, heard = m.signal("i"), m.signal("j"), list[Any]()
     hearer(m, "look", i & j.detached(), i, heard)
@@ -118,7 +118,7 @@ def test_a_loop_through_a_detached_rule_may_run_for_ever(play: Any) -> None:
         assert moments(sim, out) == [(float(second), "tick") for second in range(1, 51)]
 
 
-def test_inside_a_group_a_slot_is_written_by_one_rule_only(play: Any) -> None:
+def test_only_one_rule_of_a_group_writes_a_slot(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     signals = [m.signal(f"x{number}") for number in range(5)]

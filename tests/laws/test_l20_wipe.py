@@ -89,7 +89,7 @@ def test_a_running_rule_that_stands_on_a_descendant_is_cancelled(play: Any) -> N
         assert (ends, written(sim, out)) == (["2"], [])
 
 
-def test_a_descendant_of_a_cause_without_holders_is_withdrawn(play: Any) -> None:
+def test_a_descendant_is_withdrawn_even_if_no_activation_holds_the_wiped_cause(play: Any) -> None:
     m = rs.Module("m")
     i, x, never, out = m.signal("i"), m.signal("x"), m.signal("never", input=True), output(m)
     emitter(m, "cause", i, x)
@@ -102,7 +102,7 @@ def test_a_descendant_of_a_cause_without_holders_is_withdrawn(play: Any) -> None
         assert written(sim, out) == []
 
 
-def test_another_rule_may_answer_the_rest_if_the_wiped_rule_wrote_nothing(play: Any) -> None:
+def test_if_a_cancelled_rule_has_written_nothing_another_rule_may_answer_the_same_input(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, ends = m.signal("i"), m.signal("x"), output(m), list[str]()
     emitter(m, "cause", i, x)

@@ -13,7 +13,7 @@ from laws.short import hearer, moments, outcomes, output, started, writer, writt
 def talker(
     until: Callable[[rs.Signal[Any], rs.Signal[Any], rs.Slot[str]], rs.Condition], **options: Any
 ) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Signal[Any], rs.Slot[str], rs.Slot[str]]:
-    """Declare a rule that speaks for ten seconds, one word each; `until` combines two signals and a slot."""
+    """Declare a rule that says one word a second, for ten seconds; `until` combines two signals and a slot."""
     m = rs.Module("m")
     i, stop, hush = m.signal("i"), m.signal("stop", payload=object), m.signal("hush")
     mood, out = m.slot("mood", "patient"), output(m)
@@ -50,7 +50,7 @@ def test_an_interrupted_run_is_done(play: Any) -> None:
         assert (written(sim, out), sim.fired) == (["word 0"], ["m:talk"])
 
 
-def test_an_interrupted_run_is_done_though_it_had_written_nothing(play: Any) -> None:
+def test_an_interrupted_run_is_done_even_if_it_had_written_nothing(play: Any) -> None:
     m = rs.Module("m")
     i, stop, out = m.signal("i"), m.signal("stop"), output(m)
 

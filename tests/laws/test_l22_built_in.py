@@ -78,7 +78,7 @@ def test_activity_holds_while_a_rule_runs(play: Any) -> None:
         assert moments(sim, rs.activity) == [(0.0, True), (7.0, False)]
 
 
-def test_rules_in_the_background_are_no_activity(play: Any) -> None:
+def test_background_rules_do_not_count_as_activity(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "slow", i, out, after=7.0, background=True)
@@ -106,7 +106,7 @@ def test_pressure_holds_while_an_activation_is_kept_waiting(play: Any) -> None:
         assert moments(sim, rs.pressure) == [(1.0, True), (3.0, False)]
 
 
-def test_gathering_is_no_pressure(play: Any) -> None:
+def test_an_activation_that_only_lacks_spikes_does_not_raise_pressure(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "wait", i & j, out)

@@ -1,4 +1,5 @@
-"""L23: every signal has an overflow policy; nothing is left at rest; a loop without an end is fair to the rest."""
+"""L23: every signal has an overflow policy; an engine at rest holds nothing; an endless loop does not keep other rules
+from running."""
 
 import asyncio
 import gc
@@ -14,7 +15,7 @@ from laws.story import everything, tell
 from scenarios.driver import Driver
 
 
-def test_beyond_the_limit_the_oldest_is_dropped_counted_and_traced(play: Any) -> None:
+def test_when_a_signal_exceeds_its_limit_its_oldest_spike_is_dropped_counted_and_traced(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a", payload=int, limit=3), m.signal("b"), list[Any]()
     hearer(m, "pair", a & b, a, heard)
@@ -29,7 +30,7 @@ def test_beyond_the_limit_the_oldest_is_dropped_counted_and_traced(play: Any) ->
         assert heard == [2, 3, 4]
 
 
-def test_up_to_the_limit_all_spikes_are_kept(play: Any) -> None:
+def test_all_spikes_are_kept_up_to_the_limit(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a", payload=int, limit=3), m.signal("b"), list[Any]()
     hearer(m, "pair", a & b, a, heard)
@@ -53,7 +54,7 @@ def test_the_limit_counts_live_spikes_only(play: Any) -> None:
         assert sim.snapshot()["dropped"] == {}
 
 
-def test_keep_latest_keeps_one(play: Any) -> None:
+def test_keep_latest_keeps_only_the_newest_spike(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a", payload=int, keep="latest"), m.signal("b"), list[Any]()
     hearer(m, "pair", a & b, a, heard)
@@ -83,7 +84,7 @@ def census() -> Counter[str]:
     return Counter(k.__qualname__ for k in kinds if str(k.__module__).startswith("ravestate.engine"))
 
 
-def test_when_all_has_settled_and_aged_nothing_is_left(play: Any) -> None:
+def test_nothing_is_left_once_all_rules_have_settled_and_all_spikes_are_too_old(play: Any) -> None:
     with play(everything()) as sim:
         tell(sim)
         assert not at_rest(sim)
@@ -93,7 +94,7 @@ def test_when_all_has_settled_and_aged_nothing_is_left(play: Any) -> None:
         assert sim.read(rs.pressure) is False
 
 
-def test_live_objects_return_to_their_number_at_rest() -> None:
+def test_the_number_of_live_objects_at_rest_does_not_grow() -> None:
     with Driver(everything(), trace=False) as sim:
         counts: list[Counter[str]] = []
         for _ in range(3):
@@ -122,7 +123,10 @@ def test_a_wiped_signal_leaves_nothing_behind(play: Any) -> None:
 
 
 def endless(m: rs.Module, *stages: rs.Signal[Any], until: Callable[[], bool]) -> Counter[str]:
-    """Declare a loop of detached rules, which ends when `until` is true or after 5,000 turns each; return the turns."""
+    """Declare detached rules that trigger each other in a loop; return the count of each rule's runs.
+
+    The loop ends when `until()` is true, or when a rule has run 5,000 times.
+    """
     turns = Counter[str]()
 
     def add(signal: rs.Signal[Any], raised: rs.Signal[Any], name: str) -> None:
@@ -139,7 +143,7 @@ def endless(m: rs.Module, *stages: rs.Signal[Any], until: Callable[[], bool]) ->
 
 
 @pytest.mark.parametrize("stages", [1, 2, 3])
-def test_a_loop_without_an_end_lets_the_rest_have_its_turn(play: Any, stages: int) -> None:
+def test_an_endless_loop_does_not_keep_other_rules_from_running(play: Any, stages: int) -> None:
     m = rs.Module("m")
     a, out, heard = m.signal("a"), output(m), list[Any]()
     turns = endless(m, a, *(m.signal(f"b{n}") for n in range(1, stages)), until=lambda: bool(heard))
@@ -151,7 +155,7 @@ def test_a_loop_without_an_end_lets_the_rest_have_its_turn(play: Any, stages: in
         assert 1_000 <= turns.total() <= 1_010
 
 
-def test_a_rule_on_pressure_has_its_turn_beside_a_loop(play: Any) -> None:
+def test_an_endless_loop_does_not_keep_a_rule_on_pressure_from_running(play: Any) -> None:
     m = rs.Module("m")
     a, b, out, heard = m.signal("a"), m.signal("b"), output(m), list[Any]()
     turns = endless(m, a, until=lambda: bool(heard))
@@ -164,7 +168,7 @@ def test_a_rule_on_pressure_has_its_turn_beside_a_loop(play: Any) -> None:
         assert turns.total() < 1_010
 
 
-def test_a_turn_of_one_loop_does_not_wait_for_all_turns_of_another(play: Any) -> None:
+def test_two_loops_take_turns(play: Any) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     one = endless(m, a, until=lambda: one.total() > 2_000)
@@ -177,7 +181,7 @@ def test_a_turn_of_one_loop_does_not_wait_for_all_turns_of_another(play: Any) ->
         assert abs(one.total() - other.total()) < 10
 
 
-def test_a_loop_without_an_end_is_named_once_in_an_error(play: Any) -> None:
+def test_an_endless_loop_that_happens_twice_is_reported_by_one_error(play: Any) -> None:
     m = rs.Module("m")
     a, b, errors = m.signal("a"), m.signal("b"), list[Any]()
     turns = endless(m, a, b, until=lambda: turns.total() % 3_000 == 0)
@@ -195,7 +199,7 @@ def test_a_loop_without_an_end_is_named_once_in_an_error(play: Any) -> None:
         assert ".min_age(seconds)" in str(error)
 
 
-def test_a_loop_over_errors_lets_the_rest_have_its_turn(play: Any) -> None:
+def test_a_rule_that_fails_and_is_retried_endlessly_does_not_keep_other_rules_from_running(play: Any) -> None:
     m = rs.Module("m")
     a, out, heard, fails = m.signal("a"), output(m), list[Any](), Counter[str]()
 
@@ -214,7 +218,7 @@ def test_a_loop_over_errors_lets_the_rest_have_its_turn(play: Any) -> None:
         assert fails.total() < 1_000
 
 
-def test_many_inputs_are_no_loop(play: Any) -> None:
+def test_thousands_of_spikes_from_one_run_are_not_reported_as_a_loop(play: Any) -> None:
     m = rs.Module("m")
     a, b, c, out = m.signal("a"), m.signal("b"), m.signal("c", limit=5_000), output(m)
 
@@ -232,7 +236,7 @@ def test_many_inputs_are_no_loop(play: Any) -> None:
         assert sim.fired.count("m:many") == 2_000
 
 
-def test_inputs_from_outside_are_answered_while_a_loop_has_no_end() -> None:
+def test_inputs_from_outside_are_answered_during_an_endless_loop() -> None:
     m = rs.Module("m")
     a, b, out, enough = m.signal("a"), m.signal("b"), output(m), list[bool]()
     question = m.slot("question", "", input=True)
@@ -252,10 +256,10 @@ def test_inputs_from_outside_are_answered_while_a_loop_has_no_end() -> None:
         return answers
 
     assert asyncio.run(talk()) == ["answer"] * 2
-    assert 1_000 < turns.total() < 9_000  # the loop still turns at the last answer
+    assert 1_000 < turns.total() < 9_000  # the loop was still running at the last answer
 
 
-def test_a_loop_that_branches_lets_the_rest_have_its_turn(play: Any) -> None:
+def test_a_loop_that_branches_does_not_keep_other_rules_from_running(play: Any) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), output(m)
     turns, answered = Counter[str](), list[int]()
@@ -277,7 +281,7 @@ def test_a_loop_that_branches_lets_the_rest_have_its_turn(play: Any) -> None:
         assert 1_000 <= answered[0] <= 1_600
 
 
-def test_many_short_chains_in_one_instant_are_no_loop_without_an_end(play: Any) -> None:
+def test_many_short_chains_in_one_instant_are_not_reported_as_an_endless_loop(play: Any) -> None:
     m = rs.Module("m")
     a, step = m.signal("a"), m.signal("step", payload=int)
 

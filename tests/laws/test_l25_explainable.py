@@ -69,7 +69,7 @@ def test_an_explanation_has_the_time_at_which_a_spike_grows_too_old(play: Any) -
         assert alive(sim, "m:fused").until == 6.0
 
 
-def test_a_wait_without_a_bound_has_no_end(play: Any) -> None:
+def test_the_explanation_of_a_wait_for_a_running_rule_has_no_end(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=50.0)
@@ -83,7 +83,7 @@ def test_a_wait_without_a_bound_has_no_end(play: Any) -> None:
         assert alive(sim, "m:classify").state == "running"
 
 
-def test_a_taken_slot_is_named(play: Any) -> None:
+def test_an_explanation_names_a_taken_slot(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     resigner(m, "busy", i, out, after=5.0)
@@ -233,7 +233,7 @@ def test_an_unknown_rule_is_refused_with_the_nearest_name(play: Any) -> None:
         sim.explain("m:fussed")
 
 
-def test_every_sort_of_decision_is_traced() -> None:
+def test_every_kind_of_decision_is_traced() -> None:
     m = everything()
     fuse, i, j, out = m.signal("fuse"), m.signals[0], m.signals[1], m.slots[0]
     emitter(m, "merge", i & j, fuse)

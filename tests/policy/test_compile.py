@@ -45,7 +45,7 @@ def test_core_alone_is_a_policy() -> None:
     assert list(policy.signals)[:3] == ["core:startup", "core:shutdown", "core:error"]
 
 
-def test_a_module_comes_after_those_it_requires_and_once() -> None:
+def test_a_module_appears_once_and_after_the_modules_that_it_requires() -> None:
     base = rs.Module("base")
     left, right = rs.Module("left", requires=[base]), rs.Module("right", requires=[base])
     top = rs.Module("top", requires=[right, left])
@@ -167,7 +167,7 @@ def test_the_message_shows_a_cycle_of_requires() -> None:
 
 
 @pytest.mark.parametrize("value", ["rawio", None, 3, rs.compile()])
-def test_a_value_that_is_no_module_is_refused(value: object) -> None:
+def test_requiring_a_value_that_is_not_a_module_is_refused(value: object) -> None:
     (text,) = faults(value)
     assert text == f"expected an rs.Module (or a Python module that holds one), not {value!r}"
 
@@ -183,7 +183,7 @@ def only_fault(build: Callable[[rs.Module, rs.Signal[None]], object], **options:
     return text
 
 
-def test_an_age_above_the_default_max_age_needs_its_own() -> None:
+def test_a_min_age_above_the_default_max_age_needs_an_explicit_max_age() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go.min_age(10)))
     assert "m:go can never be at least 10 s and at most 5 s old" in text
     assert "write .min_age(10).max_age(None) (max_age is 5 s by default)" in text
@@ -229,7 +229,7 @@ def test_the_edges_of_the_ranges_are_allowed() -> None:
     assert (need.min_age, need.max_age) == (5.0, 5.0)
 
 
-def test_a_predicate_needs_a_signal_beside_it() -> None:
+def test_a_condition_of_slot_predicates_alone_is_refused() -> None:
     m = rs.Module("m")
     mood = m.slot("mood")
     rule(m, "r", mood.holds(bool) | m.signal("go"))

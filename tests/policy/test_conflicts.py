@@ -74,7 +74,7 @@ def test_pairs_keep_the_order_of_declaration() -> None:
     assert [c.rules for c in rs.compile(m).conflicts()] == [("m:a", "m:b"), ("m:a", "m:c"), ("m:b", "m:c")]
 
 
-def test_a_cause_counts_although_the_rule_looks_at_it_as_well() -> None:
+def test_a_rule_conflicts_over_a_cause_even_if_it_also_looks_at_that_cause() -> None:
     """The spike of `question` is in the group of `heard`: the detached constraint beside it changes nothing."""
     m, heard, question, out, _ = talk()
     m.rule(when=heard, emits=question, name="classify")(nothing)

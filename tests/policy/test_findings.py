@@ -183,7 +183,7 @@ def test_rules_on_detached_startup_do_not_compete(scene: Scene) -> None:
     assert scene.findings() == {}
 
 
-def test_a_rule_has_at_most_one_tie_and_that_with_the_first(scene: Scene) -> None:
+def test_only_the_tie_with_the_first_declared_rule_is_reported(scene: Scene) -> None:
     for number in range(300):
         scene.rule(f"r{number}", scene.heard, writes=scene.out)
     ties = [text for (kind, _), text in scene.findings().items() if kind == "tie"]

@@ -131,7 +131,7 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
     return found
 
 
-def test_independent_choices_do_not_multiply() -> None:
+def test_the_cost_of_independent_choices_adds_up_and_does_not_multiply() -> None:
     m = rs.Module("m")
     wanted = signals(m, "x", 40)
     cheap: list[rs.Signal[None]] = []
@@ -144,7 +144,7 @@ def test_independent_choices_do_not_multiply() -> None:
     m.rule(when=all_of(wanted), name="all")(nothing)
     (clause,) = rs.compile(m).clauses("m:all")
     assert clause.pathways[0] == {*wanted, *cheap}
-    assert len(clause.pathways) == MAX_PATHWAYS  # of 3^40
+    assert len(clause.pathways) == MAX_PATHWAYS  # of 3^40 pathways
 
 
 def test_the_search_in_a_torus_ends() -> None:

@@ -114,7 +114,7 @@ def extra(name: str = "extra", when: rs.Condition = go, **options: Any) -> rs.Ru
     return rs.Module("added").rule(when=when, name=name, **options)(function)
 
 
-def test_one_more_rule_makes_another_policy() -> None:
+def test_adding_a_rule_makes_a_new_policy() -> None:
     more = policy.with_rule(extra(writes=count))
     assert list(more.rules) == ["demo:add", "demo:late", "added:extra"]
     assert list(policy.rules) == ["demo:add", "demo:late"]

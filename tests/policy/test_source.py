@@ -40,7 +40,7 @@ async def everything(ctx: Any) -> None:
     await ctx.sleep(1)
 
 
-def test_every_act_is_found() -> None:
+def test_every_access_of_a_rule_to_its_context_is_found() -> None:
     found, faults = acts(everything)
     assert list(found.reads) == [mood, lit, people]
     assert list(found.writes) == [face, mood, people]
@@ -55,7 +55,7 @@ def test_every_act_is_found() -> None:
     ]
 
 
-def test_declared_acts_are_no_faults() -> None:
+def test_declared_accesses_are_not_faults() -> None:
     _, faults = acts(everything, reads=lit, writes=(face, mood, people), emits=done)
     assert len(faults) == 1 and "payload" in faults[0]
 

@@ -15,5 +15,5 @@ from ravestate.declare.wording import SHOWN, few
         ([str(n) for n in range(SHOWN + 2)], "0, 1, 2, 3, 4, 5, 6, 7 and 2 more"),
     ],
 )
-def test_each_name_appears_once_and_eight_at_most(names: list[str], text: str) -> None:
+def test_a_list_has_each_name_once_and_at_most_eight_names(names: list[str], text: str) -> None:
     assert few(names) == text

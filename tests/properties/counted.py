@@ -1,4 +1,4 @@
-"""An engine that notices when an instant has no end."""
+"""An engine that detects an endless instant."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Endless(AssertionError):
 
 
 class Counted:
-    """An engine that notices when an instant has no end. It has all that an `Engine` has."""
+    """An engine that raises `Endless` if it does not come to rest within one instant. It has all that an `Engine` has."""
 
     def __init__(self, policy: rs.Policy, **options: Any) -> None:
         self.engine = Engine(policy, **options)

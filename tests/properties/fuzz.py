@@ -110,7 +110,7 @@ def played(play: Play) -> list[str]:
 
 
 def shown(payload: Any) -> str:
-    """Return a payload as text; a failure without its wording."""
+    """Return a payload as text. The text of a failure leaves out its wording."""
     if isinstance(payload, RuleFailure):
         return f"{payload.rule}: {type(payload.exception).__name__}"
     return repr(payload)
@@ -158,7 +158,7 @@ def observation(world: World) -> str:
 
 
 class Reasons:
-    """The reasons to wait that a trace has told, beside those of the engine."""
+    """Compares the reasons to wait in a trace with those in the engine."""
 
     def __init__(self) -> None:
         self.told: dict[int, tuple[str, ...]] = {}

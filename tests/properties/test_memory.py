@@ -1,4 +1,4 @@
-"""When everything has settled and aged, live objects return to their number at rest (L23)."""
+"""Once all rules have settled and all spikes are too old, no live objects are left over (L23)."""
 
 from __future__ import annotations
 

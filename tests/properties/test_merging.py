@@ -1,4 +1,4 @@
-"""Random worlds with merging groups: in no order of merging does a rule miss a spike (L11, L12)."""
+"""Random worlds with merging groups: whatever the order of merging, no rule misses a spike (L11, L12)."""
 
 from __future__ import annotations
 
@@ -38,6 +38,6 @@ def merging_worlds(draw: st.DrawFn) -> World:
 
 
 @given(merging_worlds())
-def test_every_rule_runs_once_in_whatever_order_its_groups_merge(world: World) -> None:
+def test_every_rule_runs_once_whatever_the_order_in_which_its_groups_merge(world: World) -> None:
     play = Play(world, before=bounded, started=Exclusion()).play()
     assert play.calls == {f"m:r{number}": 1 for number in range(len(world.rules))}

@@ -23,7 +23,7 @@ def test_every_wait_has_a_reason_and_an_end(world: World) -> None:
 
 
 @given(worlds(ageless=False))
-def test_with_time_nothing_is_left(world: World) -> None:
+def test_after_enough_time_nothing_is_left(world: World) -> None:
     play = Play(world).play()
     play.settle(1000.0)
     empty(play)

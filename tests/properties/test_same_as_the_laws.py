@@ -35,7 +35,7 @@ def test_the_engine_keeps_to_the_laws_where_pairs_compete(part: int) -> None:
 
 
 @pytest.mark.parametrize("part", range(PARTS))
-def test_the_engine_keeps_to_the_laws_in_a_crowd(part: int) -> None:
+def test_the_engine_keeps_to_the_laws_where_many_rules_hear_one_input(part: int) -> None:
     for seed in range(part, CROWD_SEEDS, PARTS):
         check(varied(crowd_world_of(seed), seed), seed)
 
@@ -64,7 +64,7 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
     assert not observation(world)
 
 
-def test_an_activation_that_waits_for_a_run_leaves_its_stalemate() -> None:
+def test_an_activation_that_begins_to_wait_for_a_run_is_no_longer_in_a_stalemate() -> None:
     """Once `r1` runs for the first s0, its activation for the second waits for that run, and `r3` and `r0` for it."""
     both = (Want("s0"), Want("s2"))
     rules = (
@@ -91,7 +91,7 @@ def test_a_waiting_activation_is_reconsidered_as_soon_as_a_rival_gives_up() -> N
 
 
 @pytest.mark.parametrize("order", ["0011", "1100", "110001", "0101"])
-def test_a_rule_that_makes_two_signals_kin_meets_their_pairs_as_the_laws_say(order: str) -> None:
+def test_an_added_rule_that_relates_two_signals_affects_pairs_of_earlier_spikes_as_the_laws_say(order: str) -> None:
     """The rule is added after the spikes of one instant, before any pair of these spikes has run (L12)."""
     for cause, effect in ("s0", "s1"), ("s1", "s0"):
         added = RuleOf(when=((Want(cause),),), emits=(effect,))

@@ -1,4 +1,4 @@
-"""Measure the sentences with which nlp, idle and emotion were developed, as sets.
+"""Measure the sets of sentences with which nlp, idle and emotion were developed.
 
 They show whether a change breaks sentences that worked. Only sets that were not used for tuning show how well the agent
 understands text. A change may lose some of these sentences as long as the floors in `test_language.py` hold.
@@ -30,12 +30,12 @@ def acts_of(text: str) -> frozenset[str]:
 
 
 def acts_label(text: str) -> str:
-    """By the room `language`."""
+    """Return the label of the user's act, by the package `language`."""
     return "+".join(sorted(acts_of(text))) or "-"
 
 
 def intents(text: str) -> str:
-    """By nlp."""
+    """Return the intents of a text, by nlp."""
     bundled_matcher("acts").load()
     seen = modules._seen(text)
     return "+".join(intent.removeprefix("intent_") for intent in seen.acted) or "-"
@@ -48,14 +48,14 @@ def answered(text: str) -> YesNo:
 
 
 def quiet(text: str) -> str:
-    """By idle."""
+    """Return the label of a text, by idle: a request for quiet, a farewell, or neither."""
     heard = acts_of(text)
     return "quiet" if "quiet" in heard else "leave" if "farewell" in heard else "-"
 
 
 @cache
 def feelings(text: str) -> str:
-    """By emotion, sadness included."""
+    """Return the feelings in a text, including sadness, by emotion."""
     return emotion.recognise(text, Settings().agent_names) or "-"
 
 

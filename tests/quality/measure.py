@@ -126,7 +126,7 @@ def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, 
 
 
 def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Result:
-    """Measure answers and silences. The last share is one of the certain answers; the others are of all questions."""
+    """Measure answers and silences. The last share refers to the certain answers only; the others refer to all questions."""
     counts = dict.fromkeys(("answered right", "rightly silent", "wrongly silent", "wrong, unsure", "wrong, sure"), 0)
     sure = 0
     misses: list[str] = []

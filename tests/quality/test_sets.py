@@ -13,7 +13,7 @@ def test_the_set_is_large_enough_and_says_nothing_twice() -> None:
     assert len(set(sentences)) == len(sentences) >= 40
 
 
-def test_no_question_to_the_world_is_among_those_of_the_calibration() -> None:
+def test_no_question_about_the_world_is_used_for_the_calibration() -> None:
     calibration = Path(__file__).parents[1] / "modules" / "skill" / "genqa" / "questions.yaml"
     known = set(map(modules.plain, measure.read_yaml(calibration)))
     assert known.isdisjoint(modules.plain(fact.question) for fact in measure.facts())
@@ -25,7 +25,7 @@ def test_a_fact_is_either_answerable_or_a_case_for_silence() -> None:
         assert case.get("silent", False) == (not case.keys() & {"answers", "number"}), case
 
 
-def test_one_triple_too_many_is_not_exact() -> None:
+def test_a_sentence_with_one_triple_too_many_is_not_exact() -> None:
     cases = [("i like tea", frozenset({("i", "like", "tea")}))]
     result = measure.measure_triples(lambda _: [("i", "like", "tea"), ("i", "be", "tea")], cases)
     assert result.shares["exact"] == 0.0

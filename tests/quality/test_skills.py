@@ -11,14 +11,14 @@ from quality.modules import plain
 from ravestate.modules.skill.agentqa.life_file import read_life
 
 
-def test_known_facts_change_only_by_what_their_owner_says_of_them() -> None:
+def test_known_facts_change_only_if_their_owner_says_so() -> None:
     left, changed = told.measured_changes()
     assert left.shares["right"] >= 0.98, left.misses
     assert changed.shares["right"] >= 0.9, changed.misses
 
 
 @pytest.mark.parametrize("name", skills.SETS)
-def test_the_share_right_stays_above_the_floor(name: str) -> None:
+def test_the_share_of_right_labels_stays_above_the_floor(name: str) -> None:
     result = skills.result(name)
     misses = "\n  ".join(result.misses)
     print(f"{name}: {result.shares['right']:.1%} of {result.cases}\n  {misses}")
@@ -36,14 +36,14 @@ def test_the_share_right_stays_above_the_floor(name: str) -> None:
         ("names_rows", 0.98, 0.95),
     ],
 )
-def test_told_facts_are_stored_and_nothing_wrong(name: str, right: float, clean: float) -> None:
+def test_told_facts_are_stored_and_wrong_facts_are_not(name: str, right: float, clean: float) -> None:
     _, kept, tricky = blind.measured_facts(f"../{name}")
     assert kept.shares["right"] >= right
     assert tricky.shares["nothing wrong"] >= clean
 
 
 @pytest.mark.parametrize("name", skills.SETS)
-def test_no_sentence_stands_twice(name: str) -> None:
+def test_no_set_has_a_sentence_twice(name: str) -> None:
     counts = Counter(text for text, _ in measure.labelled(name))
     assert [text for text, count in counts.items() if count > 1] == []
 

@@ -8,7 +8,7 @@ from quality.suits import evidence
 from ravestate.modules.skill.wildtalk.listening.lookup import ALIKE
 
 
-def test_most_replies_that_it_chooses_suit() -> None:
+def test_most_replies_that_the_listener_chooses_suit_the_utterance() -> None:
     found, suits = evidence("suits_kept")
     chosen = np.array([one.probability() for one in found]) >= ALIKE
     print(suits[chosen].mean(), chosen.sum(), suits[chosen].sum() / suits.sum())

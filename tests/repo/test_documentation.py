@@ -14,7 +14,7 @@ def text_of(path: str) -> str:
     return (ROOT / path).read_text(encoding="utf-8")
 
 
-def test_the_first_page_leads_to_every_other() -> None:
+def test_the_first_page_leads_to_every_other_page() -> None:
     linked = set(re.findall(r"\]\(([\w/.-]+\.md)\)", text_of("docs/index.md")))
     pages = {page.relative_to(DOCS).as_posix() for page in DOCS.rglob("*.md")}
     of_the_reference = {page for page in pages if page.startswith("reference/")}  # one page leads to the others
@@ -37,7 +37,7 @@ def test_the_reference_names_every_command() -> None:
     assert set(re.findall(r"`ravestate (\w+)", text_of("docs/reference/index.md"))) >= set(COMMANDS)
 
 
-def test_the_readme_is_a_page_long() -> None:
+def test_the_readme_is_about_a_page_long() -> None:
     before, _, _ = text_of("README.md").partition("## Where to read on")
     assert len(before.split()) <= 700
 

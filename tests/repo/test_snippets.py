@@ -46,7 +46,7 @@ def test_a_page_that_leaves_files_behind_may_be_run_again(file: Path, pages: dic
 
 
 @pytest.mark.parametrize("file", sorted({block.file for block in BLOCKS}), ids=lambda file: file.name)
-def test_check_finds_no_broken_rule(file: Path, pages: dict[Path, Page]) -> None:
+def test_check_finds_no_fault_in_the_rules_of_the_documentation(file: Path, pages: dict[Path, Page]) -> None:
     page = pages[file]
     page.run(page.blocks[-1])
     for module in {
@@ -128,7 +128,7 @@ def test_an_open_fence_is_an_error(tmp_path: Path) -> None:
         page_of(tmp_path, "```python\nx = 1\n")
 
 
-def test_tests_that_are_shown_are_run_as_their_reader_runs_them(tmp_path: Path) -> None:
+def test_tests_on_a_page_are_run_as_a_reader_would_run_them(tmp_path: Path) -> None:
     page = page_of(
         tmp_path,
         '```python title="thing.py"\nsize = 3\n```\n'
@@ -141,7 +141,7 @@ def test_tests_that_are_shown_are_run_as_their_reader_runs_them(tmp_path: Path) 
         page.run(page.blocks[2])
 
 
-def test_a_file_is_apart_from_the_page_and_may_be_continued(tmp_path: Path) -> None:
+def test_a_titled_block_has_its_own_namespace_and_may_be_continued(tmp_path: Path) -> None:
     page = page_of(
         tmp_path,
         '```python title="thing.py"\nsize = 3\n```\n'

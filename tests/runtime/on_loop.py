@@ -1,4 +1,4 @@
-"""Tests as coroutines, on a loop of their own."""
+"""Run a test that is a coroutine, on an event loop of its own."""
 
 import asyncio
 import functools

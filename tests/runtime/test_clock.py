@@ -133,7 +133,7 @@ def test_a_paused_context_takes_events_and_does_nothing_about_them() -> None:
         assert sim.read(said) == "answer at 2"
 
 
-def test_steps_lead_from_wave_to_wave_and_over_the_time_between() -> None:
+def test_stepping_goes_from_wave_to_wave_and_skips_the_time_in_between() -> None:
     m, asked, said = story()
     with simulate(m) as sim:
         sim.context.pause()

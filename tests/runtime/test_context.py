@@ -98,7 +98,7 @@ async def test_a_context_that_has_ended_can_only_be_read() -> None:
     await context.stop()  # a second time changes nothing
 
 
-def test_calls_after_the_loop_has_closed_do_nothing() -> None:
+def test_calls_do_nothing_after_the_event_loop_has_closed() -> None:
     context = rs.Context(policy)
 
     async def main() -> None:
@@ -115,7 +115,7 @@ def test_calls_after_the_loop_has_closed_do_nothing() -> None:
 
 
 @on_loop
-async def test_an_exception_inside_ends_the_context_and_comes_through() -> None:
+async def test_an_exception_in_the_body_ends_the_context_and_is_raised_to_the_caller() -> None:
     with pytest.raises(KeyError):
         async with rs.Context(policy) as context:
             raise KeyError("mine")
@@ -166,7 +166,7 @@ async def test_any_thread_may_put_and_emit() -> None:
 
 
 @on_loop
-async def test_order_from_one_thread_is_kept() -> None:
+async def test_calls_from_one_thread_keep_their_order() -> None:
     m = rs.Module("m")
     s, seen = m.signal("s", int), m.slot("seen", ())
     last = m.signal("last")
@@ -210,7 +210,7 @@ async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop(monkeypat
 
 
 @on_loop
-async def test_the_loop_has_its_turn_although_every_spike_comes_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_event_loop_gets_turns_even_if_every_spike_comes_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)
     async with rs.Context(policy) as context:
         ran: list[int] = []
@@ -657,7 +657,7 @@ async def test_hanging_functions_do_not_silence_the_other_rules() -> None:
     assert ending.told == ["spoken"]
 
 
-def test_no_rule_starts_while_the_last_ones_clean_up(caplog: pytest.LogCaptureFixture) -> None:
+def test_no_rule_starts_while_the_last_running_rules_clean_up(caplog: pytest.LogCaptureFixture) -> None:
     ending = Ending()
 
     @ending.rule(ending.go, emits=ending.then)

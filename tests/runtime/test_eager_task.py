@@ -149,7 +149,7 @@ async def test_a_coroutine_that_waits_is_adopted_and_goes_on() -> None:
 
 
 @on_loop
-async def test_an_exception_after_waiting_is_the_task_s() -> None:
+async def test_an_exception_after_the_coroutine_has_waited_is_raised_by_the_task() -> None:
     eager = make()
 
     async def fail() -> None:
@@ -376,7 +376,7 @@ async def test_a_coroutine_that_cancels_itself_is_cancelled_at_its_next_wait() -
 
 
 @on_loop
-async def test_a_spare_task_that_was_cancelled_is_spoilt() -> None:
+async def test_a_spare_task_that_was_cancelled_is_not_used_again() -> None:
     eager = make()
 
     async def work() -> None:
@@ -391,7 +391,7 @@ async def test_a_spare_task_that_was_cancelled_is_spoilt() -> None:
 
 
 @on_loop
-async def test_a_rule_that_cancels_itself_spoils_no_other_rule() -> None:
+async def test_a_rule_that_cancels_itself_does_not_cancel_other_rules() -> None:
     m = rs.Module("m")
     go, calm = m.signal("go"), m.signal("calm")
     done = m.slot("done", 0)
@@ -457,7 +457,7 @@ async def test_close_ends_a_spare_task_and_no_task_with_a_coroutine() -> None:
 
 
 @on_loop
-async def test_sys_exit_is_handed_over_and_does_not_end_the_loop() -> None:
+async def test_sys_exit_is_passed_on_and_does_not_end_the_event_loop() -> None:
     eager = make()
 
     async def leave() -> None:

@@ -125,7 +125,7 @@ async def doubt(ctx: rs.RuleContext) -> None:
 
 
 @on_loop
-async def test_a_recorded_or_traced_run_decides_the_same_as_a_quick_one() -> None:
+async def test_a_recorded_or_traced_run_makes_the_same_decisions_as_a_plain_run() -> None:
     """Without a journal, the runner calls the engine directly, without event records. The decisions are the same
     (L25)."""
 

@@ -64,7 +64,7 @@ def test_slots_that_are_read_or_written_can_be_read(scene: Scene) -> None:
     assert scene.outcome() == ("calm", "")
 
 
-def test_a_rule_sees_its_own_writes_and_not_those_of_others(scene: Scene) -> None:
+def test_a_rule_sees_its_own_writes_but_not_those_of_other_rules(scene: Scene) -> None:
     seen: list[str] = []
 
     @scene.module.rule(when=scene.go, reads=scene.mood, writes=scene.note)
@@ -96,7 +96,7 @@ def test_an_undeclared_read_names_the_line_to_add(scene: Scene, slot: str, text:
 
 
 @pytest.mark.parametrize("key", ["mood", None, 3])
-def test_a_value_that_is_no_slot_is_named(scene: Scene, key: Any) -> None:
+def test_the_message_about_a_value_that_is_not_a_slot_names_the_value(scene: Scene, key: Any) -> None:
     scene.run(lambda ctx: ctx[key], reads=scene.mood)
     assert f"read {key!r}, which is not a slot: write ctx[slot]" in str(scene.outcome())
 

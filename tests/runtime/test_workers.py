@@ -1,4 +1,4 @@
-"""Worker threads: started on demand, kept for a while, and no obstacle to the end of the process."""
+"""Worker threads: started on demand, kept for a while, and they do not keep the process from ending."""
 
 import functools
 import subprocess
@@ -32,7 +32,7 @@ def ended(thread: threading.Thread) -> bool:
     return not thread.is_alive()
 
 
-def test_jobs_run_in_daemon_threads_with_a_name() -> None:
+def test_jobs_run_in_named_daemon_threads() -> None:
     jobs = JobQueue(ThreadPool())
     thread = finished(jobs)
     assert thread is not threading.current_thread()
@@ -75,7 +75,7 @@ def test_a_hanging_thread_delays_no_other_job() -> None:
     release.set()
 
 
-def test_an_idle_thread_is_used_again_also_by_another_context() -> None:
+def test_an_idle_thread_is_used_again_even_by_another_context() -> None:
     pool = ThreadPool()
     several = [JobQueue(pool), JobQueue(pool)]
     seen = {finished(several[number % 2]) for number in range(200)}
@@ -108,7 +108,7 @@ def test_no_context_takes_more_than_its_share() -> None:
     modest.close()
 
 
-def test_an_abandoned_job_leaves_its_place_to_the_next() -> None:
+def test_the_next_job_takes_the_place_of_an_abandoned_one() -> None:
     jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[str] = SimpleQueue()
@@ -131,7 +131,7 @@ def test_an_abandoned_job_leaves_its_place_to_the_next() -> None:
     jobs.close()
 
 
-def test_a_forked_process_has_threads_of_its_own() -> None:
+def test_a_forked_process_starts_its_own_threads() -> None:
     program = """
 import os, threading
 from queue import SimpleQueue

@@ -1,4 +1,4 @@
-"""The ten behaviours that a reader should be able to check, once each, for any player.
+"""The ten behaviours that a reader should be able to check. Each is written once, and can be played in two ways.
 
 `play` begins a story: `Driver` plays on the bare engine, `simulate` on the runtime.
 """

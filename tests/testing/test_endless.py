@@ -39,7 +39,7 @@ def test_a_rule_gated_by_pressure_may_be_kept_waiting() -> None:
         assert sim.read(out) == "calm"
 
 
-def test_an_apology_that_fails_is_not_apologised_for() -> None:
+def test_an_apology_that_fails_causes_no_second_apology() -> None:
     m = rs.Module("m")
     said = m.slot("said", "")
     go = m.signal("go")
@@ -79,7 +79,7 @@ def test_more_spikes_do_not_delay_an_interruption_with_an_age() -> None:
         assert sim.fired == ["m:run"]
 
 
-def test_rules_added_from_threads_are_all_there() -> None:
+def test_no_rule_that_a_thread_adds_is_lost() -> None:
     m, extra = rs.Module("m"), rs.Module("extra")
     go, heard = m.signal("go"), m.collection("heard")
 

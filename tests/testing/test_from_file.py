@@ -71,7 +71,7 @@ def test_platforms_are_left_out(agent: Path) -> None:
         assert [module.name for module in sim.context.policy.modules] == ["core", "rawio", "clerk"]
 
 
-def test_code_goes_before_the_environment_and_that_before_the_file(
+def test_settings_in_code_override_the_environment_which_overrides_the_file(
     agent: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("WORD", "Servus.")

@@ -73,7 +73,7 @@ def test_waiting_for_an_event_that_never_comes_is_an_error(loop: VirtualLoop) ->
         loop.run_until_complete(task)
 
 
-def test_busy_threads_take_no_virtual_time(loop: VirtualLoop) -> None:
+def test_virtual_time_does_not_pass_while_threads_are_busy(loop: VirtualLoop) -> None:
     busy = ["work"]
     seen: list[float] = []
     go = threading.Event()
