@@ -3,25 +3,62 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from typing import Any
 
 import pytest
 
-from ravestate.language.heap import give_back, note_load
+from ravestate.language import heap
+from ravestate.language.heap import give_back, keep_few_heaps, note_load
 
 
-def test_the_c_library_returns_the_memory_once_for_each_load(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[int] = []
+def test_the_c_library_returns_the_memory_after_a_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    returned = threading.Event()
 
     class Library:
         def __init__(self, _: Any) -> None:
-            self.malloc_trim = asked.append
+            pass
+
+        def malloc_trim(self, kept: int) -> None:
+            assert kept == 0
+            returned.set()
 
     monkeypatch.setattr(ctypes, "CDLL", Library)
+    monkeypatch.setattr(heap, "SETTLED", 0.0)
     note_load()
-    give_back()
-    give_back()
-    assert asked == [0]
+    assert returned.wait(60)
+
+
+def test_another_load_puts_the_return_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(heap, "SETTLED", 3600.0)
+    note_load()
+    [first] = heap._pending
+    note_load()
+    [second] = heap._pending
+    assert first.finished.is_set()  # it was cancelled
+    assert second.is_alive() and second.daemon
+    second.cancel()
+
+
+def test_the_users_environment_takes_precedence(monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen: list[tuple[int, int]] = []
+
+    class Library:
+        def __init__(self, _: Any) -> None:
+            pass
+
+        def mallopt(self, option: int, value: int) -> None:
+            chosen.append((option, value))
+
+    monkeypatch.setattr(ctypes, "CDLL", Library)
+    for name in ("MALLOC_ARENA_MAX", "MALLOC_MMAP_THRESHOLD_"):
+        monkeypatch.delenv(name, raising=False)
+    keep_few_heaps()
+    assert chosen == [(-8, 2), (-3, 2**19)]
+    chosen.clear()
+    monkeypatch.setenv("MALLOC_MMAP_THRESHOLD_", "1000000")
+    keep_few_heaps()
+    assert chosen == [(-8, 2)]
 
 
 @pytest.mark.parametrize("error", [OSError, TypeError, AttributeError])
@@ -30,5 +67,5 @@ def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: py
         raise error
 
     monkeypatch.setattr(ctypes, "CDLL", refuse)
-    note_load()
     give_back()
+    keep_few_heaps()

@@ -1,5 +1,9 @@
 """The normal form: typed English as written English, with offsets."""
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -151,3 +155,44 @@ def test_rules_that_read_an_utterance_share_its_normal_form(monkeypatch: pytest.
     first = normalise("hullo rosie its me", ["Rosie"])
     monkeypatch.setattr(normal, "_once", None)  # nothing is computed again
     assert normalise("hullo rosie its me", ("Rosie",)) is first
+
+
+def test_a_long_text_holds_up_no_other_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contexts share the normal forms. A text of 2,000 characters takes 0.1 s, and other users do not wait for it."""
+    begun, go_on = threading.Event(), threading.Event()
+    compute = normal._normalised
+
+    def slow(text: str, *more: Any) -> Normal:
+        if text == "a text of another user":
+            begun.set()
+            assert go_on.wait(60)
+        return compute(text, *more)
+
+    monkeypatch.setattr(normal, "_normalised", slow)
+    with ThreadPoolExecutor(1) as pool:
+        other = pool.submit(normalise, "a text of another user")
+        assert begun.wait(60)
+        assert normalise("u cant hold me up").text == "You can't hold me up."
+        go_on.set()
+        assert other.result(60).text == "A text of another user."
+
+
+def test_rules_that_read_an_utterance_at_the_same_time_compute_its_normal_form_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    computed: list[str] = []
+    compute, together = normal._normalised, threading.Barrier(8)
+
+    def note(text: str, *more: Any) -> Normal:
+        computed.append(text)
+        return compute(text, *more)
+
+    def ask(_: int) -> Normal:
+        together.wait(60)
+        return normalise("everybody reads this at the same time")
+
+    monkeypatch.setattr(normal, "_normalised", note)
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(ask, range(8)))
+    assert computed == ["everybody reads this at the same time"]
+    assert len(set(map(id, found))) == 1

@@ -7,39 +7,50 @@ import ctypes
 import os
 import threading
 
-_ARENA_MAX = -8
-"""The number of the option M_ARENA_MAX in glibc's malloc.h."""
+SETTLED = 1.0
+"""The seconds after the last load after which freed memory goes back to the system."""
 
-_loaded = threading.Event()
-"""Set if something large was loaded after the last `give_back`."""
+_OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
+"""Options of glibc: the number in malloc.h, the environment variable and the value.
+
+They are the maximum number of heaps, and the size in bytes from which a block is outside of them.
+"""
+
+_lock = threading.Lock()
+_pending: list[threading.Timer] = []
+"""The timer of the next return of memory; at most one."""
 
 
 def keep_few_heaps() -> None:
-    """Let the threads of the process share two heaps; if the C library is not glibc, do nothing.
+    """Let the threads of the process share two heaps, and keep large blocks out of them.
 
     By default glibc makes up to eight heaps per core. Each keeps tens of megabytes that a model has used in its thread.
-    The environment variable ``MALLOC_ARENA_MAX`` takes precedence.
+    Glibc also puts ever larger blocks into the heaps, and between the small ones, freed blocks cannot go back to the
+    system. The environment variables ``MALLOC_ARENA_MAX`` and ``MALLOC_MMAP_THRESHOLD_`` take precedence. If the C
+    library is not glibc, do nothing.
     """
-    if "MALLOC_ARENA_MAX" not in os.environ:
-        with contextlib.suppress(AttributeError, OSError, TypeError):
-            ctypes.CDLL(None).mallopt(_ARENA_MAX, 2)
+    for option, name, value in _OPTIONS:
+        if name not in os.environ:
+            with contextlib.suppress(AttributeError, OSError, TypeError):
+                ctypes.CDLL(None).mallopt(option, value)
 
 
 def note_load() -> None:
-    """Note that a model, examples or a second database was loaded, which leaves tens of megabytes in the heap."""
-    _loaded.set()
+    """Note that a model, examples or a second database was loaded, which leaves tens of megabytes in the heap.
+
+    If nothing else is loaded for `SETTLED` seconds, a thread returns them to the system. Between two loads, the process
+    would soon take the same memory again.
+    """
+    timer = threading.Timer(SETTLED, give_back)
+    timer.daemon = True  # it keeps no process alive
+    with _lock:
+        for earlier in _pending:
+            earlier.cancel()
+        _pending[:] = [timer]
+        timer.start()
 
 
 def give_back() -> None:
-    """Return freed memory from the C library to the system; if the library is not glibc, do nothing.
-
-    If nothing was loaded after the last call, do nothing: the process would soon take the same memory again.
-    """
-    if not _loaded.is_set():
-        return
-    _loaded.clear()
-    try:
-        trim = ctypes.CDLL(None).malloc_trim
-    except (AttributeError, OSError, TypeError):
-        return
-    trim(0)
+    """Return freed memory from the C library to the system; if the library is not glibc, do nothing."""
+    with contextlib.suppress(AttributeError, OSError, TypeError):
+        ctypes.CDLL(None).malloc_trim(0)

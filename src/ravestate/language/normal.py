@@ -16,6 +16,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import takewhile
+from typing import Any
 
 from .contractions import CONTRACTIONS, WRITTEN, word_set
 from .lexicon import SHORTEST, Lexicon, loaded_lexicon
@@ -157,14 +158,30 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
         rest = range(start, len(text) + 1)
         return Normal(begun.text + text[start:], text, (*begun.origin[:-1], *rest))
     known = tuple((part.lower(), part) for name in names for part in name.split())
-    with _normalising:  # the rules that read an utterance at the same time do not all compute the same
-        return _normalised(text, known, loaded_lexicon())
+    with _sharing:
+        shared = _shared(text, known, loaded_lexicon())
+    return shared.normal()
 
 
-_normalising = threading.Lock()
+class _Shared:
+    """A normal form that one thread computes. Rules that ask for it meanwhile wait; other texts need not, as they share only caches."""
+
+    def __init__(self, *given: Any) -> None:
+        self._given = given
+        self._lock = threading.Lock()
+        self._normal: Normal | None = None
+
+    def normal(self) -> Normal:
+        with self._lock:
+            if self._normal is None:
+                self._normal = _normalised(*self._given)
+            return self._normal
 
 
-@lru_cache(maxsize=REMEMBERED)
+_shared = lru_cache(maxsize=REMEMBERED)(_Shared)
+_sharing = threading.Lock()  # for the look-up alone
+
+
 def _normalised(text: str, names: tuple[tuple[str, str], ...], lexicon: Lexicon | None) -> Normal:
     known = dict(names)
     normal = Normal(text, text, tuple(range(len(text) + 1)))

@@ -9,10 +9,39 @@ from pathlib import Path
 import pytest
 
 from modules.meta.ontology.conftest import Open
+from ravestate.errors import PlatformError
+from ravestate.modules import ontology
 from ravestate.modules.meta.ontology import database
-from ravestate.modules.meta.ontology.database import survives
+from ravestate.modules.meta.ontology.database import META, NODE, RELATION, connect, survives
+from ravestate.modules.meta.ontology.opening import open_memory
 
 HERE = Path(__file__).parent
+
+FORMAT_1 = (
+    f"CREATE NODE TABLE `{META}` (`key` STRING PRIMARY KEY, `value` INT64)",
+    f"CREATE (:`{META}` {{`key`: 'format', `value`: 1}})",
+    "CREATE NODE TABLE Person (id STRING PRIMARY KEY, name STRING, age INT64)",
+    "CREATE NODE TABLE City (id STRING PRIMARY KEY, name STRING)",
+    "CREATE NODE TABLE Boat (id STRING PRIMARY KEY, name STRING, length DOUBLE)",
+    "CREATE REL TABLE lives_in (FROM Person TO City)",
+    "CREATE REL TABLE friend_of (FROM Person TO Person)",
+    "CREATE REL TABLE owns (FROM Person TO Boat, FROM City TO Boat, since STRING)",
+    "CREATE (:Person {id: 'Person:1', name: 'Ada', age: 36}), (:Person {id: 'Person:2', name: 'Bob'})",
+    "CREATE (:City {id: 'City:3', name: 'London'}), (:Boat {id: 'Boat:4', name: 'Lady', length: 7.5})",
+    "MATCH (a:Person {id: 'Person:1'}), (b:City) CREATE (a)-[:lives_in]->(b)",
+    "MATCH (a:Person {id: 'Person:1'}), (b:Person {id: 'Person:2'}) CREATE (a)-[:friend_of]->(b)",
+    "MATCH (a:Person), (b:Boat) CREATE (a)-[:owns {since: '2020-01-01'}]->(b)",
+)
+"""Statements that make a memory as earlier versions did, with a table for each type and relation."""
+
+
+def write_format_1(path: Path, *more: str) -> None:
+    database, connection = connect(path)
+    for statement in (*FORMAT_1, *more):
+        connection.execute(statement)
+    connection.execute("CHECKPOINT")
+    connection.close()
+    database.close()
 
 
 def small_memory(tmp_path: Path, open_here: Open) -> Path:
@@ -59,3 +88,55 @@ def test_a_process_that_ends_or_takes_for_ever_does_not_survive(
         file.write_text(program)
         monkeypatch.setattr(database, "__file__", str(file))
         assert survives(tmp_path) is alive
+
+
+def test_a_memory_of_format_1_keeps_all_nodes_and_relations(tmp_path: Path, open_here: Open) -> None:
+    path, types = tmp_path / "memory.lbug", tmp_path / "mine.yaml"
+    types.write_text(
+        "Boat: {is: Thing, has: {length: number}}\nPerson: {relations: {owns: {to: Boat, has: {since: date}}}}"
+    )
+    write_format_1(path)
+    memory = open_here(path=path)  # its types lack Boat and owns
+    [ada] = memory.find("Person", name="Ada").result()
+    assert dict(ada.properties) == {"name": "Ada", "age": 36}
+    assert [(one.name, one.target.id) for one in memory.relations(ada).result()] == [
+        ("friend_of", "Person:2"),
+        ("lives_in", "City:3"),
+    ]
+    assert memory.undeclared().result() == ["Boat"]
+    memory.update(ada, nickname="Countess").result()
+    memory.close().result()
+    for _ in range(2):  # the second opening reads the new format
+        memory = open_here(path=path, types=(types,))
+        [boat] = memory.find("Boat").result()
+        assert dict(boat.properties) == {"name": "Lady", "length": 7.5}
+        owned = [(str(one.source["name"]), str(one.properties["since"])) for one in memory.relations(boat).result()]
+        assert owned == [("Ada", "2020-01-01"), ("Bob", "2020-01-01")]
+        assert memory.get("Person:1").result() == ada.with_properties(nickname="Countess")
+        memory.close().result()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "memory.lbug.sum", "mine.yaml"]
+
+
+def test_a_memory_of_format_1_that_cannot_be_copied_keeps_its_data(tmp_path: Path) -> None:
+    path = tmp_path / "memory.lbug"
+    write_format_1(path, "CREATE NODE TABLE Dog (id STRING PRIMARY KEY, age STRING)")
+    memory = open_memory(ontology.Settings(path=path))
+    with pytest.raises(PlatformError, match=r"\.age is \w+, and another type has it as \w+\. Nothing was changed"):
+        memory.opened().result(60)
+    memory.close().result(60)
+    database, connection = connect(path)
+    people = connection.execute("MATCH (p:Person) RETURN p.name ORDER BY p.name").get_all()
+    assert people == [["Ada"], ["Bob"]]
+    connection.close()
+    database.close()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "memory.lbug.sum"]
+
+
+def test_all_types_share_one_table(tmp_path: Path, open_here: Open) -> None:
+    """Ladybug takes 3.5 MB of main memory for each table of nodes, and 10 MB for each table of relations."""
+    path = small_memory(tmp_path, open_here)
+    database, connection = connect(path)
+    tables = connection.execute("CALL show_tables() RETURN name").get_all()
+    assert sorted(name for [name] in tables) == sorted([META, NODE, RELATION])
+    connection.close()
+    database.close()

@@ -506,9 +506,9 @@ def test_a_newer_layout_is_left_alone(open_here: Open, place: dict[str, Any]) ->
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
     keeper = memory._worker
-    keeper.submit(lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 2", {})).result()
+    keeper.submit(lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 3", {})).result()
     memory.close().result()
-    with pytest.raises(PlatformError, match="is of format 2, and this version of ravestate knows up to 1"):
+    with pytest.raises(PlatformError, match=r"is of format 3, and this version of ravestate knows up to [12]:"):
         open_here(**place)
 
 

@@ -9,6 +9,7 @@ import pytest
 from modules.skill.persqa.conftest import Look
 from modules.skill.persqa.test_scenarios import agent, answers, knower, meant
 from ravestate.modules import ontology, persqa
+from ravestate.modules.meta.ontology import worker
 
 pytestmark = pytest.mark.usefixtures("reader")
 
@@ -109,6 +110,34 @@ def test_forgotten_words_are_not_found_in_the_talk(file: Path, told: str, wish: 
         sim.say(told)
         sim.say(wish)
         assert not {"Dundee", "violin"} & set(answers(sim, question).strip(".").split())
+
+
+def holds(file: Path, words: bytes) -> bool:
+    """Return whether a file of the memory has these bytes."""
+    return any(words in one.read_bytes() for one in file.parent.iterdir())
+
+
+def test_forgetting_is_confirmed_when_no_byte_is_left(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker, "PAUSE", 3600.0)
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("I live in Dundee")
+        assert holds(file, b"Dundee")
+        assert meant(answers(sim, "forget where I live"), "strike")
+        assert not holds(file, b"Dundee")
+
+
+def test_a_correction_is_answered_before_the_old_value_leaves_the_file(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "PAUSE", 3600.0)
+    with agent(file) as sim:
+        sim.say("my name is ada")
+        sim.say("I live in Dundee")
+        assert answers(sim, "I live in Leeds")
+        assert holds(file, b"Dundee")
+    assert not holds(file, b"Dundee")
+    assert holds(file, b"Leeds")
 
 
 def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, look: Look) -> None:

@@ -8,7 +8,6 @@ import contextlib
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.moves import bundled_moves
@@ -32,7 +31,6 @@ def load(ctx: rs.RuleContext) -> None:
     settings: Settings = ctx.settings
     with contextlib.suppress(PlatformError):  # `understand` reports the error
         pipeline(settings.pipeline).load()
-        give_back()
 
 
 @module.rule(when=rs.startup, background=True)
@@ -43,7 +41,6 @@ def learn(ctx: rs.RuleContext) -> None:
         for name in (*MATCHERS, "answers"):
             bundled_matcher(name).load()
         bundled_moves().load()
-        give_back()
     except ModelMissing as error:
         warn_once(ctx.log, error)
 

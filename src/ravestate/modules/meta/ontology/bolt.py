@@ -84,6 +84,14 @@ class BoltStore:
 
     # ------------------------------------------------------------------------------------ statements
 
+    def labels(self, types: Sequence[str]) -> str:
+        """Return the labels of these types: each type is a label."""
+        return "|".join(f"`{name}`" for name in types)
+
+    def relation(self, name: str) -> str:
+        """Return the label of a relation."""
+        return f"`{name}`"
+
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
         """Run a statement that may also write, and return its rows."""
         return self._wait(self._run(statement, parameters))
@@ -151,14 +159,20 @@ class BoltStore:
         """Create an index of ids for each type. A server needs no tables."""
         rows = self.read(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`", {})
         if rows:
-            check_format(self._place, rows[0][0])
+            check_format(self._place, rows[0][0], FORMAT)
         else:
             self.write(f"MERGE (m:`{META}` {{`key`: 'format'}}) SET m.`value` = {FORMAT}", {})
         for name in types:
             self.write(f"CREATE CONSTRAINT IF NOT EXISTS FOR (n:`{name}`) REQUIRE n.`id` IS UNIQUE", {})
 
+    def note_bytes(self) -> None:
+        """Do nothing: the server manages its files."""
+
     def purge(self) -> None:
         """Do nothing: the server manages its files."""
+
+    def rest(self) -> None:
+        """Do nothing: the server works by itself."""
 
     def tidy(self) -> None:
         """Do nothing: the server manages its log."""

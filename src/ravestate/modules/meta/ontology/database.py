@@ -24,6 +24,25 @@ LARGEST = 2**36
 PATIENCE = 60.0
 """The seconds that a trial in a separate process may take."""
 
+FILE_FORMAT = 2
+"""The version of the format of nodes and relations in the file; a new format has a greater number.
+
+Format 1 had a table for each type and each relation, and pairs of types for each relation. Ladybug takes 3.5 MB of main
+memory for a table of nodes, and 10 MB for a table of relations that has been written. Format 2 has one table of each.
+"""
+
+META = "_ravestate"
+"""The table of the format's version, and of the mark that deleted nodes have left bytes behind."""
+
+NODE = "_node"
+"""The table of all nodes. The id of a node begins with its type: ``City:...``."""
+
+RELATION = "_relation"
+"""The table of all relations. No name of a user's type, property or relation begins with ``_``."""
+
+NAME = "_name"
+"""The column with the name of a relation."""
+
 
 def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
     """Open a database, and return it with a connection to it.
@@ -75,44 +94,76 @@ def _read_all(path: Path, *, whole_log: bool) -> None:
         _rows(connection, f"MATCH {pattern} RETURN {found}")
 
 
-def copy_database(source: Any, target: Any) -> None:
-    """Copy all tables, nodes and relations in one transaction, even tables of types that memory does not declare.
+def node_table(columns: Mapping[str, str]) -> str:
+    """Return the statement that creates the table of all nodes, with columns for properties: name → kind."""
+    return f"CREATE NODE TABLE `{NODE}` ({', '.join(['`id` STRING PRIMARY KEY', *_listed(columns)])})"
 
-    The copy has no bytes of deleted nodes; the old file still has them.
+
+def relation_table(columns: Mapping[str, str]) -> str:
+    """Return the statement that creates the table of all relations, with columns for properties: name → kind."""
+    listed = [f"FROM `{NODE}` TO `{NODE}`", f"`{NAME}` STRING", *_listed(columns)]
+    return f"CREATE REL TABLE `{RELATION}` ({', '.join(listed)})"
+
+
+def meta_table() -> list[str]:
+    """Return the statements that create the table of the format."""
+    return [
+        f"CREATE NODE TABLE `{META}` (`key` STRING PRIMARY KEY, `value` INT64)",
+        f"CREATE (:`{META}` {{`key`: 'format', `value`: {FILE_FORMAT}}})",
+    ]
+
+
+def copy_database(source: Any, target: Any) -> None:
+    """Copy all nodes and relations in one transaction, even those of types that memory does not declare.
+
+    The copy has the newest format, and no bytes of deleted nodes; the old file still has them.
 
     Args:
-        source: A connection to the database to copy.
+        source: A connection to the database to copy, of any known format.
         target: A connection to an empty database.
 
     Raises:
-        RuntimeError: Ladybug failed.
+        RuntimeError: Ladybug failed; or two tables of format 1 have properties of the same name and different kinds.
     """
     tables = _rows(source, "CALL show_tables() RETURN name, type")
-    copied: dict[tuple[int, int], tuple[str, str, Any]] = {}  # ladybug's own number → type, name of the key, key
+    nodes = {name: _columns(source, name) for name, kind in tables if kind == "NODE" and name != META}
+    relations = {name: _columns(source, name) for name, kind in tables if kind == "REL"}
     _rows(target, "BEGIN TRANSACTION")
-    for name in (name for name, kind in tables if kind == "NODE"):
-        columns = {row[1]: (row[2], row[4]) for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
-        listed = [f"`{key}` {kind}" + (" PRIMARY KEY" if primary else "") for key, (kind, primary) in columns.items()]
-        _rows(target, f"CREATE NODE TABLE `{name}` ({', '.join(listed)})")
-        primary_key = next(key for key, (_, primary) in columns.items() if primary)
+    for statement in (*meta_table(), node_table(_united(nodes)), relation_table(_united(relations))):
+        _rows(target, statement)
+    copied: dict[tuple[int, int], str] = {}  # ladybug's own number → id
+    for name, columns in nodes.items():
         for [node] in _rows(source, f"MATCH (n:`{name}`) RETURN n"):
-            pattern, values = _pattern(node, columns)
-            _rows(target, f"CREATE (:`{name}` {pattern})", values)
-            copied[_number(node["_ID"])] = name, primary_key, node[primary_key]
-    for name in (name for name, kind in tables if kind == "REL"):
-        columns = {row[1]: row[2] for row in _rows(source, f"CALL table_info('{name}') RETURN *")}
-        pairs = _rows(source, f"CALL show_connection('{name}') RETURN *")
-        listed = [f"FROM `{one}` TO `{other}`" for one, other, *_ in pairs]
-        listed += [f"`{key}` {kind}" for key, kind in columns.items()]
-        _rows(target, f"CREATE REL TABLE `{name}` ({', '.join(listed)})")
-        # One query for all pairs of types: most of the hundreds of pairs have no relation.
+            values = {key: node[key] for key in columns if node.get(key) is not None}
+            _rows(target, f"CREATE (:`{NODE}` {_pattern(values)})", _parameters(values))
+            copied[_number(node["_ID"])] = node["id"]
+    for name, columns in relations.items():
         for [relation] in _rows(source, f"MATCH ()-[r:`{name}`]->() RETURN r"):
-            one, one_key, a = copied[_number(relation["_SRC"])]
-            other, other_key, b = copied[_number(relation["_DST"])]
-            ends = f"MATCH (a:`{one}` {{`{one_key}`: $a}}), (b:`{other}` {{`{other_key}`: $b}})"
-            pattern, values = _pattern(relation, columns)
-            _rows(target, f"{ends} CREATE (a)-[:`{name}` {pattern}]->(b)", {"a": a, "b": b, **values})
+            values = {key: relation[key] for key in columns if relation.get(key) is not None}
+            values.setdefault(NAME, name)
+            ends = f"MATCH (a:`{NODE}` {{`id`: $a}}), (b:`{NODE}` {{`id`: $b}})"
+            pair = {"a": copied[_number(relation["_SRC"])], "b": copied[_number(relation["_DST"])]}
+            _rows(target, f"{ends} CREATE (a)-[:`{RELATION}` {_pattern(values)}]->(b)", pair | _parameters(values))
     _rows(target, "COMMIT")
+
+
+def _columns(connection: Any, table: str) -> dict[str, str]:
+    """Return the names and kinds of a table's columns."""
+    return {str(row[1]): str(row[2]) for row in _rows(connection, f"CALL table_info('{table}') RETURN *")}
+
+
+def _united(tables: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
+    """Return the columns of all tables, without those that every table of nodes or relations has."""
+    united: dict[str, str] = {}
+    for table, columns in tables.items():
+        for name, kind in columns.items():
+            if united.setdefault(name, kind) != kind:
+                raise RuntimeError(f"{table}.{name} is {kind}, and another type has it as {united[name]}")
+    return {name: kind for name, kind in united.items() if name not in ("id", NAME)}
+
+
+def _listed(columns: Mapping[str, str]) -> list[str]:
+    return [f"`{name}` {kind}" for name, kind in columns.items()]
 
 
 def _rows(connection: Any, statement: str, parameters: Mapping[str, Any] | None = None) -> list[list[Any]]:
@@ -123,11 +174,13 @@ def _number(found: Mapping[str, int]) -> tuple[int, int]:
     return found["table"], found["offset"]
 
 
-def _pattern(found: Mapping[str, Any], columns: Mapping[str, object]) -> tuple[str, dict[str, Any]]:
-    """Return the Cypher pattern of properties, and its parameters."""
-    keys = [key for key in columns if found.get(key) is not None]
-    pattern = "{" + ", ".join(f"`{key}`: $p_{key}" for key in keys) + "}" if keys else ""
-    return pattern, {f"p_{key}": found[key] for key in keys}
+def _pattern(values: Mapping[str, Any]) -> str:
+    """Return the Cypher pattern of properties."""
+    return "{" + ", ".join(f"`{key}`: $p_{key}" for key in values) + "}" if values else ""
+
+
+def _parameters(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {f"p_{key}": value for key, value in values.items()}
 
 
 if __name__ == "__main__":

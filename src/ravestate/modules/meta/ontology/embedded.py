@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any, cast
 
 from ravestate.errors import PlatformError
-from ravestate.language.heap import give_back, note_load
+from ravestate.language.heap import note_load
 from ravestate.language.loading import LOADING
 
-from .database import connect, copy_database, survives
+from .database import META, NAME, NODE, RELATION, connect, copy_database, survives
 from .faults import (
     ENDS_PROCESS,
     is_about_log,
@@ -31,7 +31,7 @@ from .faults import (
 )
 from .files import AT_CHECKPOINT, MemoryFiles
 from .store import Raw
-from .tables import missing_tables, undeclared_types
+from .tables import has_old_format, missing_tables, undeclared_types
 from .types import Types
 
 RESERVE = 16 * 2**20
@@ -39,6 +39,9 @@ RESERVE = 16 * 2**20
 
 LOG_LIMIT = 4 * 2**20
 """The size of the write-ahead log, in bytes, at which the store moves the log's content into the database file."""
+
+MARK = "purge"
+"""The key of the mark that deleted nodes have left bytes in the file."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -71,7 +74,8 @@ class EmbeddedStore:
         self._log_good = 0  # the size of the log (bytes) after the last acknowledged write
         self._stuck = ""  # the reason why the last write failed; empty while writes succeed
         self._within = False  # whether a transaction is open
-        self._purge_due = False  # whether a purge follows the open transaction
+        self._has_bytes = False  # whether the file has bytes of deleted nodes
+        self._purge_next = False  # whether a purge follows the open transaction
         self._prepared: Types | None = None  # the types whose tables exist
         try:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -86,6 +90,14 @@ class EmbeddedStore:
         self._files.remove_rewrite()  # a process that was killed during a purge leaves an unfinished rewrite
 
     # ------------------------------------------------------------------------------------ statements
+
+    def labels(self, types: Sequence[str]) -> str:
+        """Return the table of all nodes."""
+        return f"`{NODE}`"
+
+    def relation(self, name: str) -> str:
+        """Return the table of all relations, with the relation's name."""
+        return f"`{RELATION}` {{`{NAME}`: '{name}'}}"
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
         """Run a statement that writes nothing, and return its rows."""
@@ -108,18 +120,19 @@ class EmbeddedStore:
         if self._stuck:  # a store that is not stuck checks the space at each write
             self._be_writable(0)
         self._execute("BEGIN TRANSACTION")
-        self._within, self._purge_due = True, False
+        self._within, self._purge_next, had_bytes = True, False, self._has_bytes
         try:
             yield
             self._execute("COMMIT")
         except BaseException:
+            self._has_bytes = had_bytes
             with contextlib.suppress(PlatformError):  # a failed transaction may be rolled back already
                 self._execute("ROLLBACK")
             raise
         finally:
             self._within = False
         self._acknowledge()
-        if self._purge_due:
+        if self._purge_next:
             self.purge()
 
     def _acknowledge(self) -> None:
@@ -145,15 +158,22 @@ class EmbeddedStore:
     # ------------------------------------------------------------------------------------ tables
 
     def prepare(self, types: Types) -> None:
-        """Create the tables and columns that the types need and the file lacks."""
+        """Create the tables and columns that the types need and the file lacks. Copy a file of an older format."""
         if types is self._prepared:  # no other process changes the file, so the tables are still there
             return
+        if has_old_format(self._execute, str(self._path)):
+            try:
+                self._rewrite()
+            except Exception as error:  # copying a damaged page may raise any exception
+                why = f"cannot be copied to the new format: {said_by(error)}. Nothing was changed"
+                raise PlatformError(f"memory {self._path} {why}") from error
         missing = list(missing_tables(self._execute, types, str(self._path)))
         if missing:  # write only if needed, so that memory on a full disk can be read
             self._be_writable(0)
             with self.transaction():
                 for statement in missing:
                     self._execute(statement)
+        self._has_bytes = bool(self._execute(f"MATCH (m:`{META}` {{`key`: '{MARK}'}}) RETURN m.`value`"))
         self._prepared = types
 
     def undeclared(self, types: Types) -> list[str]:
@@ -229,14 +249,38 @@ class EmbeddedStore:
             self._path,
         )
 
-    def purge(self) -> None:
-        """Rewrite the file without the deleted data, because ladybug leaves the bytes of deleted data in the file.
+    def note_bytes(self) -> None:
+        """Note in the file that ladybug leaves the bytes of deleted nodes in it."""
+        if not self._has_bytes:
+            self.write(f"MERGE (m:`{META}` {{`key`: '{MARK}'}}) SET m.`value` = 1", {})
+            self._has_bytes = True
 
-        If this fails, the deleted nodes are still forgotten; a warning says that the file still has their bytes.
+    def purge(self) -> None:
+        """Rewrite the file without the deleted nodes, if there are any; in a transaction, after the commit.
+
+        If this fails, the deleted nodes are still forgotten. A warning says that the file still has their bytes; the
+        next deletion or opening leads to another try.
         """
-        if self._within:
-            self._purge_due = True  # the purge follows the transaction
+        if not self._has_bytes or self._stuck:
             return
+        if self._within:
+            self._purge_next = True
+            return
+        self._has_bytes = False
+        try:
+            self._rewrite()
+        except Exception as error:  # copying a damaged page may raise any exception
+            log.warning(
+                "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s", self._path, error
+            )
+        if kept := ", ".join(map(str, self._files.kept())):
+            what = "logs that were set aside may still have data of the forgotten nodes; remove them"
+            log.warning("memory %s: %s: %s", self._path, what, kept)
+
+    rest = purge
+
+    def _rewrite(self) -> None:
+        """Copy the database to a new file, without deleted nodes and with the newest format; replace the old file."""
         new = MemoryFiles(self._files.beside(".new"))
         try:
             self._check_space(2 * (self._path.stat().st_size + self._files.log_size()))
@@ -261,27 +305,23 @@ class EmbeddedStore:
                 self._files.seal()
             finally:
                 self._open()
-        except Exception as error:  # copying a damaged page may raise any exception
-            log.warning(
-                "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s", self._path, error
-            )
+        except BaseException:
             with contextlib.suppress(OSError):
                 self._files.remove_rewrite()
-        note_load()
-        give_back()  # two open databases have needed tens of megabytes more than one
-        if kept := ", ".join(map(str, self._files.kept())):
-            what = "logs that were set aside may still have data of the forgotten nodes; remove them"
-            log.warning("memory %s: %s: %s", self._path, what, kept)
+            raise
+        finally:
+            note_load()  # two open databases have needed tens of megabytes more than one
 
     def tidy(self) -> None:
         """Move the log's content into the file. Until then, ladybug holds a few megabytes for each written table."""
         self._shorten_log(limit=0)
 
     def close(self) -> None:
-        """Move the log's content into the file, and close the file. If this fails, the next opening reads the log."""
+        """Purge the file, move the log's content into it, and close it. If this fails, the next opening reads the log."""
         if self._stuck and not self._can_write():
             log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
             return
+        self.purge()
         self._shorten_log(limit=0)
         self._connection.close()
         self._database.close()
@@ -354,7 +394,9 @@ class EmbeddedStore:
 
 
 def _decoded(value: Any) -> Any:
+    """Return a node or relation as `Raw`; return any other value as it is."""
     if isinstance(value, dict) and "_LABEL" in value:
         found = cast("dict[str, Any]", value)
-        return Raw(found["_LABEL"], found)
+        label = found.get(NAME) if found["_LABEL"] == RELATION else str(found.get("id", "")).partition(":")[0]
+        return Raw(str(label), found)
     return cast("Any", value)

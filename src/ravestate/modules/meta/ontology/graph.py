@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any, TypeVar
 
 from ravestate.errors import RuleError
@@ -59,19 +59,14 @@ class Graph:
     def find(self, type: str, properties: Mapping[str, Value]) -> list[Node]:
         """Return all nodes of a type and its subtypes with these properties, oldest first."""
         wanted = self._types.stored(type, properties)
-        tests = ["n.`id` IS NOT NULL"]
-        tests += [f"n.`{key}` IS NULL" if wanted[key] is None else f"n.`{key}` = $p_{key}" for key in wanted]
-        return self._nodes(
-            f"MATCH (n:{self._labels(type)}) WHERE {' AND '.join(tests)} RETURN n",
-            _parameters({key: value for key, value in wanted.items() if value is not None}),
-        )
+        return self._matching(self._types.subtypes(type), wanted)
 
     def get(self, id: str, /) -> Node | None:
         """Return the node with this id; None if memory does not have it."""
         label, _, _ = id.partition(":")
         if label not in self._types:
             return None
-        found = self._nodes(f"MATCH (n:`{label}` {{`id`: $id}}) RETURN n", {"id": id})
+        found = self._nodes(f"MATCH (n:{self._label(label)} {{`id`: $id}}) RETURN n", {"id": id})
         return found[0] if found else None
 
     def update(self, node: Node, properties: Mapping[str, Value]) -> Node:
@@ -83,7 +78,7 @@ class Graph:
 
     def _write(self, node: Node, values: Mapping[str, Any]) -> Node:
         [[raw]] = self._store.write(
-            f"MERGE (n:`{node.type}` {{`id`: $id}}){_setting('n', values)} RETURN n",
+            f"MERGE (n:{self._label(node.type)} {{`id`: $id}}){_setting('n', values)} RETURN n",
             {"id": node.id, **_parameters(values)},
         )
         return Node(node.type, self._types.loaded(node.type, raw.values), node.id)
@@ -102,22 +97,27 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        A person or robot also stays if memory knows more about them than their name.
+        A person or robot also stays if memory knows more about them than their name. The file keeps none of their bytes
+        after the next `purge`, which happens by itself as soon as memory has nothing else to do.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
             self._store.write(
-                f"MATCH (a:`{node.type}` {{`id`: $a}})-[r:`{relation}`]->(b:`{other.type}` {{`id`: $b}}) DELETE r",
+                f"MATCH (a:{self._label(node.type)} {{`id`: $a}})-[r:{self._store.relation(relation)}]->"
+                f"(b:{self._label(other.type)} {{`id`: $b}}) DELETE r",
                 {"a": node.id, "b": other.id},
             )
             if forget and not self._is_wanted(other, ()) and not self._is_known_otherwise(other, node):
-                self.forget(other)
+                self._forget(other)
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> list[Node]:
         """Return the targets of a relation from `node`; with `back`, its sources. The oldest node comes first."""
         self._types.check_end(node.type, relation, back=back)
-        pattern = f"<-[:`{relation}`]-" if back else f"-[:`{relation}`]->"
-        return self._nodes(f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id})
+        edge = f"[r:{self._store.relation(relation)}]"
+        pattern = f"<-{edge}-" if back else f"-{edge}->"
+        return self._nodes(
+            f"MATCH (a:{self._label(node.type)} {{`id`: $id}}){pattern}(b) RETURN b", {"id": _known(node).id}
+        )
 
     def relations(self, node: Node, /) -> list[Relation]:
         """Return all relations of a node: first the relations from the node, then the relations to the node."""
@@ -131,8 +131,8 @@ class Graph:
 
     def _relate(self, node: Node, relation: str, other: Node, values: Mapping[str, Any]) -> None:
         self._store.write(
-            f"MATCH (a:`{node.type}` {{`id`: $a}}), (b:`{other.type}` {{`id`: $b}}) "
-            f"MERGE (a)-[r:`{relation}`]->(b){_setting('r', values)}",
+            f"MATCH (a:{self._label(node.type)} {{`id`: $a}}), (b:{self._label(other.type)} {{`id`: $b}}) "
+            f"MERGE (a)-[r:{self._store.relation(relation)}]->(b){_setting('r', values)}",
             {"a": node.id, "b": other.id, **_parameters(values)},
         )
 
@@ -149,7 +149,7 @@ class Graph:
         self._types.properties(node.type)  # this raises an error if there is no such type
         pattern = "<-[r]-" if back else "-[r]->"
         rows = self._store.read(
-            f"MATCH (a:`{node.type}` {{`id`: $id}}){pattern}(b) RETURN r, b", {"id": _known(node).id}
+            f"MATCH (a:{self._label(node.type)} {{`id`: $id}}){pattern}(b) RETURN r, b", {"id": _known(node).id}
         )
         return [(row[0], row[1]) for row in rows]
 
@@ -213,11 +213,21 @@ class Graph:
             The removed nodes, `node` first; an empty list if memory does not have `node`.
         """
         with self._store.transaction():
-            going = self.only_about(node)
-            for one in going:
-                self._remove(one)
+            going = self._forget(node)
+            if going:
+                self._store.purge()
+        return going
+
+    def purge(self) -> None:
+        """Remove the bytes of forgotten nodes from the file now, not when memory has nothing else to do."""
+        self._store.purge()
+
+    def _forget(self, node: Node) -> list[Node]:
+        going = self.only_about(node)
+        for one in going:
+            self._remove(one)
         if going:
-            self._store.purge()
+            self._store.note_bytes()
         return going
 
     def _is_known_otherwise(self, other: Node, start: Node) -> bool:
@@ -244,7 +254,7 @@ class Graph:
             )
 
     def _remove(self, node: Node) -> None:
-        self._store.write(f"MATCH (n:`{node.type}` {{`id`: $id}}) DETACH DELETE n", {"id": node.id})
+        self._store.write(f"MATCH (n:{self._label(node.type)} {{`id`: $id}}) DETACH DELETE n", {"id": node.id})
 
     # ------------------------------------------------------------------------------------ documents
 
@@ -254,8 +264,7 @@ class Graph:
 
     def export(self) -> dict[str, Any]:
         """Return all nodes and relations as a document for JSON, which `load` reads."""
-        every = (node for type in self._types for node in self._nodes(f"MATCH (n:`{type}`) RETURN n", {}))
-        nodes = sorted(every, key=_age)
+        nodes = self._matching(tuple(self._types), {})
         known = {node.id for node in nodes}
         relations = [
             Relation(node, name, other, values)
@@ -281,8 +290,18 @@ class Graph:
 
     # ------------------------------------------------------------------------------------ internals
 
-    def _labels(self, type: str) -> str:
-        return "|".join(f"`{name}`" for name in self._types.subtypes(type))
+    def _label(self, type: str) -> str:
+        return self._store.labels((type,))
+
+    def _matching(self, types: Sequence[str], wanted: Mapping[str, Any]) -> list[Node]:
+        """Return the nodes of some types with these stored properties, oldest first."""
+        starts = " OR ".join(f"n.`id` STARTS WITH '{type}:'" for type in types)
+        tests = [f"({starts})"]
+        tests += [f"n.`{key}` IS NULL" if wanted[key] is None else f"n.`{key}` = $p_{key}" for key in wanted]
+        return self._nodes(
+            f"MATCH (n:{self._store.labels(types)}) WHERE {' AND '.join(tests)} RETURN n",
+            _parameters({key: value for key, value in wanted.items() if value is not None}),
+        )
 
     def _nodes(self, statement: str, parameters: Mapping[str, Any]) -> list[Node]:
         """Return the nodes that a statement finds, each node once, oldest first."""

@@ -136,6 +136,7 @@ class Memory:
     load = _operation(Graph.load)
     undeclared = _operation(Graph.undeclared)
     tidy = _operation(Graph.tidy)
+    purge = _operation(Graph.purge)
 
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
         """Run several operations as one transaction: either all operations take effect, or none.

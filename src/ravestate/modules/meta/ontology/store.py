@@ -12,7 +12,7 @@ from ravestate.errors import PlatformError
 from .types import Types
 
 FORMAT = 1
-"""The version of the format in which nodes and relations are stored; a new format has a greater number."""
+"""The version of the format of nodes and relations on a server and in a document; a new format has a greater number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,12 +27,21 @@ class Store(Protocol):
     """A graph database; only one thread uses it.
 
     Statements are Cypher that Neo4j 5, ladybug and ArcadeDB all read. These databases have different functions for
-    labels and types, so statements return whole nodes and relations. Values are always parameters. Names of types,
+    labels and types, so statements return whole nodes and relations. `labels` and `relation` say how a database tells
+    the types of nodes and relations apart. Values are always parameters. Names of types,
     properties and relations need no quotes, because they have only letters, digits and ``_``.
     """
 
     def prepare(self, types: Types) -> None:
         """Create the missing tables, columns or indexes for the types, properties and relations."""
+        ...
+
+    def labels(self, types: Sequence[str]) -> str:
+        """Return the labels that stand in a pattern for nodes of these types. Other nodes may have them, too."""
+        ...
+
+    def relation(self, name: str) -> str:
+        """Return the label and properties that stand in a pattern for a relation of this name."""
         ...
 
     def read(self, statement: str, parameters: Mapping[str, Any]) -> list[Sequence[Any]]:
@@ -50,8 +59,22 @@ class Store(Protocol):
         """
         ...
 
+    def note_bytes(self) -> None:
+        """Note, in the same transaction, that deleted nodes leave bytes behind: `rest` or `close` removes them.
+
+        If the process ends before that, `rest` removes them after the next opening.
+        """
+        ...
+
     def purge(self) -> None:
-        """Remove the bytes that deleted nodes have left behind, as far as this process can."""
+        """Remove the bytes that deleted nodes have left behind, as far as this process can.
+
+        In a transaction, this follows the commit. Without such bytes, do nothing.
+        """
+        ...
+
+    def rest(self) -> None:
+        """Do the work that can wait until nobody waits for the store."""
         ...
 
     def tidy(self) -> None:
@@ -67,14 +90,15 @@ class Store(Protocol):
         ...
 
 
-def check_format(place: str, found: object) -> None:
-    """Refuse a memory of a newer format than this version of ravestate knows.
+def check_format(place: str, found: object, newest: int) -> int:
+    """Return the format of a memory; refuse a newer format than `newest`, which this version of ravestate knows.
 
     Raises:
         PlatformError: The format is newer.
     """
-    if not isinstance(found, int) or found > FORMAT:
+    if not isinstance(found, int) or found > newest:
         raise PlatformError(
-            f"memory {place} is of format {found!r}, and this version of ravestate knows up to {FORMAT}: install a newer "
+            f"memory {place} is of format {found!r}, and this version of ravestate knows up to {newest}: install a newer "
             "ravestate, or name another memory with --set ontology.path=FILE. Nothing was changed"
         )
+    return found

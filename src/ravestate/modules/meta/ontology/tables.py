@@ -1,19 +1,17 @@
-"""The tables that ladybug needs for types and relations."""
+"""The tables and columns that ladybug needs for types and relations."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from ravestate.errors import PlatformError
 
-from .store import FORMAT, check_format
+from .database import FILE_FORMAT, META, NODE, RELATION, meta_table, node_table, relation_table
+from .store import check_format
 from .types import Kind, Types
 
 Execute = Callable[[str], list[list[Any]]]
-
-META = "_ravestate"
-"""The table that stores the format version. No user's type begins with ``_``."""
 
 COLUMNS: dict[Kind, str] = {
     "text": "STRING",
@@ -25,67 +23,74 @@ COLUMNS: dict[Kind, str] = {
 }
 
 
+def has_old_format(execute: Execute, place: str) -> bool:
+    """Return whether the database has an older format, and so must be copied before its use.
+
+    Args:
+        execute: A function that runs a statement and returns its rows.
+        place: The database's path, for messages.
+
+    Raises:
+        PlatformError: The database belongs to something else, or has a newer format.
+    """
+    tables = _tables(execute)
+    if META in tables:
+        found = execute(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`")
+        return check_format(place, found[0][0] if found else None, FILE_FORMAT) < FILE_FORMAT
+    if tables:
+        raise PlatformError(
+            f"{place} is a ladybug database of another program (it has {', '.join(sorted(tables)[:3])}): name another file "
+            "with --set ontology.path=FILE. Nothing was changed"
+        )
+    return False
+
+
 def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
     """Yield the statements that create missing tables and columns.
 
     Args:
         execute: A function that runs a statement and returns its rows.
-        types: The types that need tables.
+        types: The types that need columns.
         place: The database's path, for messages.
 
     Raises:
-        PlatformError: The database belongs to something else, has a newer format, or has a property of another kind.
+        PlatformError: The database has a property of another kind.
     """
-    tables = {str(row[0]) for row in execute("CALL show_tables() RETURN name")}
-    if META in tables:
-        found = execute(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`")
-        check_format(place, found[0][0] if found else None)
-    elif tables:
-        raise PlatformError(
-            f"{place} is a ladybug database of another program (it has {', '.join(sorted(tables)[:3])}): name another file "
-            "with --set ontology.path=FILE. Nothing was changed"
-        )
-    else:
-        yield f"CREATE NODE TABLE `{META}` (`key` STRING PRIMARY KEY, `value` INT64)"
-        yield f"CREATE (:`{META}` {{`key`: 'format', `value`: {FORMAT}}})"
-    for name in types:
-        columns = types.properties(name)
-        if name in tables:
-            yield from _missing_columns(execute, name, columns, place)
+    tables = _tables(execute)
+    if META not in tables:
+        yield from meta_table()
+    of_nodes = _owned((name, types.properties(name)) for name in types)
+    of_relations = _owned((name, relation.properties) for name, relation in types.relations.items())
+    for table, owned, create in ((NODE, of_nodes, node_table), (RELATION, of_relations, relation_table)):
+        if table in tables:
+            yield from _missing_columns(execute, table, owned, place)
         else:
-            yield f"CREATE NODE TABLE `{name}` ({', '.join(['`id` STRING PRIMARY KEY', *_columns(columns)])})"
-    for name, relation in types.relations.items():
-        pairs = types.pairs(name)
-        if name in tables:
-            present = {(row[0], row[1]) for row in execute(f"CALL show_connection('{name}') RETURN *")}
-            for source, target in pairs:
-                if (source, target) not in present:
-                    yield f"ALTER TABLE `{name}` ADD FROM `{source}` TO `{target}`"
-            yield from _missing_columns(execute, name, relation.properties, place)
-        else:
-            ends = [f"FROM `{source}` TO `{target}`" for source, target in pairs]
-            yield f"CREATE REL TABLE `{name}` ({', '.join([*ends, *_columns(relation.properties)])})"
+            yield create({name: COLUMNS[kind] for name, (kind, _) in owned.items()})
 
 
 def undeclared_types(execute: Execute, types: Types) -> list[str]:
     """Return the names of the types that have nodes in the database but are not in `types`."""
-    tables = execute("CALL show_tables() RETURN name, type")
-    unknown = {str(name) for name, kind in tables if kind == "NODE"} - {META, *types}
-    return sorted(name for name in unknown if execute(f"MATCH (n:`{name}`) RETURN n.`id` LIMIT 1"))
+    found = {str(id).partition(":")[0] for [id] in execute(f"MATCH (n:`{NODE}`) RETURN n.`id`")}
+    return sorted(found - {*types})
 
 
-def _missing_columns(execute: Execute, table: str, properties: Mapping[str, Kind], place: str) -> Iterator[str]:
+def _tables(execute: Execute) -> set[str]:
+    return {str(row[0]) for row in execute("CALL show_tables() RETURN name")}
+
+
+def _owned(owners: Iterable[tuple[str, Mapping[str, Kind]]]) -> dict[str, tuple[Kind, str]]:
+    """Return the kind of each property, and its last owner: the declaration gives a name only one kind."""
+    return {name: (kind, owner) for owner, properties in owners for name, kind in properties.items()}
+
+
+def _missing_columns(execute: Execute, table: str, owned: Mapping[str, tuple[Kind, str]], place: str) -> Iterator[str]:
     present = {row[0]: row[1] for row in execute(f"CALL table_info('{table}') RETURN name, type")}
-    for name, kind in properties.items():
+    for name, (kind, owner) in owned.items():
         if name not in present:
             yield f"ALTER TABLE `{table}` ADD `{name}` {COLUMNS[kind]}"
         elif present[name] != COLUMNS[kind]:
             held = next((k for k, column in COLUMNS.items() if column == present[name]), present[name])
             raise PlatformError(
-                f"memory {place} has {table}.{name} as {held}, but the types say {kind}: write {name}: {held}, or give the "
+                f"memory {place} has {owner}.{name} as {held}, but the types say {kind}: write {name}: {held}, or give the "
                 "property another name. Nothing was changed"
             )
-
-
-def _columns(properties: Mapping[str, Kind]) -> list[str]:
-    return [f"`{name}` {COLUMNS[kind]}" for name, kind in properties.items()]

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from typing import TypeVar
 
 from .store import Store
 
 T = TypeVar("T")
+
+PAUSE = 0.5
+"""The seconds without a job after which the store does the work that can wait."""
+
+LONGEST = 10.0
+"""The maximum number of seconds that this work waits if the jobs follow each other without a pause."""
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
@@ -19,7 +26,7 @@ _lock = threading.Lock()
 
 
 class StoreWorker:
-    """A thread that runs jobs on a store, one at a time.
+    """A thread that runs jobs on a store, one at a time. In a pause, the store does the work that can wait.
 
     A process opens a file once for all contexts: a second opening would succeed and ruin the file. The thread is a
     daemon, so a server that hangs cannot keep the process alive.
@@ -87,8 +94,23 @@ class StoreWorker:
                 del _closing[self._key]
 
     def _work(self) -> None:
-        while (job := self._jobs.get()) is not None:
+        since: float | None = None  # the time of the first job after the last rest
+        while True:
+            try:
+                job = self._jobs.get(timeout=None if since is None else PAUSE)
+            except Empty:
+                since = self._rest()
+                continue
+            if job is None:
+                return
             job()
+            since = since or time.monotonic()
+            if time.monotonic() - since > LONGEST:
+                since = self._rest()
+
+    def _rest(self) -> None:
+        if self._store.exception() is None:
+            self._store.result().rest()
 
     def _close(self) -> None:
         if self._store.exception() is None:

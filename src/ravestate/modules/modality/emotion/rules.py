@@ -9,7 +9,6 @@ from ravestate.language.acts import heard
 from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.feelings import SORROW_LASTS
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio
@@ -34,7 +33,6 @@ def learn(ctx: rs.RuleContext) -> None:
     try:
         for name in ("acts", "feelings"):
             bundled_matcher(name).load()
-        give_back()
     except ModelMissing as error:
         warn_once(ctx.log, error)
 

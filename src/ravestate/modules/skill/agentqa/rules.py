@@ -11,7 +11,6 @@ import ravestate as rs
 from ravestate.errors import PlatformError, RavestateError, RuleError
 from ravestate.language.acts import acts
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.nlp.analysis import Analysis
@@ -52,7 +51,6 @@ def load(ctx: rs.RuleContext) -> None:
         with contextlib.suppress(PlatformError):  # the first question raises the error again
             try:
                 router_of(told).load()
-                give_back()
             except ModelMissing as error:
                 warn_once(ctx.log, error)
 
@@ -106,8 +104,11 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
-async def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing."""
+def heed(ctx: rs.RuleContext) -> None:
+    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing.
+
+    The rule runs in a thread, because it waits for the normal form and the encoder.
+    """
     told, (count, _) = ctx[life], ctx[turns]
     ctx[turns] = (count + 1, ctx.now)
     found = None if told is None else remark_in(ctx.payload(rawio.input.changed), told)

@@ -7,7 +7,6 @@ import contextlib
 import ravestate as rs
 from ravestate.errors import DeclarationError, DeclarationErrors, PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import nlp, rawio, verbaliser
 
@@ -26,7 +25,6 @@ def load(ctx: rs.RuleContext) -> None:
     with contextlib.suppress(PlatformError):  # the first question raises the error again
         try:
             answerer_of(ctx.settings).load()
-            give_back()
         except ModelMissing as error:
             warn_once(ctx.log, error)
 

@@ -327,6 +327,8 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 
     async def write(memory: ontology.Memory | None) -> Response:
         after = await _written(user, None, memory)
+        if memory is not None and not after.talk.trouble:
+            await memory.purge()  # the user has asked for this, so the confirmation waits
         return Response(say("forget_failed" if after.talk.trouble else "strike", after.known), after)
 
     return Response(None, user, write)

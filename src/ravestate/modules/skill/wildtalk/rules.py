@@ -10,7 +10,6 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.chat import Backend, Message, Role
-from ravestate.language.heap import give_back
 from ravestate.language.loading import wait_for_prompt
 from ravestate.language.openai import OpenAIBackend
 from ravestate.modules import interloc, nlp, rawio
@@ -84,7 +83,6 @@ def learn(ctx: rs.RuleContext) -> None:
     wait_for_prompt()
     try:
         learn_all()
-        give_back()
     except ModelMissing as error:
         warn_once(ctx.log, error)
     except PlatformError as error:

@@ -1,0 +1,165 @@
+"""No byte of a forgotten node stays in the file; only a person who asked to be forgotten waits for that."""
+
+from __future__ import annotations
+
+import logging
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from modules.meta.ontology.conftest import Open
+from modules.meta.ontology.replacing import NEVER, OLD, replaced
+from ravestate.modules import ontology
+from ravestate.modules.meta.ontology import embedded, worker
+from ravestate.modules.meta.ontology.embedded import EmbeddedStore
+
+HERE = Path(__file__).parent
+
+
+def holds(path: Path, trace: bytes = OLD.encode()) -> bool:
+    """Return whether a file of the memory has these bytes."""
+    return any(trace in file.read_bytes() for file in path.parent.iterdir())
+
+
+@pytest.fixture
+def rewrites(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """Return a list to which each rewriting of a file adds its path."""
+    done: list[Path] = []
+    rewrite = EmbeddedStore._rewrite
+
+    def note(store: EmbeddedStore) -> None:
+        done.append(store._path)
+        rewrite(store)
+
+    monkeypatch.setattr(EmbeddedStore, "_rewrite", note)
+    return done
+
+
+@pytest.fixture
+def rests(monkeypatch: pytest.MonkeyPatch) -> threading.Semaphore:
+    """Return a semaphore that is released after each rest of a store."""
+    done = threading.Semaphore(0)
+    rest = EmbeddedStore.rest
+
+    def note(store: EmbeddedStore) -> None:
+        rest(store)
+        done.release()
+
+    monkeypatch.setattr(EmbeddedStore, "rest", note)
+    return done
+
+
+def test_a_replaced_value_is_purged_in_the_first_pause(
+    tmp_path: Path, open_here: Open, rests: threading.Semaphore, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "PAUSE", NEVER)
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    ada, new = replaced(memory)
+    assert rewrites == []  # the answer has not waited
+    assert holds(path)
+    monkeypatch.setattr(worker, "PAUSE", 0.01)
+    memory.get(ada.id).result()
+    assert rests.acquire(timeout=60)
+    assert rewrites == [path]
+    assert not holds(path)
+    assert memory.related(ada, "lives_in").result() == [new]
+    assert rests.acquire(timeout=60)
+    assert rewrites == [path]  # a pause with nothing to purge rewrites nothing
+
+
+def test_operations_without_a_pause_do_not_put_the_purge_off_for_ever(
+    tmp_path: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "PAUSE", NEVER)
+    memory = open_here(path=tmp_path / "memory.lbug")
+    replaced(memory)
+    monkeypatch.setattr(worker, "LONGEST", 0.0)
+    memory.find("City").result()
+    assert rests.acquire(timeout=60)
+    assert not holds(tmp_path / "memory.lbug")
+
+
+def test_purge_waits_until_no_byte_is_left(
+    tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "PAUSE", NEVER)
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    replaced(memory)
+    memory.purge().result()
+    assert not holds(path)
+    memory.purge().result()
+    assert rewrites == [path]
+
+
+def test_closing_purges(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker, "PAUSE", NEVER)
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    replaced(memory)
+    assert holds(path)
+    memory.close().result()
+    assert not holds(path)
+
+
+@pytest.fixture
+def killed(tmp_path: Path) -> Iterator[Path]:
+    """A memory whose process was killed after a value was replaced, and before the purge."""
+    path = tmp_path / "memory.lbug"
+    command = [sys.executable, HERE / "replacing.py", path]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stdout.readline() == "replaced\n"
+        process.kill()
+    yield path
+
+
+def test_a_kill_before_the_purge_puts_it_off_to_the_next_start(
+    killed: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert holds(killed)
+    monkeypatch.setattr(worker, "PAUSE", 0.01)
+    memory = open_here(path=killed)
+    memory.find("City").result()  # there has been a pause by the second rest, even if the first came before the types
+    assert rests.acquire(timeout=60) and (not holds(killed) or rests.acquire(timeout=60))
+    assert not holds(killed)
+    assert [city["name"] for city in memory.find("City").result()] == ["London"]
+
+
+def test_a_purge_that_failed_is_done_after_the_next_start(
+    killed: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError("no more space")
+
+    monkeypatch.setattr(embedded, "copy_database", fail)
+    open_here(path=killed).close().result()
+    assert "the file still has their bytes: no more space" in caplog.text
+    assert holds(killed)
+    monkeypatch.undo()
+    caplog.clear()
+    open_here(path=killed).close().result()
+    assert not holds(killed)
+    assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
+
+
+def test_a_deletion_that_is_rolled_back_leads_to_no_purge(
+    tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(worker, "PAUSE", NEVER)
+    memory = open_here(path=tmp_path / "memory.lbug")
+    ada = memory.create("Person", name="Ada").result()
+
+    def forget_and_fail(graph: ontology.Graph) -> None:
+        graph.forget(ada)
+        raise ValueError
+
+    with pytest.raises(ValueError):  # the operation's own error
+        memory.together(forget_and_fail).result()
+    memory.close().result()
+    assert rewrites == []
+    assert open_here(path=tmp_path / "memory.lbug").get(ada.id).result() == ada
