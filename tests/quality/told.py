@@ -9,7 +9,7 @@ from quality.measure import Result
 from ravestate.modules.skill.persqa.profile import learn
 from ravestate.modules.skill.persqa.topics import NAME
 
-SETS = ("told_rows", "told_blind_rows", "told_fresh_rows", "told_later_rows")
+SETS = ("told_rows", "told_blind_rows", "told_fresh_rows", "told_later_rows", "told_typed_rows", "names_rows")
 
 
 def changes(sentence: str) -> frozenset[str]:

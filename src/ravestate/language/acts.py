@@ -31,6 +31,11 @@ _NEGATION = re.compile(r"\b(?:do not|don['’]?t|did not|didn['’]?t|not|never)
 _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
 _ASKED = re.compile(r"(?:will|can|could|would|should|do|did|are) (?:i|you|we|they)\b", re.IGNORECASE)
 """The beginning of a question. The question "will you be here tomorrow" is not a farewell."""
+_PLAYFUL = re.compile(
+    r"\b(?:lol|lmao|rofl|jk|(?:just |only )kidding|joking|ha(?:ha)+h?|he(?:he)+|hihi|kinda funny|but (?:\w+ )*(?:funny|cute|sweet|love you"
+    r"|like you|lovable|charming))\b|[:;]-?[)DPp](?!\w)|[😂🤣😄😜😉😅😆😁]",
+    re.IGNORECASE,
+)
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
@@ -82,6 +87,11 @@ def only(act: str, sentences: Sequence[str]) -> bool:
         return True
     more = "?" in sentences[-1] or others[0] in _SUBJECTS or shape(" ".join(others))[3] > 0
     return len(others) <= ADDRESS_WORDS and not more and not any(part.differs for part in parts)
+
+
+def is_playful(text: str) -> bool:
+    """Return whether a text has a sign of play, so that an insult in it is banter: *you are hopeless lol*."""
+    return _PLAYFUL.search(text) is not None
 
 
 def _read(sentences: Sequence[str]) -> list[_Sentence]:

@@ -106,6 +106,12 @@ _SUPPOSING = word_set("think hope guess bet believe glad")
 """Words after which *ur* means *you are* if one more word ends the sentence: *I think ur funny*."""
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
+_PEOPLE = word_set(
+    "mother mum mom father dad sister brother wife husband partner boyfriend girlfriend fiance fiancee daughter son child kid "
+    "baby friend mate buddy cousin uncle aunt auntie nan gran grandma grandpa grandmother grandfather granddaughter grandson "
+    "niece nephew boss colleague neighbour neighbor flatmate roommate dog puppy cat kitten pet rabbit hamster horse parrot"
+)
+"""Words after which, with *my* before them, a name may follow: *my brother josh*."""
 _INTRODUCING = ("name is", "name's", "this is")
 """Words before a name. An unknown word after them is probably a name, not a typing error."""
 _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
@@ -305,7 +311,8 @@ def _by_lexicon(word: str, before: str, after: _Piece | None, lexicon: Lexicon) 
     """Mend the typing errors of a word in lower case; write a name with its capital."""
     stem, mark, end = word.partition("'")
     last = before.rpartition(" ")[2]
-    placed = last in _PLACED or before.endswith(_INTRODUCING)
+    own = before.startswith(("my ", "our ")) and last in _PEOPLE
+    placed = own or last in _PLACED or before.endswith(_INTRODUCING)
     named = lexicon.name(stem)
     if named == stem and (placed or last in _NAMING):
         named = lexicon.possible_name(stem)

@@ -79,7 +79,10 @@ def test_the_answer_is_about_the_value_in_the_question() -> None:
     assert told(topic, "what is your favourite colour", **facts) == ("My colour is blue.",)
     assert told(topic, "do you like ice cream", **facts) == ("Yes, ice cream.",)
     assert told(topic, "do you like rust", **facts) == ("Not rust.",)
-    assert told(topic, "do you like steam", **facts) == ("I like tea and ice cream.",)  # not tea
+    assert told(topic, "do you like ice creams", **facts) == ("Yes, ice cream.",)
+    assert told(topic, "do you like steam", **facts) is None  # not tea: another module has an opinion
+    assert told(topic, "what is your favourite bird", **facts) is None
+    assert told(topic, "what do you like", **facts) == ("I like tea and ice cream.",)
 
 
 def test_a_fact_that_begins_a_sentence_has_a_capital() -> None:

@@ -203,3 +203,10 @@ def test_the_agent_asks_for_the_name_of_a_relative(file: Path, look: Look, told:
         assert meant(answers(sim, "they are called Max and Tom"), "learned")
         assert answers(sim, told) == "I see."  # they are known
     assert look()["Ada"] == {"sibling_of": ["Max", "Tom"]}
+
+
+def test_a_job_that_was_quit_is_spoken_of_as_a_job(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("I work as a waiter")
+        sim.say("I quit my job")
+        assert "no job" in answers(sim, "what is my job?").lower()

@@ -74,7 +74,7 @@ class EmbeddedStore:
         self._log_good = 0  # the size of the log (bytes) after the last acknowledged write
         self._stuck = ""  # the reason why the last write failed; empty while writes succeed
         self._within = False  # whether a transaction is open
-        self._has_bytes = False  # whether the file has bytes of deleted nodes
+        self._has_bytes = False  # whether the file still has bytes of deleted nodes
         self._has_failed = False  # whether a purge has failed after the last deletion or opening
         self._purge_next = False  # whether a purge follows the open transaction
         self._prepared: Types | None = None  # the types whose tables exist

@@ -97,8 +97,8 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
 
-        A person or robot also stays if memory knows more about them than their name. The file keeps none of their bytes
-        after the next `purge`, which happens by itself as soon as memory has nothing else to do.
+        A person or robot also stays if memory knows more about them than their name. The file keeps none of the forgotten
+        bytes after the next `purge`, which happens by itself as soon as memory has nothing else to do.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():

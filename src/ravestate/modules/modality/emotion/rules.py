@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 
 import ravestate as rs
-from ravestate.language.acts import heard
+from ravestate.language.acts import heard, is_playful
 from ravestate.language.addressing import addressed
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.feelings import SORROW_LASTS
@@ -57,6 +57,8 @@ def be_moved(ctx: rs.RuleContext) -> None:
         likely: dict[Feeling, float] = {name: getattr(settings, name) for name in OCCASIONS}
         said = [addressed(sentence, names) for sentence in heard(text, names)]
         feeling = by_chance(said, likely, ctx.random)
+    if feeling == "sad" and is_playful(text):
+        feeling = None  # "you are hopeless lol" hurts nobody
     ctx[sorrow] = left
     if feeling is not None and not (left and feeling in CHEERFUL):
         ctx.emit(SIGNALS[feeling])

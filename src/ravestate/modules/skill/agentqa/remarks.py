@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ravestate.language import plain
-from ravestate.language.acts import heard
+from ravestate.language.acts import heard, is_playful
 from ravestate.language.addressing import addressed
 from ravestate.modules.meta.nlp.analysis import Analysis
 
@@ -17,6 +17,9 @@ from .life import Life
 SURE = 0.9
 """The least confidence in an insult. Banter among friends resembles insults."""
 _YOU = frozenset(["you", "your"])
+_I = frozenset(["i", "me", "my", "myself"])
+_ORDERS = frozenset(["shut", "go", "get", "fuck", "piss", "screw", "stop"])
+"""The first words of insulting orders."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +66,21 @@ def act_in(analysis: Analysis, life: Life) -> Remark | None:
             found = analysis.acts.get(known) or analysis.feelings.get(known)
             aside = known not in analysis.acts and len(analysis.sentences) > 1
             sure = found is not None and found.score >= SURE and "say_word" not in analysis.asks  # "say damn"
+            if (
+                known == "insult"
+                and found is not None
+                and (is_playful(analysis.text) or _of_oneself(found.text, analysis))
+            ):
+                continue
             if found is not None and sure and not (aside and _YOU.isdisjoint(plain(found.text).split())):
                 return Remark(name, plain(found.text))
     return None
+
+
+def _of_oneself(text: str, analysis: Analysis) -> bool:
+    """Return whether harsh words are about the user: *dumb, I feel so dumb*."""
+    words, all_words = plain(text).split(), set(plain(analysis.text).split())
+    return _YOU.isdisjoint(words) and words[0] not in _ORDERS and not _I.isdisjoint(all_words)
 
 
 @lru_cache(maxsize=256)

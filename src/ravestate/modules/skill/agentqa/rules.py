@@ -14,6 +14,7 @@ from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
 from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .itself import recall, settle
@@ -29,6 +30,11 @@ CERTAIN = 0.7
 STATED = 0.85
 """The same threshold for a statement. It is higher, because a statement may resemble a question: *I don't know what to
 say*."""
+STRAY = 0.9
+"""The same threshold for a question that does not mention the agent, and asks for advice: *what if I forget my lines*."""
+_OWN = frozenset(("what_if", "how_to", "should", "say_what", "recommend", "worth", "predict"))
+"""Kinds of questions (asks.yaml) about the user's own life."""
+_YOU = frozenset(("you", "your", "yours", "yourself"))
 TURNS = 6
 """The number of utterances that a user makes before the agent invites questions about itself."""
 
@@ -92,8 +98,12 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
-    if {"choose", "permit"} & seen.asks.keys() and " or " not in found.example:
+    leave = "permit" in seen.asks and seen.question is not QuestionWord.OBJECT  # "what can I call you" asks for a name
+    if (leave or "choose" in seen.asks) and " or " not in found.example:
         return rs.Resign("the user names options to choose from, or asks for leave")
+    own = _YOU.isdisjoint(found.question.split()) and not _OWN.isdisjoint(seen.asks)
+    if own and found.score < STRAY:
+        return rs.Resign(f"the user asks about their own life, not about the agent: {', '.join(seen.asks)}")
     certain = CERTAIN if seen.question is not None or "?" in seen.text else STATED
     if seen.move is not None and found.score < certain and "self" not in (seen.move.name, seen.move.second):
         reason = f"{found.topic} is only likely, and the utterance calls for another kind of reply: {seen.move.name}"

@@ -28,8 +28,10 @@ def telling(
         for it, that in _pairs(facts.get(fact, ())):
             if _names(question, it):
                 return _filled(phrases, {**values, "it": it, "that": that})
-    if topic.unnamed and _PARTICULAR.match(question):
+    if _PARTICULAR.match(question) and (topic.unnamed or topic.named):
         return _filled(topic.unnamed, values) or None
+    if topic.named and not topic.unnamed and _FAVOURITE.search(question):
+        return None
     return _filled(topic.phrases, values) or _filled(topic.otherwise, values) or None
 
 
@@ -88,8 +90,16 @@ def _pairs(fact: Fact) -> list[tuple[str, str]]:
 
 
 def _names(question: str, it: str) -> bool:
-    """Return whether a question names a thing; *can you sing* names *singing*."""
-    return re.search(rf"\b{re.escape(it.lower().removesuffix('ing'))}(?:ing)?\b", question) is not None
+    """Return whether a question names a thing; *can you sing* names *singing*, *do you like rain* names *rainy days*."""
+    if re.search(rf"\b{re.escape(it.lower().removesuffix('ing'))}(?:ing)?\b", question):
+        return True
+    liked = _LIKED.search(question)
+    words = _stems(liked[1]) - _FILLING if liked else set[str]()
+    return bool(words) and words <= _stems(it.lower())
+
+
+def _stems(text: str) -> set[str]:
+    return {re.sub(r"y$|ing$", "", word.removesuffix("s")) for word in re.findall(r"[a-z-]+", text)}
 
 
 def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:
@@ -103,9 +113,18 @@ def _parameters(phrase: str) -> set[str]:
 
 
 _PARTICULAR = re.compile(
-    r"(?:can|could|do|are) you (?!(?:[\w-]+ )*(?:have|any|anything|anybody|some|something|everything|what|which|or)\b)"
+    r"(?:(?:and|so|but|well|oh|then) )*(?:can|could|do|are) you (?!(?:[\w-]+ )*(?:have|any|anything|anybody|some|something|everything|what|which|or)\b)"
 )
 """First words of a yes/no question about one thing."""
+_FAVOURITE = re.compile(
+    r"\bfavou?rite (?!things?\b|of\b)\w+|\b(?:what|which)(?: (?:kind|sort)s? of)? \w+ do you (?:like|love|prefer|hate)\b"
+)
+"""A question for the favourite of one kind: *what is your favourite bird*, *which bird do you like best*."""
+_LIKED = re.compile(r"\b(?:like|love|enjoy|hate|fond of|into|mind) (.+)$")
+"""The thing in *do you like rain*."""
+_FILLING = frozenset(
+    ("it", "when", "the", "a", "an", "to", "it'", "really", "very", "much", "too", "also", "weather", "outside")
+)
 _QUESTION_AT_THE_END = re.compile(r"(?<=[.!…])\s+[^.!?…]+\?$")
 _BEGINNING = re.compile(r"^\W*\w|[.!?…:] +\w")
 """The first letter of a sentence. It may be part of a fact."""

@@ -48,7 +48,7 @@ def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
         place = next((phrase for phrase in said.phrases if phrase.preposition in ("at", "with", "for")), None)
         employer = value_of(reader.written(place), TOPICS["employer"], reader.seen) if place else None
         return {"employer": (employer,)} if topic == "occupation" and employer else {topic: ()}
-    if said.negated or _is_embedded(reader, said) or is_limited(reader, said):
+    if said.negated or _is_embedded(reader, said) or is_limited(reader, said) or is_brief(said):
         return {}
     predicate = predicate.removeprefix("have to ")
     first, _, second = predicate.partition(" ")
@@ -107,6 +107,7 @@ def _has_more(reader: Reader, said: nlp.Statement) -> bool:
     verb = reader.verb(said)
     verbs = [verb, *reader.tree.ancestors(verb)] if verb else []
     purposes = [word for word in reader.tree.children_of(verbs, "advcl", "xcomp") if word not in verbs]
+    purposes = [word for word in purposes if word.lemma not in WORDS["careers"]]
     infinitive = any(word.low == "to" for word in reader.tree.children_of(purposes, "aux"))
     return infinitive or any(len(reader.tree.children(one, "dobj", "dative", "oprd")) > 1 for one in verbs)
 
@@ -124,7 +125,7 @@ def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
     noun = NOUNS.get(said.object.head, "") if said.object.of("I") else ""
     recent = reader.recent if reader.recent in WORDS["changeable"] and said.object == new else ""
     topic = next(iter(topics), noun or recent)
-    return Link(topic, new) if topic in WORDS["changeable"] else None
+    return Link(topic, new, sure=False) if topic in WORDS["changeable"] else None
 
 
 def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
@@ -170,6 +171,11 @@ def is_limited(reader: Reader, said: nlp.Statement) -> bool:
         *(one.lower() for had in reader.known.values() for one in had),
     }
     return bool(adverbs - particles or (NOW - {"now"}) & set(said.when.lower().split()))
+
+
+def is_brief(said: nlp.Statement) -> bool:
+    """Return whether a statement holds only for a while: *I quit Bosch for the day*."""
+    return any(one.preposition == "for" and one.head in WORDS["leisure"] for one in said.phrases)
 
 
 def denied_beside(reader: Reader, topic: str, told: Collection[str]) -> tuple[str, ...]:

@@ -32,6 +32,19 @@ def nouns() -> Matcher:
 
 
 @cache
+def frames() -> Matcher:
+    """Return the classifier of sentences with a stand-in for their value. It may not be loaded yet."""
+    found = read_examples(_FOLDER / "frames.yaml")
+    return Matcher(found.classes, found.none)
+
+
+def kind_of(value: str) -> str:
+    """Return the class of nouns that a value fits best; empty if unsure."""
+    ranked = nouns().ranked(value)
+    return ranked[0].name if ranked else ""
+
+
+@cache
 def acts() -> Matcher:
     """Return the classifier of the user's reactions to the agent's questions. It may not be loaded yet."""
     found = read_examples(_FOLDER / "acts.yaml")
@@ -52,10 +65,11 @@ def is_remark(value: str) -> bool:
 
 
 def load() -> None:
-    """Load both classifiers, unless they are loaded.
+    """Load the classifiers, unless they are loaded.
 
     Raises:
         PlatformError: The sentence model is missing.
     """
     nouns().load()
     acts().load()
+    frames().load()

@@ -11,16 +11,15 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
+from .being import being_in, beside_name
 from .changes import denied_beside, denied_by, ended_by, is_partial, renamed_in, switched_in
-from .kinds import likeness
+from .frames import framed_in
 from .links import Link, predicate_of, pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
-from .topics import ASKS, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
-from .values import is_gerund, number_in, value_of
+from .topics import ASKS, LASTING, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
+from .values import is_gerund, value_of
 from .wording import Facts, among, without
 
-LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
-"""Topics whose facts may be in the past tense: *I studied law*."""
 _CALLED = frozenset(["be", "be called", "be named", "be spelled", "be spelt", "be written"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _TURN = re.compile(
@@ -52,6 +51,7 @@ class Reader:
         self.seen, self.tree, self.known, self.recent = seen, seen.tree, known or {}, recent
         self.words = {word.low for word in seen.tree.words}
         self.denies_all = bool(self.words & _NONE)
+        self.mistaken = not self.words.isdisjoint({"mistake", "mistakenly", "wrongly"})  # "she calls me Al by mistake"
         self.asked = asked
         self._was_child = any(
             one.subject.person == "I" and one.verb == "be" and one.past and one.object.head in WORDS["young"]
@@ -92,6 +92,11 @@ class Reader:
                     if values and _INSTEAD.search(self.tree.text):
                         told.pop(link.topic, None)
                     _add(told, link.topic, values)
+        people = {value for topic, values in named_in(self) if topic != NAME for value in values}
+        for topic in [
+            topic for topic in told if TOPICS[topic].kind not in ("people", "name")
+        ]:  # "a fish named Bubbles"
+            told[topic] = without(told[topic], people)
         for topic, values in named_in(self):
             if topic not in gone and (topic != NAME or topic not in told):
                 _add(told, topic, values)
@@ -174,7 +179,7 @@ class Reader:
             return False  # "I was about to move"
         if any(phrase.preposition == "in" and phrase.head in WORDS["fiction"] for phrase in said.phrases):
             return False
-        if self.denies_all or "not_meant" in self.seen.acts or is_partial(self, said):
+        if self.denies_all or self.mistaken or "not_meant" in self.seen.acts or is_partial(self, said):
             return False
         if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
             return False  # "when I live in Paris, I will eat cheese"
@@ -188,8 +193,13 @@ class Reader:
             aux.low in ("would", "'d") for aux in self.tree.children_of(likes, "aux")
         )
 
-    def links(self, said: nlp.Statement) -> Iterator[Link]:
-        """Yield the topics of a statement."""
+    def links(self, said: nlp.Statement) -> list[Link]:
+        """Return the topics of a statement: by the table, or else by the words around its values."""
+        listed = list(self._listed(said))
+        framed = None if any(map(self.values, listed)) else framed_in(self, said)
+        return [*listed, framed] if framed else listed
+
+    def _listed(self, said: nlp.Statement) -> Iterator[Link]:
         subject, object, predicate = said.subject, said.object, predicate_of(said)
         if subject.person == "I":
             yield from self._of_user(said)
@@ -204,10 +214,10 @@ class Reader:
                 sure = (
                     bool(object.names) or (subject.head == "name" and subject.owner) or TOPICS[topic].kind != "people"
                 )
-                if subject.names and subject.head != "name":
+                if subject.names and subject.head not in ("name", ""):
                     return  # "my friends Ada and Bob, and my dog is called Rex"
                 yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, bool(sure))
-                yield from self._beside_name(said) if topic == NAME else ()
+                yield from beside_name(self, said) if topic == NAME else ()
             elif TOPICS[topic].kind == "activity" and (verb := self.verb(said)):
                 yield Link(topic, subject, value=self.span_of(verb.text, object))
         elif said.verb == "be" and (topic := self.noun(object)):
@@ -221,6 +231,12 @@ class Reader:
         theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"
         if theirs or phrase.text.lower() in ("he", "she"):
             return self.person
+        if (bare := NOUNS.get((owner or phrase).text.lower())) in ("mother", "father") and phrase.head.lower() in (
+            "name",
+            "",
+            phrase.text.lower(),
+        ):
+            return bare  # "mum's name is Ann"
         if owner is None or not phrase.of("I") or is_former(phrase.text):
             return ""
         if self.relative(phrase.head) and (owner.person != "I" or self._has_owner(phrase)):
@@ -260,7 +276,7 @@ class Reader:
             yield Link(topic, object if object.names else None)
         told = list(self._by_table(said, has=has))
         hobby = pursuit_in(self, said) if all(link.topic == "liking" or not link.sure for link in told) else None
-        yield from [hobby] if hobby else [*(self._being(said) if predicate == "be" else ()), *told]
+        yield from [hobby] if hobby else [*(being_in(self, said) if predicate == "be" else ()), *told]
 
     def _dislikes(self, said: nlp.Statement) -> bool:
         """Return whether the user dislikes something: *I hate rain*, *I can't stand rain*."""
@@ -293,7 +309,7 @@ class Reader:
             found = next(filter(None, map(SAYS.get, (*keys, before))), None)
             if not found and phrase.preposition in ("for", "in", "with") and said.verb not in WORDS["passing"] | {"be"}:
                 found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
-            if phrase.text and found:
+            if phrase.text and found and self._word_before(phrase) not in WORDS["returning"]:
                 topic = "childhood" if child and found[0] == "home" else found[0]
                 yield Link(topic, phrase, found[1])
                 if (
@@ -307,59 +323,6 @@ class Reader:
         """Return whether the user says that they have something: *I have*, *I've got*."""
         got = said.verb == "get" and any(word.low == "got" for word in self.tree.words)
         return said.subject.person == "I" and (said.verb in ("have", "own") or got)
-
-    def _being(self, said: nlp.Statement) -> Iterator[Link]:
-        """Yield the links of *I am ...*: an age, an occupation, studies, or a name."""
-        object, text = said.object, said.object.text
-        years = re.fullmatch(r"([\w -]+?)(?: (?:years?|yrs?)(?: (?:old|young|of age))?| old)?", text.lower())
-        whole = not object.preposition and all(one.head != "year" for one in said.phrases)  # not *for six years*
-        if years and whole and (number := number_in(years[1])):
-            yield Link("age", object, value=number)
-        elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
-            yield Link(found[0], object.owner)
-        elif self._is_nationality(object):
-            return  # the country is not named: "I'm Greek"
-        elif object.preposition in ("at", "with") and object.head in TOPICS["university"].nouns:
-            yield Link("university", object)
-        elif object.preposition in ("at", "with") and (self.known.get("employer") or self.asked == "employer"):
-            yield Link("employer", object, sure=False)
-        elif object.head == "student":
-            yield Link("occupation", object, value="student")
-            yield Link(
-                "subject", object.owner or object, sure=False, value="" if object.owner else text.rpartition(" ")[0]
-            )
-            yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
-        elif not object.preposition and ((object.names and not object.head) or self._is_capital(object)):
-            yield Link(NAME, object, sure=self.asked == NAME or self._is_capital(object))
-            yield from self._beside_name(said)
-        elif text and not object.preposition and not object.of("I") and object.head not in ("old", "half", "young"):
-            several = any(word.lemma == object.head and word.tag == "NNS" for word in self.tree.words)
-            if several and said.subject.text.lower() == "i":
-                return  # "I'm all ears"
-            bare = len(text.split()) == 1 and not re.match("(?:an?|the) ", self.written(object))
-            if not bare or self.asked == "occupation" or likeness(text, "work") > 0.3:  # "I'm noor"
-                yield Link("occupation", object, sure=self.asked == "occupation")
-            yield Link(NAME, object, sure=False)
-            if " of " in text and object.owner is not None and likeness(text.partition(" of ")[0], "work") > 0.2:
-                yield Link("occupation", object, value=text.partition(" of ")[0])  # "I'm the head cook of a school"
-            places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
-            yield from (Link("employer", phrase, sure=False) for phrase in places)
-
-    def _is_nationality(self, phrase: Phrase) -> bool:
-        labels = {entity.label for entity in self.seen.entities if entity.text == phrase.text}
-        return "NORP" in labels and likeness(phrase.text, "trait") < 0.2  # not a religion
-
-    def _beside_name(self, said: nlp.Statement) -> Iterator[Link]:
-        """Yield the age and the origin after the user's name: *I'm Ada, 36, from Rome*."""
-        ages = (word for word in self.tree.words if word.dep == "appos" and word.pos == "NUM")
-        yield from (Link("age", said.object, value=word.text) for word in ages)
-        yield from (Link("origin", phrase) for phrase in said.phrases if phrase.preposition == "from")
-
-    def _is_capital(self, phrase: Phrase) -> bool:
-        """Return whether words begin with a capital as a name does: *I am Anneke*, but not *I am Greek*, *I'm a Leo*."""
-        found = re.search(rf"(\w+) {re.escape(phrase.text)}(?!\w)", self.seen.text)
-        labels = {entity.label for entity in self.seen.entities if phrase.text in entity.text} - {"PERSON", "ORG"}
-        return bool(found and phrase.text.istitle() and not labels and found[1].lower() not in WORDS["determiners"])
 
     def relative(self, noun: str) -> str:
         """Return the topic of a relative, a friend or a pet; empty for other nouns."""

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
-from .topics import NAME, TOPICS, WORDS
-from .values import value_of
+from .introduced import introduced_in
+from .topics import NAME, WORDS
 
 if TYPE_CHECKING:
     from .reading import Reader
 
-_HERE = re.compile(
-    r"^(?:(?:hi|hello|hey)\b\W*|\w+[.!,;] )?(?:it['’]?s |this is )?((?:\w+ )?\w+) (?:again )?here(?=[.!,;]|$| (?:again|and|from)\b)",
-    re.IGNORECASE,
-)
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 _OWN = frozenset(["my", "our"])
 
@@ -43,9 +39,8 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
             if phrase.names and mine and not is_former(phrase.text) and (topic := reader.relative(phrase.head)):
                 whole.append((topic, reader.fitting(topic, phrase.names)))
     words = reader.tree.words
-    if here := _HERE.search(reader.tree.text):
-        sure = any(word.text == here[1] and word.pos == "PROPN" for word in words)
-        yield NAME, reader.fitting(NAME, [here[1]], sure=sure)
+    if name := introduced_in(reader):
+        yield NAME, (name,)
     beside: dict[str, str] = {}
     for before, word in itertools.pairwise(words):
         own = (before.low, word.low) == ("my", "name")  # "my name's Tom"
@@ -57,27 +52,22 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
             one.low for one in itertools.takewhile(lambda one: one.low in WORDS["naming"], words[word.index + 1 :])
         ]
         first = words[word.index + 1 + len(passed) :][:1]
-        if me and reader.words & {"mistake", "mistakenly", "wrongly"}:
-            continue
+        if me and (reader.mistaken or (first and first[0].pos in ("ADJ", "ADV") and first[0].text.islower())):
+            continue  # "call me crazy"
         if not first or unsaid & {word.lemma, before.lemma} or reader.denies_all:
             continue
         named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
         if {one.pos for one in first} == {"PROPN"}:  # "my sister Rosa; a dog, Rex, and a cat, Misty"
             named = named or (not passed and before.low in _OWN)
-            named = named or (passed == [","] and (word.tag == "NNS" or before.low in ("a", "an", *_OWN)))
+            named = named or (passed in ([","], [":"]) and (word.tag == "NNS" or before.low in ("a", "an", *_OWN)))
         if named and not is_former(f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"):
-            runs = (_run(reader, one) for one in (*first, *_joined(reader.tree, first[0])))
+            listed = _listed(words[first[0].index :]) if word.tag == "NNS" else _joined(reader.tree, first[0])
+            runs = (_run(reader, one) for one in dict.fromkeys((*first, *listed)))
             values = reader.fitting(topic, runs)
             beside |= dict.fromkeys(values, topic)
             yield topic, values
     for topic, values in whole:
         yield topic, tuple(value for value in values if beside.get(value, topic) == topic)
-
-
-def remaining_name(reader: Reader) -> str:
-    """Return the name in an utterance that only says who speaks: *it's me, Marlene*; empty if there is none."""
-    runs = (value_of(_run(reader, word), TOPICS[NAME], reader.seen, sure=False) for word in reader.tree.words)
-    return next(filter(None, runs), "")
 
 
 def is_former(words: str) -> bool:
@@ -101,6 +91,19 @@ def _is_anothers(reader: Reader, before: Word, word: Word) -> bool:
         return False
     having = [said for said in reader.seen.statements if said.object.head == word.lemma]
     return any(said.subject.person == "other" and said.subject.text.lower() != "it" for said in having)
+
+
+def _listed(words: Sequence[Word]) -> Iterator[Word]:
+    """Yield the first words of the names in a list: *Ana, Lidia and Paz*."""
+    for before, word in itertools.pairwise(words):
+        if word.low in (",", "and", "&"):
+            continue
+        if not (word.pos in _NOMINAL or word.text.istitle()) or (
+            before.low not in (",", "and", "&") and before.pos != "PROPN"
+        ):
+            return
+        if before.low in (",", "and", "&"):
+            yield word
 
 
 def _joined(tree: Tree, word: Word) -> Iterator[Word]:

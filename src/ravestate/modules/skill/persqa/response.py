@@ -296,8 +296,10 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
         last = next(iter(answers))
         mentioned = replace(user, talk=user.talk.mentioning(last, answers[last]))
         return Response(say(intent, known, fact=clauses(answers)), mentioned)
-    if topic in known or topic in user.talk.closed:
-        return Response(say("recall_none" if topic in known else "recall_declined", known), user)
+    if topic in known and TOPICS[topic].kind not in ("place", "number"):  # everybody has a home, even if it has changed
+        return Response(say("recall_none", known, noun=next(iter(TOPICS[topic].nouns), topic)), user)
+    if topic in user.talk.closed and topic not in known:
+        return Response(say("recall_declined", known), user)
     return _ask(topic, "recall_stranger" if topic == NAME else "recall_unknown", user, now)
 
 

@@ -14,7 +14,7 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.tree import SUBJECTS
 
 from .answers import spelled_out
-from .changes import ended_by, renamed_in
+from .changes import ended_by, is_brief, renamed_in
 from .kinds import likeness
 from .links import NOW
 from .reading import Reader
@@ -116,7 +116,8 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
         thing = said.object.text  # "a parrot called Coco"
         if said.object.head and said.object.names and not reader.noun(said.object):
             thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)
-        relatives = reader.known.get(reader.noun(said.subject), ()) if subject else ()
+        topic = reader.noun(said.subject)
+        relatives = (reader.known.get(topic) or tuple(filter(None, [named.get(topic)]))) if subject else ()
         if len(relatives) == 1 and not said.subject.names:
             subject = last = relatives[0]
         same = (
@@ -213,7 +214,7 @@ def _is_momentary(reader: Reader, said: nlp.Statement) -> bool:
     aux = any(word.lemma == "be" or word.low == "'m" for word in reader.tree.children(verb, "aux"))
     if verb.dep == "advcl" and said.verb not in WORDS["states"] and {"since", "when", "until", "while"} & reader.words:
         return True
-    now = NOW & set(said.when.lower().split()) and verb.tag != "VBD"
+    now = is_brief(said) or (NOW & set(said.when.lower().split()) and verb.tag != "VBD")
     return bool(now or (verb.tag == "VBG" and aux and likeness(reader.span(said), "activity") < 0.1))
 
 
@@ -224,7 +225,7 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
     thing = reader.written(said.object)
     kept = max(likeness(thing, "possession"), likeness(thing, "trait")) > 0.1
     animal = gets and TOPICS[NOUNS.get(said.object.head, NAME)].type == "Animal"
-    return animal or ((gets or said.verb in ("have", "own")) and kept)
+    return animal or said.verb == "own" or ((gets or said.verb == "have") and kept)
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
@@ -251,9 +252,9 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         mine = mine or said.verb in ("name", "call")
         verb = reader.verb(said)
         deictic = _DEICTIC.match(reader.written(object)) or (verb is not None and verb.dep == "relcl")
-        spoken = not reader.words.isdisjoint({"i", "we", "i'm"})
+        spoken = not reader.words.isdisjoint({"i", "we", "i'm"}) or (verb is not None and verb.tag == "VBD")
         # "I wait for the bus", but not "I drive for Transkorn"
-        there = object.preposition and not object.text[:1].isupper()
+        there = object.preposition and not object.text[:1].isupper() and likeness(object.text, "trait") < 0.1
         fits = object.text and not there and not mine and not deictic
         if said.verb == "be":
             fits = fits and likeness(object.text, "trait") > 0.1
@@ -275,7 +276,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
     person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
-    return subject.text if person and not reader.noun(object) else ""
+    return subject.text if person and not (reader.noun(object) or reader.noun(subject)) else ""
 
 
 def _retold(reader: Reader, said: nlp.Statement) -> str:

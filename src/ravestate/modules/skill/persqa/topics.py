@@ -64,6 +64,8 @@ class _Topics(dict[str, Topic]):
 
 
 NAME = "name"
+LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
+"""Topics whose facts may be in the past tense: *I studied law*."""
 _FILE = files(__name__.rpartition(".")[0]) / "topics.yaml"
 _TABLE: dict[str, Any] = load_yaml(_FILE.read_text(encoding="utf-8"), str(_FILE))
 _ROWS = TypeAdapter(list[Topic]).validate_python([{"name": name, **row} for name, row in _TABLE.pop("topics").items()])

@@ -18,7 +18,6 @@ from .changes import may_correct, misheard
 from .kinds import likeness
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
-from .relatives import remaining_name
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
 from .topics import NAME, TOPICS, WORDS, Fact, is_topic, touched_by
@@ -154,6 +153,8 @@ class _Hearing:
         names = {value for fact in facts for value in fact.values if fact.topic == NAME}
         free = tuple(one for one in told_in(self.reader, self.talk.said)[0] if one.subject not in names)
         aside = self.leave or asks
+        if not free and [fact.topic for fact in facts] == [NAME] and names and self.is_name(tuple(names)):
+            return Meaning("identified", tuple(facts), topic, self.leave, aloud=not aside)
         if not free and facts and all(is_idle(fact, self.known) for fact in facts):
             other = self.otherwise(aside)
             return other if other.kind != "nothing" else Meaning("told", tuple(facts), topic, self.leave, aloud=False)
@@ -172,10 +173,6 @@ class _Hearing:
         if identity := self.identity():
             return identity
         if aside:
-            named = _INTRODUCED.search(self.text)  # "I'm Ada, how are you?"
-            name = value_of(named[1], TOPICS[NAME], seen, sure=False) if named and not self.known.get(NAME) else None
-            if name:
-                return Meaning("told", (Fact(NAME, (name,)),), topic, self.leave, aloud=False)
             side = opening(self.text, topic, seen) if asks and self.waits else []
             mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
             if asks and not side and not seen.advised and "ask_own" in self.acts and any(mine):
@@ -276,9 +273,7 @@ class _Hearing:
         match = self.seen.act("identify")
         if other or match is None or match.text.endswith("?"):  # "me?"
             return None
-        name = remaining_name(self.reader)
-        known = not name or among(name, self.known.get(NAME, ()))
-        return Meaning("identified" if known else "told", (Fact(NAME, (name,)),) if name else ())
+        return Meaning("identified")
 
     def inquiry(self) -> Meaning | None:
         """Return the meaning of a question about the user, or about something that they told."""
@@ -350,4 +345,3 @@ _DENIED = (
     r"|\b(?:{0}) is not (?:me|my name)\b|\b(?:not|never) (?:call me|said i (?:am|was)) (?:{0})\b"
 )
 """A pattern of words that deny the name ``{0}``: *I am not Ada*, *Ada is not my name*."""
-_INTRODUCED = re.compile(r"\b(?:i am|my name is) ([^\W\d]+)(?=[,.;!]| and )", re.IGNORECASE)

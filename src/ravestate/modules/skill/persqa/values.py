@@ -57,7 +57,9 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         number = number_in(text)
         return number if 0 < int(number or 0) < 120 else None
     named = kind in ("name", "people")
-    never = WORDS["function"] | (WORDS["determiners"] if named else frozenset[str]())
+    never = (WORDS["function"] | WORDS["sayings"] if named else WORDS["function"]) | (
+        WORDS["determiners"] if named else frozenset[str]()
+    )
     tells = any(unicodedata.category(letter)[0] in "L" or unicodedata.category(letter) == "So" for letter in text)
     if never & set(words[named and words[0] == "will" :]) or not tells or text[0].isdigit():
         return None

@@ -23,6 +23,7 @@ from .names import OLLAMA, Settings, chosen, clock, history, listening, model, m
 from .pending import PendingBackend
 from .progress import ProgressBar
 from .small_talk import (
+    claims,
     follow_up,
     gate_for,
     heard_in,
@@ -32,6 +33,7 @@ from .small_talk import (
     listen,
     listener,
     may_be_known,
+    may_claim,
     needs_comfort,
     notes_for,
     traces,
@@ -255,17 +257,21 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=nlp.analysis.changed.where(may_be_known) | nlp.analysis.changed.where(needs_comfort),
+    when=nlp.analysis.changed.where(may_be_known)
+    | nlp.analysis.changed.where(needs_comfort)
+    | nlp.analysis.changed.where(may_claim),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
     weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Console a sad user, or answer well-known words, before any rule answers a fact in the same words."""
+    """Console a sad user, perform, mend the talk, or answer well-known words, before any rule answers a fact in them."""
     seen = ctx.payload(nlp.analysis.changed)
-    if seen is None or not isinstance(ctx[model], ListeningBackend):
+    if seen is None or not (
+        isinstance(ctx[model], ListeningBackend) or listener().performs(heard_in(ctx, seen.text, seen), State())
+    ):
         return rs.Resign("a language model answers")
-    if not (needs_comfort(seen) or await is_known(seen)):
+    if not (claims(ctx, heard_in(ctx, seen.text, seen)) or needs_comfort(seen) or await is_known(seen)):
         return rs.Resign("no known reply suits")
     ctx[rawio.output] = await listen(ctx, heard_in(ctx, seen.text, seen))
     return None

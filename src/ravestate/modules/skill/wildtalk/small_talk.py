@@ -75,6 +75,16 @@ def needs_comfort(seen: nlp.Analysis | None) -> bool:
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
 
 
+def may_claim(seen: nlp.Analysis | None) -> bool:
+    """Return whether the utterance may be a move in the talk, such as a request for a joke. `claims` looks closer."""
+    return seen is not None and listener().claims(Heard(seen.text, seen))
+
+
+def claims(ctx: rs.RuleContext, heard: Heard) -> bool:
+    """Return whether the utterance is a move in the talk: it asks for a performance, repairs the talk, or tells news."""
+    return listener().claims(heard, up_to_date(ctx, heard.text))
+
+
 def may_be_known(seen: nlp.Analysis | None) -> bool:
     """Return whether the listening skill may have a reply to these words or almost the same. `is_known` looks closer.
 
@@ -130,7 +140,8 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
     words = [answer for answer in answers if any(map(str.isalpha, answer))]
     if words and words[-1:] != list(state.said[-1:]):  # another module has answered since
         asked = Pending(words[-1]) if words[-1].endswith("?") else None
-        state = replace(state.having_said(words[-1], words[-1]), pending=asked, moment="", game=None)
+        game = None if state.game is None else state.game.beside(words[-1])
+        state = replace(state.having_said(words[-1], words[-1]), pending=asked, moment="", game=game)
     return state
 
 

@@ -104,7 +104,47 @@ def test_stop_ends_every_game(game: str, begin: Callable[[int], Any]) -> None:
 def test_another_subject_ends_a_game(talk: Any) -> None:
     talk.say("riddle")
     talk.say("by the way, do you know what my sister told me about her new job yesterday?")
+    talk.say("she starts there on the first of the month, and she is rather nervous about it")
     assert talk.state.game is None
+
+
+def test_a_remark_does_not_end_a_game(talk: Any) -> None:
+    first = talk.say("word chain").rstrip(".").split()[-1]
+    talk.say("oh, my sister has just come home from the dentist, she looks relieved")
+    letter = "The letter" if talk.state.game is None else talk.state.game.word[-1]
+    assert first[-1] == letter
+
+
+@pytest.mark.parametrize("game", ["riddle", "word chain", "guess my animal"])
+def test_a_game_explains_its_rules_and_goes_on(game: str, begin: Callable[[int], Any]) -> None:
+    talk = begin(0)
+    talk.say(game)
+    before = talk.state.game
+    answer = talk.say("sorry, what are the rules?")
+    assert any(one.split("{")[0] in answer for one in shows()[before.kind]["rules"])
+    assert talk.state.game == before
+
+
+def test_a_game_that_it_lacks_is_declined_with_those_that_it_has(talk: Any) -> None:
+    assert "ludo" in talk.say("can we play ludo together?").lower()
+    assert "chain" in talk.say("fine, then word chain").lower()
+
+
+@pytest.mark.parametrize(
+    ("texts", "word"),
+    [
+        (("tell me a joke about ghosts",), "ghost"),
+        (("tell me a joke", "haha, one more, but about bears"), "bear"),
+        (("do you know a diplodocus story?",), "dinosaur"),
+        (("my niece would like to hear a story about a whale",), "whale"),
+    ],
+)
+def test_it_performs_about_the_subject(texts: tuple[str, ...], word: str, talk: Any) -> None:
+    answers = [talk.say(text) for text in texts]
+    kind = "joke" if "joke" in texts[0] else "story"
+    names = (word, *shows()["subjects"].get(word, ()))
+    assert answers[-1] in shows()["told"][kind]
+    assert any(name in answers[-1].lower() for name in names)
 
 
 def test_play_offers_a_choice(talk: Any) -> None:

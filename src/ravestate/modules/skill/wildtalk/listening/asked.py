@@ -55,6 +55,8 @@ _LIKED = word_set("better nicer worse more rather prettier")
 """Comparatives of opinions."""
 _BARE = word_set("not what something anything so else whatever")
 """Words after *or* that are no option."""
+_TIMES = word_set("night evening afternoon day weekend hour time")
+_EMPTY = word_set("do have get go make")
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
 """The relations of a noun that a question is about, the likeliest first."""
 _PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
@@ -149,13 +151,13 @@ def asked_in(
         "word": _word(seen),
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
-        "picked": _picked(phrases, words, len(state.said)),
+        "picked": _picked(phrases, words, 0 if kind == "favourite" else len(state.said)),
     }
     values = {name: value for name, value in values.items() if value}
     verbal = options is not None and options[2]
     able = any(word.low in ("can", "could") for word in words[:1])
     groups = (["act"] if verbal else ["two"]) if options else []
-    groups += ["picked"] * (kind in ("pick", "recommend") and "picked" in values)
+    groups += ["picked"] * (kind in ("pick", "recommend", "favourite") and "picked" in values)
     groups += (
         ["can"] * able
         + ["polar"] * (seen.question is QuestionWord.YES_NO)
@@ -175,8 +177,11 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> 
     """
     weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
     inside = {word.index for word in words}
+    telling = any(word.pos == "VERB" and word.lemma.lower() not in _EMPTY for word in words)
     scores: dict[str, float] = {}
     for word in tree.words:
+        if telling and word.dep in ("pobj", "npadvmod") and word.lemma.lower() in _TIMES:
+            continue  # "how can I learn it in one night" is not about sleep
         area = phrases.area_by_word.get(word.lemma.lower()) or phrases.area_by_word.get(word.low)
         if area and word.pos not in ("PRON", "AUX", "ADP", "DET"):
             near = 1.0 if word.index in inside else 0.45

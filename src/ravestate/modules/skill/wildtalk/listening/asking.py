@@ -10,6 +10,8 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 
+from .turns import is_cry, is_news
+
 FEW_WORDS = 3
 """The maximum number of words of a short sentence. Short sentences resemble many others."""
 SHORT = 4
@@ -25,6 +27,8 @@ _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:tha
 def asking_sentence(seen: Analysis) -> str:
     """Return the sentence that asks something; empty if the utterance has none."""
     if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
+        return ""
+    if is_news(seen.sentences[-1]) or is_cry(seen.text):
         return ""
     marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
     opened = [

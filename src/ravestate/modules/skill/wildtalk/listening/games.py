@@ -11,30 +11,33 @@ from typing import Any
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .state import Game, State
+from .wishes import Wish, fitting
 
 LONGEST = 6
 """The maximum number of words in an utterance that may belong to a game."""
 CHAINED = 2
 """The maximum number of words in the user's turn of word chain: *a tiger*."""
+CHAINING = 6
+"""The same with a verb such as *say*: *then I say tiger*."""
 
-HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
-"""The user asks the agent to think of an animal, which the user will guess."""
-GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
-"""The user says that they think of an animal, which the agent will guess."""
+RULES = re.compile(
+    r"\brules?\b|\bhow (?:do|does|did|is|to|can|should|am) (?:it|that|this|i|we|one|the game|play)\b.*(?:work|go|play|do|win|\bit\b)"
+    r"|\bhow to play\b|\bwhat (?:do|must|should|shall|am|can) i (?:have to |need to |supposed to |now )*(?:do|say|ask)\b|\bexplain\b"
+    r"|\bdon't (?:get|understand) (?:it|this|that|the game)\b|\bhow does\b.*\bgame\b|^\W*how\W*$",
+    re.IGNORECASE,
+)
+"""A question about the rules of the game."""
+THINKING = re.compile(
+    r"\b(?:hold on|wait|let me think|thinking|(?:one|a) (?:moment|second|sec|minute)|give me (?:a|some|one)|tough|hard|tricky"
+    r"|difficult|not easy)\b|^\W*h?m+\W*$",
+    re.IGNORECASE,
+)
+"""The user still thinks about their turn."""
+HINT = re.compile(r"\b(?:hint|clue|tip|help me)\b", re.IGNORECASE)
+_MOVING = frozenset(("be", "say", "take", "go", "have", "then", "choose", "pick"))
+"""Verbs around a word of word chain: *then I say tiger*."""
 
 Played = tuple[str, State]
-
-
-def named(shows: Mapping[str, Any], text: str, *, most: int = 3) -> str:
-    """Return the performance that a text names: *word chain*, *a riddle please*; empty beyond `most` words."""
-    low = text.lower()
-    if GUESSER.search(low) or HOLDER.search(low):
-        return "animal" if GUESSER.search(low) else "holder"
-    words = re.findall(r"[a-z]+", low)
-    said = f" {' '.join(words)} "
-    if not words or len(words) > most or words[0] == "no":
-        return ""
-    return next((kind for kind, names in shows["names"].items() if any(f" {one} " in said for one in names)), "")
 
 
 class Turn:
@@ -45,18 +48,22 @@ class Turn:
     ) -> None:
         """`shows`: the jokes, songs, stories, riddles and words of the games."""
         self._shows, self._seen, self._state, self._chance = shows, seen, state, chance
-        self._words = re.findall(r"[^\W\d_]+", text.lower())
+        self._text, self._words = text, re.findall(r"[^\W\d_]+", text.lower())
         answer = None if seen is None else seen.yesno
         self._yes, self._no = answer is not None and bool(answer.yes), answer is not None and bool(answer.no)
         self._unsure = answer is not None and bool(answer.unsure)
 
-    def start(self, kind: str) -> Played:
+    def start(self, wish: Wish) -> Played:
         """Begin a joke, a song, a story or a game; ``play`` offers a choice."""
+        kind = wish.kind
         if kind in self._shows["told"]:
-            return self._tell(kind, self._shows["told"][kind])
+            return self._tell(wish, self._shows["told"][kind])
         if kind == "riddle":
-            text, state = self._new(kind, [one["ask"] for one in self._shows["riddles"]])
-            return text, replace(state, game=Game("riddle", text))
+            about = {one["ask"]: " ".join((one["ask"], *one["answers"], one["hint"])) for one in self._shows["riddles"]}
+            fit = fitting(self._shows, wish, about.values())
+            text, state = self._new(kind, [ask for ask, whole in about.items() if whole in fit or not fit])
+            front = self._without(wish) if wish.thing and not fit else ""
+            return f"{front}{text}", replace(state, game=Game("riddle", text))
         if kind == "chain":
             word = self._chance.choice(self._shows["chain"]["words"])
             return self._say("chain", "start", Game("chain", word, (word,)), word=word)
@@ -65,6 +72,10 @@ class Turn:
             return self._say("animal", "start", Game("animal", question), question=text)
         if kind == "holder":
             return self._say(kind, "start", Game(kind, self._chance.choice(list(self._shows["animal"]["known"]))))
+        if wish.thing:
+            return self._say(
+                kind, "without", Game(kind), thing=wish.thing, Thing=wish.thing[:1].upper() + wish.thing[1:]
+            )
         return self._say(kind, "start", Game(kind))
 
     def stop(self) -> Played:
@@ -76,18 +87,45 @@ class Turn:
         game = self._state.game
         return game is not None and game.word != "" and game.kind in ("riddle", "holder") and "give" in self._words
 
+    def chains(self) -> bool:
+        """Return whether the utterance is no more than a word, in word chain: *a song* may be one."""
+        return self._state.game is not None and self._state.game.kind == "chain" and len(self._words) <= CHAINED
+
     def move(self) -> Played | None:
         """Return the agent's next turn; None if the utterance does not belong to the game."""
         game = self._state.game
         if game is None or not self._words:
             return None
-        if len(self._words) > LONGEST and game.kind not in ("knock", "holder") and not self.solves():
+        aside = self._aside(game)
+        if aside is not None:
+            return aside
+        if game.asides and game.kind in ("riddle", "knock", "play") and not (self.solves() or self._unsure):
+            return None  # the talk has left the game
+        if len(self._words) > LONGEST and game.kind not in ("knock", "holder", "chain") and not self.solves():
             return None
         if not game.word and game.kind != "play" and not (game.kind == "knock" or game.turn == 2):  # "Another one?"
-            return self.start(game.kind) if self._yes else self.stop() if self._no else self._learnt(game)
+            return self.start(Wish(game.kind)) if self._yes else self.stop() if self._no else self._learnt(game)
         moves = {"play": self._choice, "riddle": self._riddle, "chain": self._chain, "animal": self._animal}
         moves["holder"] = self._holder
         return moves.get(game.kind, self._knock)(game)
+
+    def _aside(self, game: Game) -> Played | None:
+        """Explain the rules of the game, give a hint, or wait for the user; None for other utterances."""
+        kind, shows = game.kind, self._shows[game.kind]
+        if "rules" in shows and RULES.search(self._text):
+            return self._say(kind, "rules", game, word=game.word, letter=game.word[-1:].upper())
+        if kind == "riddle" and game.word and not self.solves():
+            hint = next(one["hint"] for one in self._shows["riddles"] if one["ask"] == game.word)
+            if HINT.search(self._text):
+                return self._say(kind, "hint", replace(game, turn=1), hint=hint)
+        if (
+            kind in ("riddle", "chain", "animal", "holder")
+            and game.word
+            and THINKING.search(self._text)
+            and not self.solves()
+        ):
+            return self._say("play", "wait", game)
+        return None
 
     def _learnt(self, game: Game) -> Played | None:
         return self._say("animal", "learnt", None) if game.kind == "animal" else None
@@ -96,7 +134,7 @@ class Turn:
         kinds: Mapping[str, Sequence[str]] = self._shows["play"]["kinds"]
         wanted = next((kind for kind, names in kinds.items() if set(names).intersection(self._words)), "")
         if wanted or self._yes or {"any", "choose"}.intersection(self._words):
-            return self.start(wanted or self._chance.choice(list(kinds)))
+            return self.start(Wish(wanted or self._chance.choice(list(kinds))))
         return self.stop() if self._no else None
 
     def _lemmas(self) -> set[str]:
@@ -138,7 +176,12 @@ class Turn:
 
     def _chain(self, game: Game) -> Played | None:
         word, letter = self._words[-1], game.word[-1]
-        if len(self._words) > CHAINED or word[0] != letter:
+        verbs = {
+            one.lemma.lower() for one in (self._seen.tree.words if self._seen else ()) if one.pos in ("VERB", "AUX")
+        }
+        brief = len(self._words) <= CHAINED or (len(self._words) <= CHAINING and verbs - {word} <= _MOVING)
+        brief = brief or (":" in self._text and len(self._text.rpartition(":")[2].split()) <= CHAINED)
+        if not brief or word[0] != letter:
             if self._no:
                 return self.stop()
             if game.turn or len(self._words) > CHAINED:
@@ -184,19 +227,18 @@ class Turn:
     def _say(self, kind: str, group: str, game: Game | None, **roles: str) -> Played:
         """Return a phrase of the performance `kind`, and the state with the game after it."""
         show = self._state.show if kind in ("play", "knock") else kind
-        return self._chance.choice(self._shows[kind][group]).format(**roles), replace(self._state, game=game, show=show)
+        return self._chance.choice(self._shows[kind][group]).format(**roles), replace(
+            self._state, game=game and replace(game, asides=0), show=show
+        )
 
-    def _tell(self, kind: str, listed: Sequence[str]) -> Played:
-        """Tell a joke or story about the subject that the user wants: *a story with a snail*."""
-        tree = None if self._seen is None else self._seen.tree
-        about = [word for word in tree.words if word.low in ("about", "with", "of")] if tree else []
-        wanted = tree.children_of(about, "pobj")[:1] if tree else []
-        fit = [one for one in listed if any(word.lemma.lower() in one.lower() for word in wanted)]
-        text, state = self._new(kind, fit or listed)
-        if tree and wanted and not fit:
-            thing = tree.phrase(tree.subtree(wanted[0]))
-            text = f"{self._chance.choice(self._shows['without']).format(thing=thing)} {text}"
-        return text, state
+    def _tell(self, wish: Wish, listed: Sequence[str]) -> Played:
+        """Tell a joke or story about the subject that the user wants. If there is none, say so, and tell another."""
+        fit = fitting(self._shows, wish, listed)
+        text, state = self._new(wish.kind, fit or listed)
+        return (self._without(wish) if wish.thing and not fit else "") + text, state
+
+    def _without(self, wish: Wish) -> str:
+        return f"{self._chance.choice(self._shows['without']).format(thing=wish.thing, kind=wish.kind)} "
 
     def _new(self, kind: str, listed: Sequence[str]) -> Played:
         """Return a performance that was not shown yet. When all have been shown, start again."""

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from ravestate.language.acts import is_playful
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
@@ -28,13 +29,14 @@ from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .tongue import is_nonsense, is_number, tongue_of
+from .turns import is_leaving, turns_in
 
 SURE, MEANT = 0.85, 0.7
 """The least confidence that a moment or an act needs to decide the answer."""
 EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
-CHANGING = frozenset(("no_questions", "another"))
-"""Moments that change the talk. No entry of the bank takes their place."""
+CHANGING = "no_questions"
+"""The moment that changes the talk. No entry of the bank takes its place."""
 BARE = 2
 """The maximum number of words of an answer that only says yes or no. Without its question, it resembles nothing."""
 FINER = 0.1
@@ -53,10 +55,6 @@ BRIEFLY = 5
 """The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
-_LEAVING = re.compile(
-    r"(?:^|[,.!?]|\b(?:bye|and)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios)(?: \w+)?[.! ]*$", re.IGNORECASE
-)
-"""A farewell at the end of an utterance: *I have to go now, bye!*"""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user's offer to tell something."""
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
@@ -105,6 +103,15 @@ class Hearing:
     """The follow-up of the last entry for any other statement."""
     sad: bool = False
     """Whether the utterance has a sad feeling."""
+
+    def leave_out(self, moment: str, area: str) -> None:
+        """Remove the answers of a moment or an entry of the bank, and those of an area of life."""
+        self.near = [one for one in self.near if one.moment.name != moment]
+        self.meanings = [one for one in self.meanings if one.name != moment]
+        if not self.near or self.near[0].fit < ALIKE:
+            self.tags -= {"alike"}
+        if self.asked is not None and self.asked.area is not None and self.asked.area.name == area:
+            self.asked = replace(self.asked, area=None)
 
 
 def hear(phrases: Material, heard: Heard, state: State) -> Hearing:
@@ -161,11 +168,10 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     kind = "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure and size <= SHORT else ""
     called = _called_in(seen, statement)
     grounded = found.moment == "just_why" and "ground" in roles.values
-    bound = score >= SURE and (found.moment in CHANGING or grounded)
-    bare = kind != "" and size <= BARE
+    bound = score >= SURE and (found.moment == CHANGING or grounded)
     alike = (
         nearest.fit >= ALIKE
-        and not (bound or bare)
+        and not (bound or (kind and size <= BARE))
         and (
             bool(nearest.moment.follows)
             or nearest.score >= EXACT
@@ -185,7 +191,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
         "short": size <= SHORT,
-        "leaving": not asking and bool(_LEAVING.search(seen.text)),
+        "teased": "insult" in seen.acts and is_playful(seen.text),
+        "leaving": not asking and is_leaving(seen.text),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
@@ -206,7 +213,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "addressed": found.told is not None and found.told.subject == "yours",
         "settled": len(found.moves) == 1,
         "broken": _is_broken(seen, size),
-        **dict.fromkeys(found.moves, True),
+        **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
     }  # fmt: skip
     if asking:
         tags |= _question_tags(found, phrases, seen, asking, low)
@@ -269,8 +276,8 @@ def _ranked(
         score = (
             score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
         )  # no light talk in a sad tone
-    if moment is not None and state.tone == "glad" and moment.tone == "sad":
-        score = score if score >= CLOUDED else 0.0  # "tears of joy"
+    if moment is not None and state.tone == "glad" and moment.tone == "sad" and score < CLOUDED:
+        score = 0.0  # "tears of joy"
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
         score = 0.0  # "I must tell you, I am afraid"
     if moment is not None and score >= SURE:

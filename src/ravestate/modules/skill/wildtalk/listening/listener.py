@@ -7,34 +7,31 @@ performances (jokes, songs, stories) come first. `hearing` explains moments, mov
 from __future__ import annotations
 
 import random
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ravestate.language.normal import plain
-from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.analysis import Analysis, analyse
+from ravestate.modules.meta.nlp.pipeline import pipeline
 
 from .following import is_answer
-from .games import GUESSER, HOLDER, Played, Turn, named
+from .games import Played, Turn
 from .grave import is_crisis
 from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
 from .lookup import ALIKE, is_dark, near_in
 from .material import Material, material
 from .moment import Line, Moment
-from .roles import Roles, has_verb, is_request, roles_of
+from .repair import may_repair, repair_in
+from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
+from .turns import is_cry, is_leaving, is_news
+from .wishes import Wish, kinds_in, wish_in
 
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
-LONG, SHORT = 9, 3
-"""The maximum number of words in a request for a performance: with a verb, and without a verb."""
 BRIEF, BRIEFLY = 12, 12
 """The maximum length of a sign of listening such as *mhm*, in characters, and the answers until it may come again."""
-MORE = re.compile(r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)?\W*(?:please|pls)?\W*$", re.IGNORECASE)
-"""A request for another performance: *meh, one more*."""
-OFFER = re.compile(r"\bI(?:'ve)? (?:have|know|got|ask)\b.*\briddle|\bask you a riddle", re.IGNORECASE)
-"""The user's offer to ask the agent a riddle."""
 STANCES = ("like", "curious", "cool")
 KNOWN = 0.57
 """The least probability that an entry suits at which other modules leave the answer to it."""
@@ -85,9 +82,21 @@ class Listener:
             matcher.load()
         self._phrases.bank.load()
 
+    def claims(self, heard: Heard, state: State | None = None) -> bool:
+        """Return whether an utterance is a move in the talk that other modules would take for a question or a fact.
+
+        It asks for a performance, repairs the talk, or tells news as a question. Without `state`, this is only a guess.
+        """
+        seen = heard.seen
+        if seen is None or not seen.sentences or is_crisis(seen.normal.text):
+            return False
+        if self.wish(heard, state or State()) is not None or is_news(seen.sentences[-1]) or is_cry(seen.text):
+            return True
+        return may_repair(seen) if state is None else repair_in(seen, state) is not None
+
     def performs(self, heard: Heard, state: State) -> bool:
         """Return whether the utterance asks for a performance or belongs to it. No language model should answer it."""
-        return state.game is not None or self._request(heard) != ""
+        return state.game is not None or self.wish(heard, state) is not None
 
     def expects(self, state: State) -> bool:
         """Return whether the last answer has follow-ups."""
@@ -127,14 +136,15 @@ class Listener:
         """Return the answer. Takes some 50 ms, most of them for the bank."""
         hearing = hear(self._phrases, heard, state)
         own = hearing.asked is not None and "wording" in hearing.tags  # "say that again" starts no other performance
-        played = self._play(heard, state, chance, "" if own or state.asked else hearing.moment)
+        played = None if own else self._play(heard, state, chance)
         if played is not None:
             text, after = played
             after = after.toned("").having_said(text, text)
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
-        said = self._say(hearing, replace(state, game=None), chance)
+        said = self._mended(heard, state, chance) or self._say(hearing, state, chance)
+        game = None if state.game is None or is_leaving(heard.text) else state.game.beside(said.text)
         ground = state.ground if hearing.told is None else hearing.told.echo
-        return replace(said, state=replace(said.state, before=heard.text, ground=ground))
+        return replace(said, state=replace(said.state, before=heard.text, ground=ground, game=game))
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
         """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
@@ -144,46 +154,65 @@ class Listener:
 
     # ---------------------------------------------------------------------------------- performances
 
-    def _request(self, heard: Heard) -> str:
-        """Return the performance that the user asks for."""
-        if heard.seen is None or OFFER.search(heard.text):
-            return ""
-        if heard.seen.yesno.no:
-            return "holder" if HOLDER.search(heard.text.lower()) else ""
-        wants = heard.seen.question is not None or is_request(heard.seen)
+    def wish(self, heard: Heard, state: State) -> Wish | None:
+        """Return the performance that the user asks for; None if they ask for none."""
+        if heard.seen is None:
+            return None
         acts = [act for act in heard.seen.acts.values() if act.name in SHOWS and act.score >= ASKED]
-        most = (
-            2 * LONG
-            if acts or heard.text.lower().startswith(("tell me", "sing", "give me"))
-            else LONG
-            if wants
-            else SHORT
-        )  # "no, a riddle, I said"
-        found = named(self._phrases.shows, heard.text, most=most)
-        return found or (max(acts, key=lambda act: act.score).name if acts else "")
+        names = [act.name for act in sorted(acts, key=lambda act: -act.score)]
+        return wish_in(self._phrases.shows, heard.seen, state, names)
 
-    def _play(self, heard: Heard, state: State, chance: random.Random, moment: str) -> Played | None:
-        seen = heard.seen
+    def _play(self, heard: Heard, state: State, chance: random.Random) -> Played | None:
+        seen, wish = heard.seen, self.wish(heard, state)
         turn = Turn(self._phrases.shows, heard.text, seen, state, chance)
         acts = frozenset[str]() if seen is None else seen.acts.keys()
-        more = state.show != "" and MORE.search(heard.text) is not None
-        low = heard.text.lower()
-        switched = HOLDER.search(low) or GUESSER.search(low) or (more and state.game and state.game.kind == "riddle")
-        if state.game is not None and ("farewell" not in acts or turn.solves()) and not switched:
+        if state.game is not None and ("farewell" not in acts or turn.solves()) and (wish is None or turn.chains()):
             played = turn.stop() if "stop" in acts and not turn.gives_up() else turn.move()
             if played is not None:
                 return played
         if seen is not None and state.pending is not None and state.pending.start and seen.yesno.yes:
-            return turn.start(state.pending.start)
-        request = self._request(heard) or ((state.show or "story") if more or moment == "another" else "")
-        return turn.start(request) if request else None
+            return turn.start(wish or Wish(state.pending.start))
+        return turn.start(wish) if wish else None
 
     # ---------------------------------------------------------------------------------- phrases
 
+    def _mended(self, heard: Heard, state: State, chance: random.Random) -> Answer | None:
+        """Return the answer to a repair: an admission, and an answer to what the user meant; None if there is no repair."""
+        repair = None if heard.seen is None else repair_in(heard.seen, state)
+        if repair is None:
+            return None
+        hearing = Hearing(set())
+        named = kinds_in(self._phrases.shows, repair.thing)[:1]
+        if named:  # "I meant the riddle"
+            text, after = Turn(self._phrases.shows, heard.text, heard.seen, state, chance).start(Wish(named[0]))
+            return Answer(text, after.having_said(text, text))
+        if repair.again:
+            meant = Heard(repair.again, analyse(repair.again, pipeline("")), heard.user)
+            wish = self.wish(meant, state)
+            hearing = hear(self._phrases, meant, replace(state, pending=None, moment="", thread=""))
+            hearing.leave_out(state.moment, "" if state.asked is None else state.asked[1])
+            said = self._first(hearing, state, chance, firm=True)
+            if wish is not None:
+                text, after = Turn(self._phrases.shows, meant.text, meant.seen, state, chance).start(wish)
+                said = Answer(text, after.having_said(text, text))
+            if said is not None:
+                front = self._choose(_Source(self._phrases.plain["repair"].lines(repair.kind)), Roles(), state, chance)
+                return said if front is None else replace(said, text=f"{front.text} {said.text}")
+        roles = hearing.roles.having(thing=repair.thing)
+        kind = "meant" if repair.kind == "why" else repair.kind
+        groups = ["thing"] * bool(repair.thing) + ["told"] * (kind == "meant") + ["say"]
+        line = self._choose(_Source(self._phrases.plain[f"repair_{kind}"].lines(*groups)), roles, state, chance)
+        return None if line is None else _said(line, roles, replace(state, moment="", asked=None))
+
     def _say(self, hearing: Hearing, state: State, chance: random.Random) -> Answer:
+        found = self._first(hearing, state, chance)
+        return found or Answer("Mhm.", state.toned(""))  # all phrases were said lately
+
+    def _first(self, hearing: Hearing, state: State, chance: random.Random, *, firm: bool = False) -> Answer | None:
+        """Return the first answer that is left; with `firm`, the first that does not fit nearly everything."""
         for source in _with_fewer_questions(self._sources(hearing, state, chance), state):
             roles = hearing.roles
-            line = self._choose(source, roles, state, chance)
+            line = None if firm and source.weak else self._choose(source, roles, state, chance)
             if line is None:
                 continue
             moment = source.moment
@@ -200,7 +229,7 @@ class Listener:
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
             return _said(line, roles, after)
-        return Answer("Mhm.", state.toned(""))  # all phrases were said lately
+        return None
 
     def _threaded(self, state: State) -> State:
         """Return the state with the thread of its last answer. Some answers without an entry of the bank end a thread."""

@@ -63,6 +63,12 @@ class Game:
     """The riddle's question, the last word of the chain, or the last question about the animal."""
     used: tuple[str, ...] = ()
     turn: int = 0
+    asides: int = 0
+    """The number of the last answers that did not belong to the game."""
+
+    def beside(self, answer: str) -> Game | None:
+        """Return the game after an answer that does not belong to it. It ends with the second one, or with a question."""
+        return None if self.asides or answer.endswith("?") else replace(self, asides=1)
 
 
 @dataclass(frozen=True, slots=True)

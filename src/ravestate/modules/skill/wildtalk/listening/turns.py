@@ -1,0 +1,60 @@
+"""Turns of a talk that their words show: news in the form of a question, a complaint in this form, and a farewell."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_NEWS = re.compile(
+    r"\b(?:did|do) you (?:also |even )?know that\b|\bdid you (?:also |even )?know,? (?!that\b|who|what|where|when|why|how|which|whose|whether|if\b"
+    r"|him\b|them\b|about|of\b|any|someb|me\b|it\b)[\w']+ .*\w",
+    re.IGNORECASE,
+)
+"""News in the form of a question: *did you know that snails sleep for years?*"""
+_CRY = re.compile(
+    r"\bwhy\b.*\b(?:always|never|every time|only (?:me|i)|nobody ever|everything|everybody|have to)\b", re.IGNORECASE
+)
+"""A complaint in the form of a question, if it ends with an exclamation mark or is in capitals."""
+_LEAVING = re.compile(
+    r"(?:^|[,.!?]|\b(?:bye|and|so|ok|well|then)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios|farewell)(?:,? (?!to\b)\w+){0,3}"
+    r"(?: and thanks?\b[\w ]*)?\W*$|^(?:(?:ok|well|so|then|right|now|alright)\W+)*(?:good)?bye\b(?! to\b)"
+    r"|(?:^|[,.!] *|\b(?:and|so|then) )(?:see|talk to|speak to|catch) (?:you|ya|u) (?:soon|later|tomorrow|then|around|next \w+|on \w+day)\b[\w ,]*\W*$"
+    r"|(?:^|[,.!] *|\band )have an? (?:very )?(?:nice|good|great|lovely|wonderful|pleasant) (?:day|evening|night|weekend|afternoon|week|one|time|rest"
+    r" of)\b[^.?]*$",
+    re.IGNORECASE,
+)
+"""A farewell at the end of an utterance: *I have to go now, bye!*, *have a nice day*."""
+
+_REPROACH = re.compile(
+    r"\b(?:i am|i'm|im|i feel|i felt|i was|me feel)(?: \w+){0,3} (?:dumb|stupid|idiot|idiotic|useless|worthless|failure|loser|pathetic"
+    r"|hopeless|fool|foolish|clumsy|rubbish)\b",
+    re.IGNORECASE,
+)
+"""Harsh words of the user about themselves."""
+
+
+def turns_in(text: str, sentences: Sequence[str]) -> list[str]:
+    """Return ``news``, ``cry`` and ``reproach`` if an utterance with these sentences is such a turn."""
+    found = {
+        "news": bool(sentences) and is_news(sentences[-1]),
+        "cry": is_cry(text),
+        "reproach": bool(_REPROACH.search(text)),
+    }
+    return [name for name, holds in found.items() if holds]
+
+
+def is_news(text: str) -> bool:
+    """Return whether a text tells news in the form of a question."""
+    return _NEWS.search(text) is not None
+
+
+def is_cry(text: str) -> bool:
+    """Return whether a text is a complaint in the form of a question: *why does it always hit me!*"""
+    letters = [one for one in text if one.isalpha()]
+    loud = text.rstrip().endswith("!") or (len(letters) > 9 and sum(map(str.isupper, letters)) > len(letters) / 2)
+    return _CRY.search(text) is not None and loud
+
+
+def is_leaving(text: str) -> bool:
+    """Return whether a text ends with a farewell: *I have to go now, bye!*, *have a nice day*."""
+    return _LEAVING.search(text) is not None

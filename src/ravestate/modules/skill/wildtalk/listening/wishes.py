@@ -1,0 +1,199 @@
+"""The performance that the user asks for: a joke, a song, a story or a game, its subject, and *another one*."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.tree import Tree, Word
+
+from .state import State
+
+LONGEST = 20
+"""The maximum number of words of a sentence that asks for a performance."""
+BARE = 4
+"""The maximum number of words of a request without a verb: *a dino joke please*."""
+LATELY = 3
+"""The number of last answers, one of which must be a performance, for *another one*."""
+
+_HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
+"""The user asks the agent to think of an animal, which the user will guess."""
+_GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
+"""The user says that they think of an animal, which the agent will guess."""
+_WANTS = re.compile(
+    r"\b(?:tell|give|sing|hum|read|play|do|make up|invent|share|know|have|got|hear|want|wants|needs?|could use|fancy|promised|offered|asked for|make me|"
+    r"(?:then|instead)(?=\W*$)|let'?s|let us|(?:how|what) about|time for|any|another|more|please|i'd|would (?:like|love|rather|prefer|be))\b"
+)
+_OFFERS = re.compile(
+    r"\b(?:i|we|he|she|they)(?:'ve|'m)? (?:(?:just|always|once|also|really|never|don't) )?(?:have|had|got|know|knew|read|"
+    r"write|wrote|sing|sang|told|tell|heard|like|love|liked|loved|am|was|were|said|remember)\b"
+    r"|\bi (?:\w+ )?(?:want|need|have|would like|will|'ll) to (?:tell|ask|sing|read|write|play you)\b"
+    r"|\b(?:tell|ask|show|sing|read) you\b|\b(?:do|would) you (?:like|want) to hear\b|\bto hear (?:my|mine)\b|\bask you\b"
+    r"|\b(?:is|was|'s|are|were|been)(?: \w+)? an? (?:\w+ )?{noun}|\b(?:the|that|this|those|my|your|his|her|their|our|same"
+    r"|no|what a) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
+)  # fmt: skip
+"""The user tells or offers something of their own, or means a particular one: *I know a joke*, *was that a joke?*."""
+_ANOTHER = re.compile(
+    r"\b(?:another(?: one)?(?! (?!one\b|please\b|pls\b|but\b|about\b|with\b|if\b|then\b|again\b)\w)|(?:one|1) more|(?:a )?new one"
+    r"|next one|(?:(?:some|any) )?more of (?:those|them|that)|one (?:about|with|on)|(?:some|any) more|more please|encore)\b"
+    r"|^\W*(?:(?:and|haha|lol|ok|please|once|yes|more|do it) )*(?:again|more)\W*(?:please)?\W*$",
+    re.IGNORECASE,
+)
+_MORE = re.compile(
+    r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)?\W*(?:please|pls)?\W*$", re.IGNORECASE
+)
+"""A whole utterance that asks for another performance, even later: *meh, one more*."""
+_SUBJECT = frozenset(("about", "with", "on", "of", "involving", "featuring"))
+_CORRECTS = re.compile(r"\bi (?:said|meant|mean|wanted|asked for|want)\b", re.IGNORECASE)
+_OFFERED = re.compile(
+    r"\b(?:shall|may|can|could) i\b[^.!]*\?$|\b(?:would|do) you (?:like|want)\b[^.!]*\?$|, then\?$|\bask me for\b|\bi have\b",
+    re.IGNORECASE,
+)
+"""The agent offers a performance: *Shall I tell a story?*"""
+_NOUNS = ("NOUN", "PROPN", "X")
+_IN_IT = re.compile(r" (?:in|on) (?:it|them)$| please$")
+_VAGUE = frozenset(
+    ("it", "one", "me", "that", "this", "them", "those", "us", "you", "something", "anything", "time", "please")
+)
+_PLAYED = re.compile(
+    r"\bplay (?:an? )?(?:(?:game|round|match) of )?(?:some )?([a-z][a-z -]*?)(?: (?:with|against|together|now|please|then|instead|maybe|perhaps|too"
+    r"|today|tonight)\b.*)?[?.! ]*$",
+    re.IGNORECASE,
+)
+"""The game that the user wants to play: *can we play draughts together?*"""
+_ANY = frozenset(
+    [
+        "game",
+        "games",
+        "something",
+        "anything",
+        "it",
+        "again",
+        "that",
+        "a",
+        "the",
+        "one",
+        "with",
+        "you",
+        "me",
+        "riddle",
+        "riddles",
+        "animal",
+        "animals",
+        "on",
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """A request for a performance."""
+
+    kind: str
+    """``joke``, ``song``, ``story``, ``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``."""
+    thing: str = ""
+    """Its subject, in the user's words: *a green dragon*; of ``play``, a game that the agent does not have."""
+    words: tuple[str, ...] = ()
+    """The nouns of the subject in their base form."""
+
+
+def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequence[str] = ()) -> Wish | None:
+    """Return the performance that an utterance asks for; None if it asks for none.
+
+    Args:
+        shows: The performances, and the words that ask for them.
+        seen: The analysis of the utterance.
+        state: The state of the talk, for *another one* and for an offer of the agent's.
+        acts: The performances that the utterance asks for by its acts.
+    """
+    low = seen.text.lower()
+    if _GUESSER.search(low) or _HOLDER.search(low):
+        return Wish("animal" if _GUESSER.search(low) else "holder")
+    kind = next(filter(None, (_named(shows, sentence) for sentence in reversed(seen.sentences))), "")
+    offered = state.said[-1] if state.said and _OFFERED.search(state.said[-1]) else ""
+    accepted = offered and kinds_in(shows, offered) and not seen.yesno.no
+    if accepted and not kind and len(low.split()) <= LONGEST:
+        kind = next(iter((*kinds_in(shows, low), *(kinds_in(shows, offered) if seen.yesno.yes else ()))), "")
+    lately = bool(state.shown) and any(one.endswith(state.shown[-1]) for one in state.said[-LATELY:])
+    short = len(low.split()) <= LONGEST // 2
+    if not kind and state.show and _MORE.search(low):
+        kind = state.show
+    if (
+        not kind
+        and lately
+        and short
+        and (_ANOTHER.search(low) or (_CORRECTS.search(low) and state.said[-1].endswith(state.shown[-1])))
+    ):
+        kind = state.show
+    if not kind and acts and not _OFFERS.search(low):
+        kind = acts[0]
+    if not kind:
+        return None
+    if kind == "play":
+        played = _PLAYED.search(low)
+        words = frozenset(played[1].split()) if played else _ANY
+        return Wish(kind, played[1] if played and not words & _ANY else "")
+    noun = _subject(shows, seen.tree, low)
+    if noun is None:
+        return Wish(kind)
+    parts = [word for word in seen.tree.subtree(noun) if not (word.dep in ("punct", "relcl") or word.low in _SUBJECT)]
+    words = [word for word in parts if word.pos in ("NOUN", "PROPN", "X") or word is noun]
+    return Wish(
+        kind, _IN_IT.sub("", seen.tree.phrase(parts)), tuple(dict.fromkeys(word.lemma.lower() for word in words))
+    )
+
+
+def kinds_in(shows: Mapping[str, Any], text: str) -> list[str]:
+    """Return the performances that a text names, in their order in the text."""
+    said = f" {' '.join(re.findall(r'[a-z]+', text.lower()))} "
+    found = {
+        kind: min((said.find(f" {one} ") for one in names if f" {one} " in said), default=-1)
+        for kind, names in shows["names"].items()
+    }
+    return sorted((kind for kind, place in found.items() if place >= 0), key=lambda kind: found[kind])
+
+
+def fitting(shows: Mapping[str, Any], wish: Wish, listed: Iterable[str]) -> list[str]:
+    """Return the performances about a subject: those with its words, else those with words of its kind."""
+    texts, low = list(listed), wish.thing.lower()
+    exact = [one for one in texts if any(_has(one, word) for word in wish.words)]
+    wider = [kind for kind, words in shows["subjects"].items() if any(_has(low, word) for word in (kind, *words))]
+    names = {word for kind in wider for word in (kind, *shows["subjects"][kind])}
+    return exact or [one for one in texts if any(_has(one, word) for word in names)]
+
+
+def _has(text: str, word: str) -> bool:
+    return re.search(rf"\b{re.escape(word)}(?:s|es)?\b", text, re.IGNORECASE) is not None
+
+
+def _named(shows: Mapping[str, Any], sentence: str) -> str:
+    """Return the performance that a sentence asks for by its name: *a riddle please*."""
+    low, size = sentence.lower(), len(sentence.split())
+    kind = next(iter(kinds_in(shows, low)), "")
+    asks = size <= BARE or (size <= LONGEST and _WANTS.search(low))
+    return kind if kind and asks and not _OFFERS.search(low) else ""
+
+
+def _subject(shows: Mapping[str, Any], tree: Tree, low: str) -> Word | None:
+    """Return the noun of the subject: *a story with a snail*, *a snail story*, *no, I said snails*."""
+    about = [word for word in tree.words if word.low in _SUBJECT]
+    own = {name for names in shows["names"].values() for name in names}
+    found = [word for word in tree.children_of(about, "pobj", "pcomp") if word.low not in own]
+    found = [word for word in found if word.low not in _VAGUE and word.pos in _NOUNS]
+    found = (
+        found
+        or [
+            one
+            for word in about
+            for one in tree.words[word.index + 1 : word.index + 4]
+            if one.pos in _NOUNS and one.low not in _VAGUE
+        ][:1]
+    )
+    nouns = [word for word in tree.words if word.low in own]
+    found = found or [word for word in tree.children_of(nouns, "compound", "nmod") if word.low not in shows["plain"]]
+    if not found and not nouns and _CORRECTS.search(low):
+        found = [word for word in tree.words if word.dep == "dobj"]
+    return next((word for word in found if word.low not in _VAGUE and word.pos in (*_NOUNS, "ADJ", "VERB")), None)
