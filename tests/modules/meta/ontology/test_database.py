@@ -11,7 +11,7 @@ import pytest
 from modules.meta.ontology.conftest import Open
 from ravestate.errors import PlatformError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology import database
+from ravestate.modules.meta.ontology import database, embedded
 from ravestate.modules.meta.ontology.database import META, NODE, RELATION, connect, survives
 from ravestate.modules.meta.ontology.opening import open_memory
 
@@ -115,11 +115,17 @@ def test_a_memory_of_format_1_keeps_all_nodes_and_relations(tmp_path: Path, open
     assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "memory.lbug.sum", "mine.yaml"]
 
 
-def test_a_memory_of_format_1_that_cannot_be_copied_keeps_its_data(tmp_path: Path) -> None:
+def test_a_memory_of_format_1_that_cannot_be_copied_keeps_its_data(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError("no more space")
+
     path = tmp_path / "memory.lbug"
-    write_format_1(path, "CREATE NODE TABLE Dog (id STRING PRIMARY KEY, age STRING)")
+    write_format_1(path)
+    monkeypatch.setattr(embedded, "copy_database", fail)
     memory = open_memory(ontology.Settings(path=path))
-    with pytest.raises(PlatformError, match=r"\.age is \w+, and another type has it as \w+\. Nothing was changed"):
+    with pytest.raises(PlatformError, match=r"cannot be copied to the new format: no more space\. Nothing was changed"):
         memory.opened().result(60)
     memory.close().result(60)
     database, connection = connect(path)
@@ -128,6 +134,65 @@ def test_a_memory_of_format_1_that_cannot_be_copied_keeps_its_data(tmp_path: Pat
     connection.close()
     database.close()
     assert sorted(file.name for file in tmp_path.iterdir()) == ["memory.lbug", "memory.lbug.sum"]
+
+
+DOG = "Dog: {is: Thing, has: {size: text}}"
+CAT = "Cat: {is: Thing, has: {size: number}}"
+COW = "Cow: {is: Thing, has: {Size: number}}"
+
+
+def file_of(tmp_path: Path, types: str) -> tuple[Path]:
+    file = tmp_path / f"{types[:3]}.yaml"
+    file.write_text(types)
+    return (file,)
+
+
+def test_types_of_format_1_may_have_properties_of_one_name_and_other_kinds(tmp_path: Path, open_here: Open) -> None:
+    """Earlier versions had a table for each type; a type that is no longer declared stays in the file."""
+    path = tmp_path / "memory.lbug"
+    write_format_1(
+        path,
+        "CREATE NODE TABLE Dog (id STRING PRIMARY KEY, name STRING, size STRING)",
+        "CREATE NODE TABLE Cat (id STRING PRIMARY KEY, name STRING, size DOUBLE)",
+        "CREATE NODE TABLE Cow (id STRING PRIMARY KEY, name STRING, Size DOUBLE)",
+        "CREATE (:Dog {id: 'Dog:5', size: 'big'}), (:Cat {id: 'Cat:6', size: 3.5}), (:Cow {id: 'Cow:7', Size: 9.0})",
+    )
+    for types, id, name, value in [
+        (CAT, "Cat:6", "size", 3.5), (COW, "Cow:7", "Size", 9.0), (DOG, "Dog:5", "size", "big"), (CAT, "Cat:6", "size", 3.5),
+    ]:  # fmt: skip
+        memory = open_here(path=path, types=file_of(tmp_path, types))
+        found = memory.get(id).result()
+        assert found is not None and dict(found.properties) == {name: value}
+        memory.close().result()
+
+
+def test_a_hidden_type_does_not_reserve_its_properties(tmp_path: Path, open_here: Open) -> None:
+    path = tmp_path / "memory.lbug"
+    for types, type, property, value in [
+        (DOG, "Dog", "size", "big"), (CAT, "Cat", "size", 3.5), (COW, "Cow", "Size", 9.0), (DOG, "Dog", "size", "small"),
+    ]:  # fmt: skip
+        memory = open_here(path=path, types=file_of(tmp_path, types))
+        memory.create(type, **{property: value}).result()
+        memory.purge().result()
+        memory.close().result()
+    memory = open_here(path=path, types=file_of(tmp_path, DOG))
+    gone = memory.create("Dog").result()
+    memory.forget(gone).result()  # the rewrite keeps the values of hidden types
+    assert [dog["size"] for dog in memory.find("Dog").result()] == ["big", "small"]
+    memory.close().result()
+    memory = open_here(path=path, types=file_of(tmp_path, CAT))
+    assert [cat["size"] for cat in memory.find("Cat").result()] == [3.5]
+
+
+def test_a_property_that_another_context_uses_keeps_its_kind(tmp_path: Path, open_here: Open) -> None:
+    path = tmp_path / "memory.lbug"
+    dogs = open_here(path=path, types=file_of(tmp_path, DOG))
+    dogs.opened().result()
+    cats = open_memory(ontology.Settings(path=path, types=file_of(tmp_path, CAT)))
+    with pytest.raises(PlatformError, match=r"has Dog\.size as text, but the types say number"):
+        cats.opened().result()
+    cats.close().result()
+    assert dogs.create("Dog", size="big").result()["size"] == "big"
 
 
 def test_all_types_share_one_table(tmp_path: Path, open_here: Open) -> None:

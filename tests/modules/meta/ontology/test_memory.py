@@ -522,3 +522,12 @@ def test_tidy_changes_no_data(memory: Memory) -> None:
     before = memory.export().result()
     memory.tidy().result()
     assert memory.export().result() == before
+
+
+def test_unrelate_refuses_a_node_whose_id_has_another_type(memory: Memory) -> None:
+    ada = memory.create("Person", name="Ada").result()
+    london = memory.create("City", name="London").result()
+    memory.relate(ada, "lives_in", london).result()
+    with pytest.raises(RuleError, match="must begin with 'Robot:'"):
+        memory.unrelate(Node("Robot", {}, ada.id), "lives_in", london).result()
+    assert memory.related(ada, "lives_in").result() == [london]

@@ -148,6 +148,36 @@ def test_a_failed_purge_is_repeated_after_the_next_start(
     assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
 
 
+@pytest.mark.parametrize("ending", ["purge", "close"])
+def test_a_purge_that_failed_is_tried_again_by_purge_and_close_but_not_in_pauses(
+    tmp_path: Path,
+    open_here: Open,
+    rests: threading.Semaphore,
+    rewrites: list[Path],
+    monkeypatch: pytest.MonkeyPatch,
+    ending: str,
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError("no more space")
+
+    path = tmp_path / "memory.lbug"
+    memory = open_here(path=path)
+    person, _ = (memory.create("Person", name=name).result() for name in (OLD, "Bob"))
+    memory.tidy().result()
+    with monkeypatch.context() as patched:
+        patched.setattr(embedded, "copy_database", fail)
+        memory.forget(person).result()
+        monkeypatch.setattr(worker, "PAUSE", 0.01)
+        for _ in range(2):
+            memory.find("City").result()
+            assert rests.acquire(timeout=60)
+        assert rewrites == [path]  # each pause would lead to a warning
+    monkeypatch.setattr(worker, "PAUSE", NEVER)
+    assert holds(path)
+    (memory.purge() if ending == "purge" else memory.close()).result()
+    assert not holds(path)
+
+
 def test_a_deletion_that_is_rolled_back_leads_to_no_purge(
     tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -105,6 +105,14 @@ def relation_table(columns: Mapping[str, str]) -> str:
     return f"CREATE REL TABLE `{RELATION}` ({', '.join(listed)})"
 
 
+def aside(name: str, kind: str) -> str:
+    """Return the name of the column that keeps the values of hidden types, whose property has another kind.
+
+    Ladybug does not tell capitals apart, so the column's name has the bytes of the property's name.
+    """
+    return f"_{kind}_{name.encode().hex()}"
+
+
 def meta_table() -> list[str]:
     """Return the statements that create the table of the format."""
     return [
@@ -123,24 +131,24 @@ def copy_database(source: Any, target: Any) -> None:
         target: A connection to an empty database.
 
     Raises:
-        RuntimeError: Ladybug failed; or two tables of format 1 have properties of the same name and different kinds.
+        RuntimeError: Ladybug failed.
     """
     tables = _rows(source, "CALL show_tables() RETURN name, type")
     nodes = {name: _columns(source, name) for name, kind in tables if kind == "NODE" and name != META}
     relations = {name: _columns(source, name) for name, kind in tables if kind == "REL"}
     _rows(target, "BEGIN TRANSACTION")
-    for statement in (*meta_table(), node_table(_united(nodes)), relation_table(_united(relations))):
+    of_nodes, of_relations = _united(nodes), _united(relations)
+    for statement in (*meta_table(), node_table(_kinds(of_nodes)), relation_table(_kinds(of_relations))):
         _rows(target, statement)
     copied: dict[tuple[int, int], str] = {}  # ladybug's own number → id
     for name, columns in nodes.items():
         for [node] in _rows(source, f"MATCH (n:`{name}`) RETURN n"):
-            values = {key: node[key] for key in columns if node.get(key) is not None}
+            values = {"id": node["id"], **_moved(node, columns, of_nodes)}
             _rows(target, f"CREATE (:`{NODE}` {_pattern(values)})", _parameters(values))
             copied[_number(node["_ID"])] = node["id"]
     for name, columns in relations.items():
         for [relation] in _rows(source, f"MATCH ()-[r:`{name}`]->() RETURN r"):
-            values = {key: relation[key] for key in columns if relation.get(key) is not None}
-            values.setdefault(NAME, name)
+            values = {NAME: relation.get(NAME, name), **_moved(relation, columns, of_relations)}
             ends = f"MATCH (a:`{NODE}` {{`id`: $a}}), (b:`{NODE}` {{`id`: $b}})"
             pair = {"a": copied[_number(relation["_SRC"])], "b": copied[_number(relation["_DST"])]}
             _rows(target, f"{ends} CREATE (a)-[:`{RELATION}` {_pattern(values)}]->(b)", pair | _parameters(values))
@@ -152,14 +160,31 @@ def _columns(connection: Any, table: str) -> dict[str, str]:
     return {str(row[1]): str(row[2]) for row in _rows(connection, f"CALL table_info('{table}') RETURN *")}
 
 
-def _united(tables: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
-    """Return the columns of all tables, without those that every table of nodes or relations has."""
-    united: dict[str, str] = {}
-    for table, columns in tables.items():
+def _united(tables: Mapping[str, Mapping[str, str]]) -> dict[tuple[str, str], str]:
+    """Return a column for each property of all tables: name and kind → name of the column.
+
+    In format 1, types that were not declared at the same time may have properties of the same name and other kinds.
+    """
+    united: dict[tuple[str, str], str] = {}
+    taken: set[str] = set()
+    for columns in tables.values():
         for name, kind in columns.items():
-            if united.setdefault(name, kind) != kind:
-                raise RuntimeError(f"{table}.{name} is {kind}, and another type has it as {united[name]}")
-    return {name: kind for name, kind in united.items() if name not in ("id", NAME)}
+            if name not in ("id", NAME) and (name, kind) not in united:
+                united[name, kind] = aside(name, kind) if name.lower() in taken else name
+                taken.add(name.lower())
+    return united
+
+
+def _kinds(united: Mapping[tuple[str, str], str]) -> dict[str, str]:
+    return {column: kind for (_, kind), column in united.items()}
+
+
+def _moved(
+    found: Mapping[str, Any], columns: Mapping[str, str], united: Mapping[tuple[str, str], str]
+) -> dict[str, Any]:
+    """Return the properties that have a value, by their columns in the copy."""
+    given = {united[one]: found.get(one[0]) for one in columns.items() if one in united}
+    return {column: value for column, value in given.items() if value is not None}
 
 
 def _listed(columns: Mapping[str, str]) -> list[str]:

@@ -75,8 +75,10 @@ class EmbeddedStore:
         self._stuck = ""  # the reason why the last write failed; empty while writes succeed
         self._within = False  # whether a transaction is open
         self._has_bytes = False  # whether the file still has bytes of deleted nodes
+        self._has_failed = False  # whether a purge has failed after the last deletion or opening
         self._purge_next = False  # whether a purge follows the open transaction
         self._prepared: Types | None = None  # the types whose tables exist
+        self._in_use: list[Types] = []  # the types of all contexts since the opening
         try:
             path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
@@ -167,14 +169,16 @@ class EmbeddedStore:
             except Exception as error:  # copying a damaged page may raise any exception
                 why = f"cannot be copied to the new format: {said_by(error)}. Nothing was changed"
                 raise PlatformError(f"memory {self._path} {why}") from error
-        missing = list(missing_tables(self._execute, types, str(self._path)))
+        missing = list(missing_tables(self._execute, types, self._in_use, str(self._path)))
         if missing:  # write only if needed, so that memory on a full disk can be read
             self._be_writable(0)
             with self.transaction():
                 for statement in missing:
                     self._execute(statement)
         self._has_bytes = bool(self._execute(f"MATCH (m:`{META}` {{`key`: '{MARK}'}}) RETURN m.`value`"))
+        self._has_failed = False
         self._prepared = types
+        self._in_use = [*(one for one in self._in_use if one is not types), types]
 
     def undeclared(self, types: Types) -> list[str]:
         """Return the types that have nodes in the file and are not in `types`."""
@@ -251,6 +255,7 @@ class EmbeddedStore:
 
     def note_bytes(self) -> None:
         """Note in the file that ladybug leaves the bytes of deleted nodes in it."""
+        self._has_failed = False
         if not self._has_bytes:
             self.write(f"MERGE (m:`{META}` {{`key`: '{MARK}'}}) SET m.`value` = 1", {})
             self._has_bytes = True
@@ -258,18 +263,19 @@ class EmbeddedStore:
     def purge(self) -> None:
         """Rewrite the file without the deleted nodes, if there are any; in a transaction, after the commit.
 
-        If this fails, the deleted nodes are still forgotten. A warning says that the file still has their bytes; the
-        next deletion or opening leads to another try.
+        If this fails, the deleted nodes are still forgotten. A warning says that the file still has their bytes. The
+        next purge, deletion, closing or opening leads to another try.
         """
-        if not self._has_bytes or self._stuck:
+        if not self._has_bytes:
             return
         if self._within:
             self._purge_next = True
             return
-        self._has_bytes = False
         try:
             self._rewrite()
+            self._has_bytes = False
         except Exception as error:  # copying a damaged page may raise any exception
+            self._has_failed = True
             log.warning(
                 "memory %s: the forgotten nodes are gone, but the file still has their bytes: %s", self._path, error
             )
@@ -277,12 +283,16 @@ class EmbeddedStore:
             what = "logs that were set aside may still have data of the forgotten nodes; remove them"
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
-    rest = purge
+    def rest(self) -> None:
+        """Purge the file, unless a purge has failed after the last deletion: each pause would lead to a warning."""
+        if not self._has_failed:
+            self.purge()
 
     def _rewrite(self) -> None:
         """Copy the database to a new file, without deleted nodes and with the newest format; replace the old file."""
         new = MemoryFiles(self._files.beside(".new"))
         try:
+            self._be_writable(0)  # this opens the file again if a write has failed
             self._check_space(2 * (self._path.stat().st_size + self._files.log_size()))
             self._checkpoint()
             self._files.remove_rewrite()
@@ -318,7 +328,7 @@ class EmbeddedStore:
 
     def close(self) -> None:
         """Purge the file, move the log's content into it, and close it. If this fails, the next opening reads the log."""
-        if self._stuck and not self._can_write():
+        if self._stuck and not self._files.can_write():
             log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
             return
         self.purge()
@@ -360,7 +370,7 @@ class EmbeddedStore:
         if not self._stuck:
             self._files.make_private(".wal")
             return
-        if not self._can_write():
+        if not self._files.can_write():
             raise PlatformError(why_not_written(self._path, self._stuck))
         self._connection.close()
         self._database.close()
@@ -375,22 +385,6 @@ class EmbeddedStore:
         # Keep these objects for ever: their garbage collection would end the process.
         for held in (self._connection, self._database):
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
-
-    def _can_write(self) -> bool:
-        """Return whether the disk has room for a file that is 1 MB longer than the log."""
-        probe = self._files.probe
-        try:
-            with probe.open("wb") as file:
-                file.truncate(self._files.log_size())
-                file.seek(0, os.SEEK_END)
-                file.write(bytes(2**20))
-                file.flush()
-                os.fsync(file.fileno())
-            return True
-        except OSError:
-            return False
-        finally:
-            probe.unlink(missing_ok=True)
 
 
 def _decoded(value: Any) -> Any:

@@ -55,6 +55,21 @@ class MemoryFiles:
         except OSError:
             return 0
 
+    def can_write(self) -> bool:
+        """Return whether the disk has room for a file that is 1 MB longer than the log."""
+        try:
+            with self.probe.open("wb") as file:
+                file.truncate(self.log_size())
+                file.seek(0, os.SEEK_END)
+                file.write(bytes(2**20))
+                file.flush()
+                os.fsync(file.fileno())
+            return True
+        except OSError:
+            return False
+        finally:
+            self.probe.unlink(missing_ok=True)
+
     def has_database(self) -> bool:
         """Return whether there is a database. An empty file does not count: a crash during creation leaves one."""
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)

@@ -105,7 +105,7 @@ class Graph:
             self._store.write(
                 f"MATCH (a:{self._label(node.type)} {{`id`: $a}})-[r:{self._store.relation(relation)}]->"
                 f"(b:{self._label(other.type)} {{`id`: $b}}) DELETE r",
-                {"a": node.id, "b": other.id},
+                {"a": _known(node).id, "b": _known(other).id},
             )
             if forget and not self._is_wanted(other, ()) and not self._is_known_otherwise(other, node):
                 self._forget(other)

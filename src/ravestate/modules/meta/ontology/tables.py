@@ -7,7 +7,7 @@ from typing import Any
 
 from ravestate.errors import PlatformError
 
-from .database import FILE_FORMAT, META, NODE, RELATION, meta_table, node_table, relation_table
+from .database import FILE_FORMAT, META, NAME, NODE, RELATION, aside, meta_table, node_table, relation_table
 from .store import check_format
 from .types import Kind, Types
 
@@ -45,12 +45,13 @@ def has_old_format(execute: Execute, place: str) -> bool:
     return False
 
 
-def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
+def missing_tables(execute: Execute, types: Types, in_use: Iterable[Types], place: str) -> Iterator[str]:
     """Yield the statements that create missing tables and columns.
 
     Args:
         execute: A function that runs a statement and returns its rows.
         types: The types that need columns.
+        in_use: The types of other contexts that have the database open.
         place: The database's path, for messages.
 
     Raises:
@@ -59,11 +60,14 @@ def missing_tables(execute: Execute, types: Types, place: str) -> Iterator[str]:
     tables = _tables(execute)
     if META not in tables:
         yield from meta_table()
-    of_nodes = _owned((name, types.properties(name)) for name in types)
-    of_relations = _owned((name, relation.properties) for name, relation in types.relations.items())
-    for table, owned, create in ((NODE, of_nodes, node_table), (RELATION, of_relations, relation_table)):
+    (of_nodes, of_relations), (used, used_relations) = _owners([types]), _owners(in_use)
+    for table, owners, others, create in (
+        (NODE, of_nodes, used, node_table),
+        (RELATION, of_relations, used_relations, relation_table),
+    ):
+        owned = _owned(owners)
         if table in tables:
-            yield from _missing_columns(execute, table, owned, place)
+            yield from _missing_columns(execute, table, owned, others, place)
         else:
             yield create({name: COLUMNS[kind] for name, (kind, _) in owned.items()})
 
@@ -78,19 +82,62 @@ def _tables(execute: Execute) -> set[str]:
     return {str(row[0]) for row in execute("CALL show_tables() RETURN name")}
 
 
-def _owned(owners: Iterable[tuple[str, Mapping[str, Kind]]]) -> dict[str, tuple[Kind, str]]:
-    """Return the kind of each property, and its last owner: the declaration gives a name only one kind."""
-    return {name: (kind, owner) for owner, properties in owners for name, kind in properties.items()}
+def _owners(all_types: Iterable[Types]) -> tuple[dict[str, Mapping[str, Kind]], dict[str, Mapping[str, Kind]]]:
+    """Return the properties of each type, and the properties of each relation."""
+    nodes: dict[str, Mapping[str, Kind]] = {}
+    relations: dict[str, Mapping[str, Kind]] = {}
+    for types in all_types:
+        nodes |= {name: {**nodes.get(name, {}), **types.properties(name)} for name in types}
+        for name, one in types.relations.items():
+            relations[name] = {**relations.get(name, {}), **one.properties}
+    return nodes, relations
 
 
-def _missing_columns(execute: Execute, table: str, owned: Mapping[str, tuple[Kind, str]], place: str) -> Iterator[str]:
-    present = {row[0]: row[1] for row in execute(f"CALL table_info('{table}') RETURN name, type")}
-    for name, (kind, owner) in owned.items():
-        if name not in present:
+def _owned(owners: Mapping[str, Mapping[str, Kind]]) -> dict[str, tuple[Kind, list[str]]]:
+    """Return the kind and the owners of each property: the declaration gives a name only one kind."""
+    owned: dict[str, tuple[Kind, list[str]]] = {}
+    for owner, properties in owners.items():
+        for name, kind in properties.items():
+            owned.setdefault(name, (kind, []))[1].append(owner)
+    return owned
+
+
+def _missing_columns(
+    execute: Execute,
+    table: str,
+    owned: Mapping[str, tuple[Kind, list[str]]],
+    in_use: Mapping[str, Mapping[str, Kind]],
+    place: str,
+) -> Iterator[str]:
+    """Yield the statements for the columns of one table.
+
+    A column that has values of hidden types alone gets another name if a declared property needs its name.
+    """
+    columns = {str(row[0]): str(row[1]) for row in execute(f"CALL table_info('{table}') RETURN name, type")}
+    by_letters = {name.lower(): name for name in columns}
+    for name, (kind, owners) in owned.items():
+        present = by_letters.get(name.lower(), name)
+        if columns.get(name) == COLUMNS[kind]:
+            continue
+        if present in columns:
+            used = [owner for owner in in_use if present in in_use[owner]]
+            for owner in (*used, *_with_value(execute, table, present, owners)):
+                held = next((k for k, column in COLUMNS.items() if column == columns[present]), columns[present])
+                raise PlatformError(
+                    f"memory {place} has {owner}.{present} as {held}, but the types say {kind}: write {present}: {held}, or "
+                    "give the property another name. Nothing was changed"
+                )
+            yield f"ALTER TABLE `{table}` RENAME `{present}` TO `{aside(present, columns[present])}`"
+        if (kept := aside(name, COLUMNS[kind])) in columns:
+            yield f"ALTER TABLE `{table}` RENAME `{kept}` TO `{name}`"
+        else:
             yield f"ALTER TABLE `{table}` ADD `{name}` {COLUMNS[kind]}"
-        elif present[name] != COLUMNS[kind]:
-            held = next((k for k, column in COLUMNS.items() if column == present[name]), present[name])
-            raise PlatformError(
-                f"memory {place} has {owner}.{name} as {held}, but the types say {kind}: write {name}: {held}, or give the "
-                "property another name. Nothing was changed"
-            )
+
+
+def _with_value(execute: Execute, table: str, column: str, owners: Iterable[str]) -> Iterator[str]:
+    """Yield the types or relations that have a value in a column."""
+    pattern = f"(n:`{table}`)" if table == NODE else f"()-[n:`{table}`]->()"
+    for owner in owners:
+        test = f"n.`id` STARTS WITH '{owner}:'" if table == NODE else f"n.`{NAME}` = '{owner}'"
+        if execute(f"MATCH {pattern} WHERE {test} AND n.`{column}` IS NOT NULL RETURN 1 LIMIT 1"):
+            yield owner
