@@ -363,12 +363,12 @@ def _said_lately(template: str, text: str, state: State) -> bool:
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources, but with fewer questions after two questions in a row, or if the user wants no questions."""
+    """Yield the sources, but with fewer questions after two in a row, during a game, or if the user wants none."""
     asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
     later: list[_Source] = []
     for source in sources:
         quiet = [[line for line in lines if not line.asks] for lines in source.groups]
-        if not state.asks or (asked and source.weak):
+        if not state.asks or state.game is not None or (asked and source.weak):
             later.append(source)
             source = replace(source, groups=quiet)
         elif asked:
