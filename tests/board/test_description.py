@@ -37,7 +37,7 @@ def test_signals_and_slots_name_the_rules_that_use_them() -> None:
     assert said.input
     rule = found.rule("gossip:classify")
     assert rule is not None
-    assert rule.doc == "Tell questions from other things."
+    assert rule.doc == "Classify an input as a question or something else."
     assert found.rule("gossip:nobody") is None
 
 
