@@ -57,8 +57,8 @@ class Reader:
         faults = any(line.startswith("FAULT") for line in shown)
         with contextlib.chdir(self.folder):
             code = main(arguments)
-        said = self._capture.readouterr().out
-        assert code == int(faults), f"{command}\n{said}"
+        said, complaint = self._capture.readouterr()
+        assert code == int(faults), f"{command}\n{said}\n{complaint}"
         assert set(shown) <= set(said.splitlines()), f"{command}\n{said}"
         return said
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 LONG = 64
 """The number of items of a list above which `echo` leaves out the rest."""
-LOOKS = 8
-"""The number of attempts to find a topic, because nodes of ROS 2 find each other one by one."""
+LOOKS = 24
+"""The number of attempts to find a topic: nodes of ROS 2 find each other one by one, on a busy machine slowly."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -174,7 +174,7 @@ def _finds(graph: dict[str, Any], topic: str) -> bool:
 
 
 async def _look_again(node: Node, topic: str) -> dict[str, Any]:
-    """Return the graph once it has the topic, or after two seconds: nodes of ROS 2 find each other one by one."""
+    """Return the graph once it has the topic, or after six seconds: nodes of ROS 2 find each other one by one."""
     graph: dict[str, Any] = {}
     for _ in range(LOOKS):
         graph = await node.graph()
