@@ -25,7 +25,7 @@ Intents = Mapping[str, tuple[str, ...]]
 """Qualified name of an intent's signal → the intent's examples."""
 
 OF_ACT = 12
-"""The number of examples of each act that compete with the designer's intents."""
+"""This many examples of each act of the user, such as *greeting*, compete with the designer's intents."""
 
 _RULE = "learn_intents"
 
@@ -33,8 +33,8 @@ _RULE = "learn_intents"
 def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path) -> rs.Signal[Match]:
     """Declare a signal for utterances that resemble `examples`; its payload is the `Match`.
 
-    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with sentences that
-    belong to no class. Only the signal of the best match is raised. Two or three examples are enough for a start.
+    All intents of a context compete with one another and with the user's acts (``acts.yaml``). They also compete with
+    everyday sentences that are neither. Only the signal of the best match is raised. Two or three examples are enough for a start.
 
     Args:
         module: The module of the signal, which must require ``nlp``.
@@ -116,7 +116,7 @@ def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
 
 @lru_cache(maxsize=32)
 def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
-    """Return a matcher of intents and acts. If an act and an intent share an example, the intent keeps it.
+    """Return a matcher of intents and acts. An act that shares an example with an intent does not compete at all.
 
     A designer writes few examples, but an act (such as *greeting*) has hundreds. If all examples competed, acts would
     always win. So only `OF_ACT` examples of each act compete.
