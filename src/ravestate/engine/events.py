@@ -77,7 +77,7 @@ class Finish:
 
 @dataclass(slots=True)
 class AddRule:
-    """The context gets a policy that has the same rules and more."""
+    """The context gets a policy with more rules; it has all rules of the present policy, too."""
 
     policy: Policy
 

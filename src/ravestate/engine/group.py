@@ -30,10 +30,10 @@ class Nothing(dict[Any, Any]):
 
 
 NOTHING: Final[dict[Any, Any]] = Nothing()
-"""The shared empty table. An attribute keeps it until the first entry, which needs a table of its own."""
+"""The shared empty table: the value of an attribute that has no entry yet. The first entry makes a new table."""
 
 NO_NUMBERS: Final[frozenset[int]] = frozenset()
-"""An empty set of numbers, shared by all engines. A set that seldom gets a member starts as this one."""
+"""The shared empty set of numbers: the value of an attribute that seldom gets a member."""
 
 
 class Group:
@@ -43,10 +43,11 @@ class Group:
         taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
-        patience_ends: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
-        roster: The members of a large group by slot and by rule (``roster.py``), once a question has needed them.
-        answers: Number of a slot → the rule that first finished with it, and the number of its activation. The engine notes
-            them for the trace, while there is a tracer.
+        patience_ends: Key: the number of a clause whose stand-by is a rival; value: when the rival's patience ends or
+            has ended (seconds).
+        roster: The members of a large group by slot and by rule (``roster.py``); None until a question needs them.
+        answers: Key: the number of a slot; value: the rule that first finished with the slot, and the number of that
+            rule's activation. The engine fills this table only while there is a tracer.
     """
 
     __slots__ = (
@@ -115,7 +116,7 @@ class Group:
             self.roster.enter(activation)
 
     def part(self, activation: Activation) -> None:
-        """Note that an activation has no non-detached spike of the group any more."""
+        """Note that an activation no longer has a non-detached spike of the group."""
         if activation is self._member:
             self._member = None
         elif activation in self._others:
@@ -165,7 +166,7 @@ class Group:
             self.interested[activation] = None
 
     def forget(self, activation: Activation) -> None:
-        """Remove an activation that no longer waits from `interested`."""
+        """Remove from `interested` an activation that no longer waits."""
         if activation in self.interested:
             self.interested.pop(activation)
 
@@ -177,7 +178,7 @@ class Group:
             self.entries[spike] = None
 
     def leave(self, spike: Spike) -> None:
-        """Note that no half holds the spike any more."""
+        """Note that no half holds the spike any longer."""
         if spike in self.entries:
             self.entries.pop(spike)
 

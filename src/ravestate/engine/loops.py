@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from ravestate.policy.model import RulePlan
 
 MANY: Final = 500
-"""The number of runs in one instant after which the engine notes which rules led to a spike. Most instants have fewer."""
+"""After this many runs in one instant, the engine notes which rules led to a spike. Most instants have fewer runs."""
 
 TURNS: Final = 500
-"""The number of turns in one instant before the engine defers turns. `MANY` and `TURNS` make the 1,000 runs of L23."""
+"""After this many turns in one instant, the engine defers turns. `MANY` and `TURNS` add up to the 1,000 runs of L23."""
 
 
 class Loop:
@@ -37,7 +37,7 @@ class Loop:
     Attributes:
         instant: The number of the instant.
         turns: How many of the runs were further turns of the loop.
-        rules: The rules of these further turns.
+        rules: The rules that had these further turns.
     """
 
     __slots__ = ("instant", "rules", "turns")

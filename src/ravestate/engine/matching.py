@@ -1,4 +1,4 @@
-"""Matching: spikes are born into causal groups and offered to the activations that lack them (L11, L12, L19)."""
+"""Matching: each new spike joins a causal group, and is offered to the activations that lack it (L11, L12, L19)."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Matching:
     def _offer_again(self, group: Group) -> None:
         """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
 
-        As at its birth, a spike is offered only to activations that are older than the spike, oldest first.
+        As at its birth, a spike is offered only to activations that are older than itself, oldest first.
         """
         state, holdings = self.state, self.holdings
         offers: list[tuple[int, int, int, Activation, Spike]] = []
@@ -210,7 +210,7 @@ class Matching:
         holdings.update(activation)
 
     def _show(self, need: Need, spike: Spike) -> None:
-        """Give a new spike to the activations that look at its signal: these hold the newest spike (L19)."""
+        """Give a new spike to the activations that look at its signal, because they hold the newest spike (L19)."""
         for activation in list(self.state.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
                 held = activation.spike(need)

@@ -16,7 +16,7 @@ from ravestate.policy.causes import Causes
 from ravestate.policy.model import RulePlan
 
 FEW: Final = 8
-"""The maximum number of members of a group without a roster."""
+"""A group with at most this many members needs no roster."""
 
 
 class Roster:
@@ -90,7 +90,7 @@ def causers(group: Group, slots: tuple[int, ...], causes: Causes) -> Iterable[Ru
 
 
 def by_rule(group: Group, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
-    """Return a map from the numbers of the members' rules to their activations."""
+    """Return the activations of the members, by the number of their rule."""
     if group.count > FEW:
         return _roster(group, causes).rules
     found: dict[int, dict[Activation, None]] = {}

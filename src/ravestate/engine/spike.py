@@ -19,14 +19,14 @@ class Spike:
 
     Attributes:
         rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
-        before: The number of the last activation that is older than the spike.
-        lineage: In an instant with many runs: the rules that led to the spike (L23).
-        holder: The first activation that has taken the spike, while it holds the spike. Most spikes never have a second
-            holder, and need no table.
+        before: The number of the youngest activation that is older than the spike.
+        lineage: The rules that led to the spike. Only kept in an instant with many runs (L23).
+        holder: The first activation that took the spike; None when it has given the spike up. Most spikes never have a
+            second holder, and need no table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         in_halves: How many halves hold the spike without an activation (``halves.py``).
-        parted: The numbers of the clauses for which these halves do not hold the spike: a clause gave the spike up, or
-            has an activation with it.
+        parted: The numbers of the clauses for which these halves do not hold the spike: the clause gave it up, or has
+            an activation that holds it.
         refused: The numbers of the rules that gave the spike up for good.
     """
 

@@ -3,10 +3,11 @@
 Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of these changes:
 
 - a causal group on which the refusal depends (`Refusal.interests`)
-- a *hope*: a thing outside these groups that may lift the refusal, such as a live rule elsewhere (``refusal.py``)
+- a *hope*: something outside these groups that may lift the refusal, such as a live rule of another group
+  (``refusal.py``)
 
-It also asks again at its recheck time, and when its rule or a rival begins a cooldown. A change of the rules, or a write
-of a slot with predicates, makes all waiting activations ask again. The engine compares each change of an activation
+It also asks again at its recheck time, and when its rule or a rival begins a cooldown. All waiting activations ask
+again when the rules change, or when a slot with predicates changes. The engine compares each change of an activation
 with all hopes (`Waits.stir_rule`).
 """
 
@@ -52,13 +53,13 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Trace the rules for which followers wait, if the rules for which their leaders wait have changed."""
+        """Record in the trace which rules the followers wait for, where that has changed with their leaders' waits."""
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)
 
     def _tell(self, activation: Activation, refusal: Refusal) -> bool:
-        """Trace the names of a refusal, unless the trace has the same names already; return whether they are new."""
+        """Record a refusal's names in the trace, unless it has the same names already. Return whether they are new."""
         state = self.state
         names = tuple(refusal.all_names)
         if names == refusal.told or state.tracer is None:
@@ -134,7 +135,7 @@ class Waits:
         return asking
 
     def pass_time(self) -> None:
-        """Let the next search for a stalemate begin with all stuck activations, because time may change their reasons."""
+        """Make the next search for a stalemate begin with all stuck activations, as time may change their reasons."""
         if self.state.stuck:
             self.state.refused.update(dict.fromkeys(self.state.stuck))
             self.state.stuck.clear()
