@@ -24,7 +24,7 @@ from ravestate.policy.policy import Policy
 QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
 """Types of values that take no time to use."""
 
-HOME = "ravestate"  # the start of the names of the Python modules whose content takes no time to use
+HOME = "ravestate"  # the content of Python modules whose names start with this takes no time to use
 
 
 def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
