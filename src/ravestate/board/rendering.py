@@ -1,6 +1,7 @@
 """Values as text: JSON if it can express them, or else their ``repr``; long texts are cut.
 
-Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. Rendering survives that.
+Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. None of this makes
+rendering fail.
 """
 
 from __future__ import annotations
