@@ -1,7 +1,7 @@
-"""Reading YAML that users write: bounded in depth and in size, with the file and line of every fault.
+"""Read YAML that users write, with limits on depth and size. Every error names the file and the line.
 
-A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the stack.
-This file refuses both immediately.
+A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the
+stack. The loaders here refuse both immediately.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ DEEPEST = 50
 """The maximum depth of nesting in a YAML text."""
 
 DIGITS = 300
-"""The maximum number of characters of a number."""
+"""The maximum number of characters in a number."""
 
 LARGEST = 100_000
 """The maximum number of values in a YAML text. Each alias counts as all the values that it stands for."""

@@ -138,7 +138,7 @@ export interface Dropped {
   reason: string;
 }
 
-/** An arrow between two nodes, given by their ids, with a label that may be empty. */
+/** An arrow between two nodes, which are given by their ids. The label may be empty. */
 export interface Edge {
   source: string;
   target: string;

@@ -22,8 +22,8 @@ _CLASSES: tuple[tuple[float, str], ...] = (
     (1.10, "@"),
 )
 _EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
-_OTHER = 0.85  # the width of any other character
-_WIDE = 1.05  # the width of an East Asian wide character
+_OTHER = 0.85  # the width of any other character, in ems
+_WIDE = 1.05  # the width of an East Asian wide character, in ems
 
 
 def width(text: str, size: float) -> float:

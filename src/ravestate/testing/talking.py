@@ -26,7 +26,7 @@ class Said:
 
     Attributes:
         speaker: ``user`` or ``agent``.
-        text: The user's words as recognised, or the agent's words as far as the user heard them.
+        text: The user's words, as speech recognition heard them, or those of the agent's words that the user heard.
         start, end: The times at which the sound began and ended (seconds on the recording's time line).
         cut: Whether the user interrupted the utterance.
         filler: Whether the utterance only filled a pause.
@@ -57,11 +57,11 @@ def talk(
     Args:
         recording: The sound of the user's microphone, in any usual format.
         output: The WAV file for the loudspeaker's sound, on the time line of the recording; None for no file.
-        modules: The agent's modules; `voiceio` is added.
-        settings: Module's name → its settings, as for `Context`.
+        modules: The agent's modules, without `voiceio`, which `talk` adds.
+        settings: Name of a module → the module's settings, as for `Context`.
         seed: The seed of random choices.
-        show: A function that gets each utterance as soon as the utterance is over.
-        record: A function that gets each record of the trace.
+        show: A function that receives each utterance as soon as the utterance is over.
+        record: A function that receives each record of the trace.
 
     Raises:
         PlatformError: The recording cannot be read; the output is no WAV file, or cannot be written; or a model or a
