@@ -69,7 +69,7 @@ class RuleTimeout(RuleError, TimeoutError):
 
 
 class RunEnded(RuleError):
-    """A rule acted after its run had ended by an interruption, a timeout, or the end of the context."""
+    """A rule acted after its run was over: it had returned, was interrupted or too slow, or the context had ended."""
 
 
 class EngineError(RavestateError, RuntimeError):

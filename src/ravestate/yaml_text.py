@@ -1,4 +1,4 @@
-"""Read YAML that users write, with limits on depth and size. Every error names the file and the line.
+"""Read YAML that users write, with limits on depth and size. Errors name the file and, where possible, the line.
 
 A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the
 stack. The loaders here refuse both immediately.
@@ -29,7 +29,7 @@ LARGEST = 100_000
 def load_yaml(text: str, name: str) -> Any:
     """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
 
-    If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError` with its line.
+    If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError`.
     """
     try:
         with contextlib.suppress(yaml.YAMLError):  # the slower loader below has better error messages

@@ -1,4 +1,4 @@
-"""The routes of the board, the web debugger. It has the same address as the chat page, and the same access checks."""
+"""The routes of the board, the web debugger. The chat page's server serves the board, with the same access checks."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class Attempt:
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
-        """Note a spike that the activation took."""
+        """Record a spike that the activation took."""
         self.held.append(record)
         self._holds.add(record.spike)
         self.lacks = self._missing = record.lacks
@@ -74,7 +74,7 @@ class Attempt:
         self.gave_up.clear()
 
     def lose(self, record: t.GaveUp) -> None:
-        """Note a spike that the activation gave up.
+        """Record a spike that the activation gave up.
 
         If the activation gives up all its spikes in one instant, `lacks` stays as it was before the first of these losses.
         """

@@ -24,7 +24,7 @@ from ravestate.runtime.listeners import Hooks
 AnyAgent = Context | Agent | Policy | Module | ModuleType | str | Path | Sequence[Module | ModuleType]
 """An agent, in one of these forms:
 
-- a module, several modules, or a policy from ``rs.compile``; many conversations may share it
+- a module, several modules, a policy from ``rs.compile``, or an `Agent`; many conversations may share any of these
 - the path of an agent file (``agent.yaml``), or a module's name as on the command line (``hibye``, ``./hello.py``)
 - an ``rs.Context`` that has not started, for special settings or a seed; it serves only one conversation
 """

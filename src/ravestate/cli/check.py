@@ -1,4 +1,4 @@
-"""``ravestate check``: the faults of an agent, and findings that are probably mistakes."""
+"""``ravestate check``: the faults of an agent, and its findings, which are probable mistakes."""
 
 from __future__ import annotations
 

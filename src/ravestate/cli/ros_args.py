@@ -26,9 +26,10 @@ OPTIONS = {
 def translate(arguments: Sequence[str]) -> list[str]:
     """Return the command line with options ``--set`` in place of ROS arguments.
 
-    ROS 2: ``--ros-args -p module.key:=value --params-file FILE -r /from:=/to -r __ns:=/robot --``. ROS 1:
-    ``_module.key:=value``, ``/from:=/to``, ``__name:=guide``. A parameter is a setting of a module. If the arguments
-    give ``__name``, as those of roslaunch do, the node's parameters on the parameter server become settings, too.
+    Arguments of ROS 2 look like ``--ros-args -p module.key:=value --params-file FILE -r /from:=/to -r __ns:=/robot
+    --``. Arguments of ROS 1 look like ``_module.key:=value``, ``/from:=/to`` or ``__name:=guide``. A parameter becomes
+    a setting of a module. If the arguments give ``__name``, as those of roslaunch do, the node's parameters on the
+    parameter server become settings, too.
 
     Raises:
         UsageError: A parameter file is missing or wrong.

@@ -130,7 +130,7 @@ class Module:
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. Arguments: see `slot`."""
+        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. Options: see `SignalOptions`."""
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)

@@ -376,7 +376,7 @@ def _is_taken(groups: Sequence[Group], rule: RulePlan) -> bool:
 
 
 def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
-    """Return whether one of the rule's slots is taken in a group; note the runs that took it in the refusal."""
+    """Return whether one of the rule's slots is taken in a group; record in the refusal which runs took it."""
     if group.taken.keys().isdisjoint(rule.slotset):
         return False
     for slot in rule.slots:
@@ -388,7 +388,7 @@ def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
 
 
 def _note_sure(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
-    """Note the activations whose progress decides whether a rival becomes ready."""
+    """Record the activations whose progress decides whether a rival becomes ready."""
     for root in roots:
         refusal.blockers[root] = None
     refusal.sure.append(roots)

@@ -42,7 +42,7 @@ class Entries:
             self.let_expire(spike, spike.born + half.max_age)
 
     def part(self, spike: Spike, need: Need) -> None:
-        """Note that the need's half no longer holds a spike for the need's clause."""
+        """Record that the need's half no longer holds a spike for the need's clause."""
         half = need.half
         if half is None or self.state.entries(half, spike) is None:
             return

@@ -101,7 +101,7 @@ class Group:
         return activation is self._member or activation in self._others
 
     def join(self, activation: Activation) -> None:
-        """Note that an activation has a non-detached spike of the group."""
+        """Record that an activation has a non-detached spike of the group."""
         if self.has(activation):
             return
         if self._others:
@@ -116,7 +116,7 @@ class Group:
             self.roster.enter(activation)
 
     def part(self, activation: Activation) -> None:
-        """Note that an activation no longer has a non-detached spike of the group."""
+        """Record that an activation no longer has a non-detached spike of the group."""
         if activation is self._member:
             self._member = None
         elif activation in self._others:
@@ -151,7 +151,7 @@ class Group:
         return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
 
     def note(self, slots: tuple[int, ...], rule: str, activation: int) -> None:
-        """Note that the run of an activation of `rule` has finished with `slots`; an earlier note about a slot stays."""
+        """Record that a run of `rule` has finished with `slots`; an earlier record about a slot stays."""
         self.answers = {**dict.fromkeys(slots, (rule, activation)), **self.answers}
 
     def answer(self, slots: tuple[int, ...]) -> tuple[str, int]:
@@ -171,14 +171,14 @@ class Group:
             self.interested.pop(activation)
 
     def enter(self, spike: Spike) -> None:
-        """Note that a half holds a spike of the group."""
+        """Record that a half holds a spike of the group."""
         if self.entries is NOTHING:
             self.entries = {spike: None}
         else:
             self.entries[spike] = None
 
     def leave(self, spike: Spike) -> None:
-        """Note that no half holds the spike any longer."""
+        """Record that no half holds the spike any longer."""
         if spike in self.entries:
             self.entries.pop(spike)
 

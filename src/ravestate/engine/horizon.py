@@ -327,7 +327,7 @@ class Horizon:
         return best
 
     def _rules(self, group: Group) -> Mapping[int, Mapping[Activation, None]]:
-        """Return the members of a group by rule (its number), and note that the results depend on the group."""
+        """Return the members of a group by rule (its number), and record that the results depend on the group."""
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
@@ -345,7 +345,7 @@ class Horizon:
         return found
 
     def _is_far(self, signal: int, group: Group) -> bool:
-        """Return whether a live rule of another group might raise a signal. Note in `hopes` that the answer may change."""
+        """Return whether a live rule of another group might raise a signal. `hopes` records that this may change."""
         causes = self.state.causes
         wide = causes.wide_ancestors(signal)
         if wide:

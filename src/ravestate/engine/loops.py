@@ -113,7 +113,7 @@ class Loops:
         return run.lineage
 
     def find(self, run: Activation) -> Sequence[RulePlan]:
-        """Note the lineage of a run that starts. If an error must name the run's loop now, return the loop's rules."""
+        """Record the lineage of a run that starts. If an error must name its loop now, return the loop's rules."""
         lines = self._lines(run)
         if not lines:
             return ()  # `lineage` begins a loop if the run raises a spike

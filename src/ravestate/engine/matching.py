@@ -39,7 +39,7 @@ class Matching:
     # ------------------------------------------------------------------------------------ groups
 
     def parents(self, run: Activation | None) -> tuple[Spike, ...]:
-        """Return the parents of the spikes that a run raises; none for a detached rule, or for code outside (L19)."""
+        """Return the parents of the spikes that a run raises; none for a detached rule or outside code (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on
 
     def new_group(self) -> Group:
@@ -109,7 +109,7 @@ class Matching:
     # ------------------------------------------------------------------------------------ births
 
     def emit(self, signal: SignalPlan, payload: Any, run: Activation | None) -> None:
-        """Raise a signal, for a run or for code outside (L11)."""
+        """Raise a signal, for a run or for code outside the rules (L11)."""
         if signal.keep_latest:
             self.holdings.withdraw(signal, "superseded")
         parents = self.parents(run)

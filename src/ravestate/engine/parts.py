@@ -111,19 +111,19 @@ class Parts:
     # The runner calls these, after `Engine.parts_at`, if nothing records the events.
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
-        """Handle the event `Write` at the present time; `run` is the number of the run, or None for code outside."""
+        """Handle the event `Write` now; `run` is the number of the run, or None for code outside the rules."""
         state = self.state
         writer = None if run is None else state.running.get(run) or self._run(run)
         self.slots.write(state.slot_of.get(slot) or self._slot(slot), value, writer)
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
-        """Handle the event `Emit` at the present time; `run` is the number of the run, or None for code outside."""
+        """Handle the event `Emit` now; `run` is the number of the run, or None for code outside the rules."""
         state = self.state
         emitter = None if run is None else state.running.get(run) or self._run(run)
         self.matching.emit(state.signal_of.get(signal) or self._signal(signal), payload, emitter)
 
     def done(self, run: int) -> None:
-        """Handle the event `Finish` at the present time, for a run that is done."""
+        """Handle the event `Finish` now, for a run that is done."""
         self.runs.finish(self.state.running.get(run) or self._run(run), DONE, "", None)
 
     # ------------------------------------------------------------------------------------ events

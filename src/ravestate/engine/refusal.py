@@ -53,7 +53,7 @@ class Refusal:
         self.told: tuple[str, ...] = ()
 
     def name(self, rival: Clause) -> None:
-        """Note that the activation waits for a rival."""
+        """Record that the activation waits for a rival."""
         known = self.names.get(rival.rule.name)
         if known is None or known.base < rival.base:
             self.names[rival.rule.name] = rival

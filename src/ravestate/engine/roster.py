@@ -1,8 +1,8 @@
 """A roster: the members of a large causal group by slot and by rule.
 
-A thousand rules may hear one input. A question about one slot then concerns only the few members that write the slot.
-So the engine must not search all members to answer it. A group of few members needs no roster. The roster of a larger
-group is made at the first such question. From then on, `Group.join` and `Group.part` keep it up to date.
+A thousand rules may hear one input. A question about one slot then concerns only the few members that write the slot,
+and a roster finds these without a search. A group of few members needs no roster. The engine makes the roster of a
+larger group at the first such question. From then on, `Group.join` and `Group.part` keep it up to date.
 """
 
 from __future__ import annotations

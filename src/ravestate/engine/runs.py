@@ -127,7 +127,7 @@ class Runs:
         self.judge(watch)
 
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
-        """Note that a watch no longer keeps a spike."""
+        """Record that a watch no longer keeps a spike."""
         watches = self.state.watched_by.get(spike, {})
         watches.pop(watch, None)
         if not watches:
@@ -169,7 +169,7 @@ class Runs:
             state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run))
 
     def _begin_recovery(self, rule: RulePlan) -> None:
-        """Note that a rule with a cooldown has run. The activations whose order this changes ask again (L9, L15)."""
+        """Record that a rule with a cooldown has run. The activations whose order this changes ask again (L9, L15)."""
         state = self.state
         if state.ran is NOTHING:
             state.ran = state.standing.ran = {}

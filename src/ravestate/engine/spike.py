@@ -18,7 +18,7 @@ class Spike:
     """An occurrence of a signal: payload, time of birth (seconds), parents, causal group, and holders.
 
     Attributes:
-        rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
+        rule: The number of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
         before: The number of the youngest activation that is older than the spike.
         lineage: The rules that led to the spike. Only kept in an instant with many runs (L23).
         holder: The first activation that took the spike; None when it has given the spike up. Most spikes never have a
@@ -89,7 +89,7 @@ class Spike:
         return () if holder is None else (holder,)
 
     def hold(self, holder: Activation) -> None:
-        """Note that an activation holds the spike."""
+        """Record that an activation holds the spike."""
         if self._others:
             if holder is not self.holder:
                 self._others[holder] = None
@@ -99,7 +99,7 @@ class Spike:
             self._others = {holder: None}
 
     def release(self, holder: Activation) -> bool:
-        """Note that one of the holders gives the spike up; return whether another activation holds it."""
+        """Record that one of the holders gives the spike up; return whether another activation holds it."""
         if holder is self.holder:
             self.holder = None
             return bool(self._others)
@@ -107,7 +107,7 @@ class Spike:
         return self.is_held
 
     def refuse(self, rule: int) -> None:
-        """Note that a rule gives the spike up for good."""
+        """Record that a rule gives the spike up for good."""
         if self.refused is None:
             self.refused = set()
         self.refused.add(rule)

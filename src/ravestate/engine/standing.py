@@ -22,7 +22,7 @@ INSTANT = 0.5e-9
 
 
 class Standing:
-    """The worth of clauses at the present moment of an engine; `ran` maps the number of a rule to its last run."""
+    """The worth of clauses at the present moment of an engine; `ran` has the times of the rules' last runs."""
 
     __slots__ = ("now", "ran")
 

@@ -198,7 +198,7 @@ class State(Memory):
         if self.live or self.active or self.out or self.errors or self.faults or self.tracer is not None:
             return False
         if self.values.get(self.activity.index) or self.values.get(self.pressure.index):
-            return False  # code outside has set a built-in flag, which the engine must settle
+            return False  # code outside the rules has set a built-in flag, which the engine must settle
         return self.deadlines.next() is None
 
     def adopt(self, policy: Policy) -> None:

@@ -31,7 +31,7 @@ class Waits:
         self.state = state
 
     def begin(self, activation: Activation, refusal: Refusal) -> None:
-        """Make an activation wait for the reasons in `refusal`, and note the changes after which it asks again."""
+        """Make an activation wait for the reasons in `refusal`, and record the changes after which it asks again."""
         state = self.state
         before = activation.refusal
         activation.step(REFUSE)
@@ -98,7 +98,7 @@ class Waits:
             self.stir_rule(activation.clause.rule)
 
     def stir_rule(self, rule: RulePlan) -> None:
-        """Note that an activation of a rule has come, changed or gone. Activations that hope for the rule ask again."""
+        """Record that an activation of a rule came, changed or went. Activations that hope for the rule ask again."""
         state = self.state
         others = len(state.active.get(rule.index, ())) - 1
         for hope in state.hoping:
@@ -114,7 +114,7 @@ class Waits:
                 state.stirred[hope] = None
 
     def stir_half(self, half: Half) -> None:
-        """Note that a half has taken a spike. Activations that hope for one of its rules ask again."""
+        """Record that a half has taken a spike. Activations that hope for one of its rules ask again."""
         state = self.state
         for hope in state.hoping:
             if hope[0] == RULE and hope[1] in half.places:
@@ -142,7 +142,7 @@ class Waits:
 
 
 def patience_of_rivals(state: State, activation: Activation) -> float | None:
-    """Return when the last patience of a waiting activation's rivals ends (seconds); None without pressure."""
+    """Return when the last rival of a waiting activation loses its patience (seconds); None without pressure."""
     names = activation.refusal.names if activation.refusal is not None else ()
     clauses = state.policy.clause_plans
     times: list[float] = []

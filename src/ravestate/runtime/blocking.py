@@ -48,7 +48,7 @@ class StepTimer:
         self._sleeps = 0, 0
 
     def begin(self) -> float:
-        """Note that a step begins. Return the time that `end` needs (seconds of `perf_counter`)."""
+        """Record that a step begins. Return the time that `end` needs (seconds of `perf_counter`)."""
         now = perf_counter()
         if now > self._fresh_until:
             self._fresh_until = now + FRESH

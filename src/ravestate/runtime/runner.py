@@ -124,7 +124,7 @@ class Runner:
         return self._random
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
-        """Raise a signal for a run, or for code outside (None). Any thread may call this."""
+        """Raise a signal for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
             parts.emit(signal, payload, run)
@@ -132,7 +132,7 @@ class Runner:
             self.receive(Emit(signal, payload, run))
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
-        """Write a slot for a run, or for code outside (None). Any thread may call this."""
+        """Write a slot for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
             parts.write(slot, value, run)

@@ -22,7 +22,7 @@ class Spares:
 
     @staticmethod
     def join(loop: asyncio.AbstractEventLoop) -> Spares:
-        """Note that a context has started on a loop, and return the loop's spares."""
+        """Record that a context has started on a loop, and return the loop's spares."""
         spares = ALL.get(loop)
         if spares is None:
             spares = ALL[loop] = Spares(loop)
@@ -30,7 +30,7 @@ class Spares:
         return spares
 
     def leave(self) -> None:
-        """Note that a context has ended."""
+        """Record that a context has ended."""
         self._users -= 1
         if not self._users:
             ALL.pop(self._loop, None)

@@ -43,7 +43,8 @@ class Simulation:
     Attributes:
         context: The simulated context, for everything that has no shortcut in this class.
         said: The values that were written to ``rawio.output``, in order.
-        fired: The names of the rules that ran and did not resign, in the order in which they finished.
+        fired: The names of the rules that fired, in the order in which they finished. A run has not fired if it
+            resigned, or if it failed before its first write.
         failures: The name of each rule that failed, with its exception.
 
     Example:
@@ -89,7 +90,8 @@ class Simulation:
     ) -> Simulation:
         """Return a simulation of the agent in an agent file, as ``ravestate run -f`` reads it.
 
-        The simulation leaves out the built-in platforms (`conio`, `webio`) and their settings; a test uses `say`.
+        The simulation leaves out the built-in platforms (`conio`, `webio`, ...) and their settings. A test calls `say`
+        instead.
 
         Args:
             path: The agent file. Paths of modules in it are relative to its folder.

@@ -112,7 +112,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
     waiting: list[Said] = []
 
     def show_waiting() -> None:
-        """Note the user's waiting utterances, unless the agent is still speaking."""
+        """Pass the user's waiting utterances to `note`, unless the agent is still speaking."""
         if not any(one.start and not one.over for one in begun):
             for one in waiting:
                 note(one)
@@ -120,7 +120,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
     async def hear_user(ctx: RuleContext) -> None:
-        """Note an utterance of the user."""
+        """Pass an utterance of the user to `note`, as soon as the agent is silent."""
         one = ctx.payload(voiceio.utterance)
         waiting.append(Said("user", one.text, one.start, one.end))
         show_waiting()
@@ -135,7 +135,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
         background=True,
     )
     async def hear_agent(ctx: RuleContext) -> None:
-        """Note the utterances of the agent that are over."""
+        """Pass the agent's utterances that are over to `note`."""
         for one in [one for one in begun if one.over]:
             begun.remove(one)
             if one.heard.strip():
@@ -145,7 +145,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=shutdown)
     async def end(ctx: RuleContext) -> None:
-        """Note the remaining utterances."""
+        """Pass the remaining utterances to `note`."""
         begun.clear()
         show_waiting()
 
