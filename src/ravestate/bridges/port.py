@@ -170,8 +170,8 @@ class Conversation:
     def interrupt(self) -> None:
         """End the utterance and the answer in progress: the user has interrupted them.
 
-        If the answering rule has an ``until``, the rule is cancelled. In any case, the user does not hear its words
-        after the interruption.
+        Async rules that answer the user's words are cancelled. A plain function continues, but the user does not hear
+        its words after the interruption.
         """
         if self._growing is not None:
             self._growing.end()

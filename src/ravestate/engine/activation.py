@@ -103,7 +103,7 @@ class Activation:
         state: The `State`, as an integer.
         missing: The needs of the clause that no spike meets yet, as bits.
         ripens: The time (seconds) at which all its spikes will be old enough; `NEVER` unless a spike is too young.
-        newest: The number of the newest spike that it held when it became ready. Only set if it needs no consent.
+        newest: In the queue of ``free.py``: the number of the newest spike that it held when it became ready.
         place: Its place in the queue of ``free.py``; None if it is not there, or is still in the queue's batch.
         patience_ends: Key: a group in which other activations wait for this one; value: the time at which this
             activation's patience ends in that group (seconds; L16).

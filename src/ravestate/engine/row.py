@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ravestate.engine.state import State
 
 SPARE = 32
-"""A row may keep about this many spikes that its half has given up."""
+"""If a row has this many spikes more than twice those of its half, it drops the spikes that the half has given up."""
 
 
 class Row:

@@ -21,8 +21,8 @@ class Spike:
         rule: The number of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
         before: The number of the youngest activation that is older than the spike.
         lineage: The rules that led to the spike. Only kept in an instant with many runs (L23).
-        holder: The first activation that took the spike; None when it has given the spike up. Most spikes never have a
-            second holder, and need no table.
+        holder: One of the activations that hold the spike, or None. Most spikes never have a second holder, and need no
+            table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         in_halves: How many halves hold the spike without an activation (``halves.py``).
         parted: The numbers of the clauses for which these halves do not hold the spike: the clause gave it up, or has
