@@ -190,7 +190,7 @@ class Inspector:
         self._channel.reply(protocol.serialise(frame))
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send answers to the page at once, and send new records about twenty times a second at most."""
+        """Send answers to the page immediately, and new records at most about twenty times per second."""
         idle = IdleShare()
         stopped: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None

@@ -201,7 +201,7 @@ class Recorder:
         self._listen()
 
     def _speed(self) -> float:
-        """Return the current rate (records a second)."""
+        """Return the current rate (records per second)."""
         return self._rate + self._spare * self._idle_share.share()
 
 

@@ -60,7 +60,7 @@ def render(value: object, most: int = 2000) -> Rendered:
             if len(whole) <= most:
                 return Rendered(whole)
         return Rendered(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
-    if kind is Entry:  # an item of a collection: the key comes first, since it matters most
+    if kind is Entry:  # an item of a collection: the key comes first, because it matters most
         key, item = cast("Entry", value)
         name = render(str(key), most).text
         return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)

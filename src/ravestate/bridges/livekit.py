@@ -63,7 +63,7 @@ class RavestateAgent(Agent):
         await self._begun()
 
     async def on_exit(self) -> None:
-        """Stop the agent at once, because the session no longer speaks the agent's words."""
+        """Stop the agent immediately, because the session no longer speaks the agent's words."""
         conversation, self._conversation = self._conversation, None
         if self._watching is not None:
             self._watching.cancel()
@@ -84,7 +84,7 @@ class RavestateAgent(Agent):
                 async for piece in utterance:
                     yield gap + piece
                     gap = ""
-                yield FlushSentinel()  # speak at once: the rest of the answer may take long
+                yield FlushSentinel()  # speak now: the rest of the answer may take long
                 gap = " "
 
     async def _begun(self) -> Conversation:

@@ -1,8 +1,8 @@
 """The life of an activation (L12, L14, L17, L18).
 
-An activation is a clause plus the spikes that it has acquired. Once it has consent, it is a run of the rule. Every
-clause also has an activation on stand-by, which holds no spike yet. No object represents a stand-by: the engine creates
-an object only when the first spike comes.
+An activation is a clause plus the spikes that it has acquired. With consent, it becomes a run of the rule. Every clause
+also has an activation on stand-by, which holds no spike yet. No object represents a stand-by: the engine creates an
+object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.

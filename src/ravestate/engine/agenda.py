@@ -211,7 +211,7 @@ class Agenda:
         """Start the best of the activations that wait for nothing but each other, if there are any."""
         state, breakers = self.state, self.breakers
         if not (state.refused or state.stuck):
-            breakers.clear()  # no activation is stuck any more
+            breakers.clear()  # no activation is stuck now
             return
         found = stalemate(self.consent, state.refused, state.stuck)
         state.refused.clear()

@@ -160,7 +160,8 @@ class Consent:
         """Judge the clauses of a half that holds a spike. Return whether a clause was eliminated.
 
         Each clause lacks only a second spike. If all have the same prospects of getting it, the verdict on the best
-        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, and `ask` judges it by itself.
+        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, and `ask` judges these one by
+        one.
 
         If a clause may still become ready, add it to `refusal`, which `ask` returns.
         """

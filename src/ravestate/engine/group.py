@@ -40,7 +40,7 @@ class Group:
     """The slots that are taken in a group, and the activations that have a stake in it.
 
     Attributes:
-        taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
+        taken: Number of a slot taken in the group → the runs that hold it, or None if a run has finished with it.
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
         patience_ends: Key: the number of a clause whose stand-by is a rival; value: when the rival's patience ends or

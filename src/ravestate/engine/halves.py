@@ -16,9 +16,9 @@ number of activations depends on the rule:
   each activation may lose a spike and then take that older one
 
 To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
-added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge each of its clauses by
-itself. The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no
-signal that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
+added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge its clauses one by
+one. The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no signal
+that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
 """
 
 from __future__ import annotations

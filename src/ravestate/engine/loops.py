@@ -2,7 +2,7 @@
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant, the engine notes for each
 new spike which rules led to the spike. A run is a further *turn* of a loop if its rule also led to one of its spikes.
-After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. Once a
+After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. When a
 single loop has had `TURNS` turns, the engine names the loop's rules in an error.
 
 The turns of all loops count together, because a rule that triggers two runs of itself soon makes thousands of loops.

@@ -146,7 +146,7 @@ class Clause:
     asks_detached: bool = False
     """Whether some, but not all, of the clause's needs are detached."""
     simple: bool = False
-    """Whether a spike makes the clause ready at once: it has a single need, without `min_age`, and no guard."""
+    """Whether one spike is enough to make the clause ready: it has a single need, without `min_age`, and no guard."""
     apart: bool = False
     """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
     reflexive: bool = False

@@ -249,8 +249,8 @@ class Context:
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """Wait for the next spike of a signal, and return its payload.
 
-        The call first performs the effects that are due. If these raise the spike, the call returns at once, and other
-        tasks get no turn. After 64 such calls in a row, the event loop gets a turn.
+        The call first performs the effects that are due. If these raise the spike, the call returns immediately, and
+        other tasks get no turn. After 64 such calls in a row, the event loop gets a turn.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.

@@ -24,7 +24,7 @@ class Functions:
         tasks: The runs of async rules.
         plain: The runs of plain functions, in worker threads; None before the first such run.
         last: The rule whose function started last.
-        running: Number of a run that did not end at once → the context of its function.
+        running: Number of a run that did not end immediately → the context of its function.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner, *, is_virtual: bool) -> None:

@@ -45,7 +45,7 @@ class RuleContext:
     """The argument of a rule's function. With it, the function reads slots, writes slots and emits signals.
 
     ``ctx[slot]`` is the slot's value when the rule started, or the rule's own last write. ``ctx[slot] = value`` writes
-    the slot. A write takes effect, and raises signals, at once.
+    the slot. A write takes effect and raises signals immediately.
     """
 
     __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")

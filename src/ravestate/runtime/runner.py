@@ -343,7 +343,7 @@ class Runner:
         if self.clock.halted:
             self.clock.go()
             self._timer.clear()
-            self.schedule()  # not at once: the caller may be a task, and no task may be current when a rule starts
+            self.schedule()  # not now: the caller may be a task, and no task may be current when a rule starts
 
     def drive(self, time: float) -> None:
         """Set the clock forward to `time` (seconds). It no longer moves by itself; see `Clock.drive`."""

@@ -20,7 +20,7 @@ from time import monotonic
 LAST_GRACE = 5.0  # when the process ends, it waits this many seconds for running functions
 
 SHARE = 32
-"""The maximum number of functions of one context that run at once; further functions wait until one of them ends."""
+"""The maximum number of functions of one context that run at a time; further functions wait until one of them ends."""
 
 THREADS = 256  # the maximum number of worker threads in the process; if all are busy, further jobs wait
 IDLE = 30.0  # a worker thread ends if it has had no job for this many seconds
@@ -126,7 +126,7 @@ def _wait_for_work() -> None:
 
 
 class JobQueue:
-    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait in this queue."""
+    """The jobs of one context. At most `SHARE` of them are in the pool at a time; the others wait in this queue."""
 
     def __init__(self, pool: ThreadPool = POOL) -> None:
         self._pool = pool
