@@ -160,8 +160,7 @@ class Consent:
         """Judge the clauses of a half that holds a spike. Return whether a clause was eliminated.
 
         Each clause lacks only a second spike. If all have the same prospects of getting it, the verdict on the best
-        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, and `ask` judges these one by
-        one.
+        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, which `ask` judges.
 
         If a clause may still become ready, add it to `refusal`, which `ask` returns.
         """
@@ -345,8 +344,7 @@ class Consent:
     def _rivals(self, activation: Activation, group: Group) -> list[tuple[Clause, list[Activation]]]:
         """Return the possible rivals of an activation in a group, in declaration order, with their activations there.
 
-        If a clause has no activation in the group, only its stand-by, it must have at least the utility of the
-        activation's clause.
+        A clause that has only its stand-by there is left out if it has less utility than the activation's clause.
         """
         clause = activation.clause
         slots = clause.rule.slotset
