@@ -1,7 +1,7 @@
 """Ravestate: interactive agents as Signal-Rule-Slot automata.
 
 Declare modules of rules in plain Python, compile them into a policy, run it, talk to it, test it in virtual time.
-Importing this package loads no third-party package and no asyncio; names that need these load on first use.
+Importing this package loads neither third-party packages nor asyncio. Names that need them load on first use.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ import sys
 
 
 def script() -> int:
-    """Run the command line; Ctrl-C ends it quietly, also during the imports."""
+    """Run the command line. Ctrl-C ends it without a traceback, even during the imports."""
     try:
         from ravestate.cli import script
 

@@ -1,8 +1,8 @@
 """The compiled build. ``tools/native.py`` compiles the modules that every event passes through.
 
-The compiled modules are in ``native``, in one folder for each interpreter and platform. `prefer` puts that folder before
-the sources of a package. A stamp in the folder has a checksum of the sources. If the sources have changed since they were
-compiled, or if the environment variable ``RAVESTATE_PURE`` is not empty, the sources run as pure Python.
+The compiled modules are in ``native``, which has a folder for each interpreter and platform. `prefer` makes a package
+find the modules in that folder before the sources. The file ``stamp`` in the folder has a checksum of the sources. The
+sources run as pure Python if they have changed since, or if the environment variable ``RAVESTATE_PURE`` is not empty.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SOURCES = os.path.dirname(__file__)
 PLACE = os.path.join(SOURCES, "native", EXTENSION_SUFFIXES[0].split(".")[1])
 """The folder of the compiled modules for this interpreter, e.g. ``native/cpython-311-x86_64-linux-gnu``."""
 STAMP = os.path.join(PLACE, "stamp")
-"""A file with the checksum of the compiled sources, and then their names, one on each line."""
+"""A file with the checksum of the compiled sources, followed by their names, one on each line."""
 
 COMPILED = "compiled"
 PURE = "pure Python"

@@ -69,7 +69,7 @@ class RuleTimeout(RuleError, TimeoutError):
 
 
 class RunEnded(RuleError):
-    """A rule acted after its run had ended by an interruption, a timeout, or the end of the context."""
+    """A rule acted after its run was over: it had returned, was interrupted or too slow, or the context had ended."""
 
 
 class EngineError(RavestateError, RuntimeError):
@@ -81,7 +81,7 @@ class PlatformError(RavestateError, RuntimeError):
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """Return the hint "; did you mean ...?" for a name that is not among `names`. Without a near name, return ""."""
+    """Return the hint "; did you mean ...?" for a name that is not among `names`, or "" if no name is similar."""
     import difflib  # imported here because only an error needs it
 
     known = list(names)
@@ -105,7 +105,8 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 ALIKE = 0.6
-"""The minimum similarity of two names for a hint: the share of letters that both have in the same order."""
+"""A hint names another name only if the two are at least this similar: the share of letters that both have in the same
+order."""
 
 
 def _is_a_slip(one: str, other: str) -> bool:

@@ -13,8 +13,8 @@ def user_folder(kind: Literal["data", "state", "cache"]) -> Path:
 
     Args:
         kind: ``data`` for files that must not be lost; ``state`` for files that are useful in the next session;
-            ``cache`` for files that can be made again. On Windows, all kinds share a folder. On macOS, ``data`` and
-            ``state`` share one.
+            ``cache`` for files that Ravestate can make again. On Windows, all kinds have the same folder. On macOS,
+            ``data`` and ``state`` have the same folder.
     """
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")

@@ -66,13 +66,14 @@ def load_settings(
     given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Return a map from each module's name to its settings.
+    """Return the settings of the modules, by the module's name.
 
-    Values of `given` outrank the environment's values, and these outrank the defaults. For each module, `given` has
+    Values in `given` override values in the environment, and these override the defaults. For each module, `given` has
     values of fields, or an instance of the module's settings class.
 
     Raises:
-        DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has an error for each.
+        DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has one error for each
+            mistake.
     """
     given = given or {}
     variables = os.environ if environment is None else environment
@@ -128,8 +129,8 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
     """Convert a text from the environment or from ``--set`` to a value for `field`.
 
-    A text field takes the text itself; any other field takes the result of `parse`. If `parse` raises a ValueError, the
-    result is the text.
+    A text field gets the text itself, and any other field gets the result of `parse`. If `parse` raises a ValueError,
+    the field gets the text.
     """
     annotation = cast("Any", model.model_fields[field].annotation)
     kinds = {annotation, *get_args(annotation)}

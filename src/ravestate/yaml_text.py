@@ -1,7 +1,7 @@
-"""Reading YAML that users write: bounded in depth and in size, with the file and line of every fault.
+"""Read YAML that users write, with limits on depth and size. Errors name the file and, where possible, the line.
 
-A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the stack.
-This file refuses both immediately.
+A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the
+stack. The loaders here refuse both immediately.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ DEEPEST = 50
 """The maximum depth of nesting in a YAML text."""
 
 DIGITS = 300
-"""The maximum number of characters of a number."""
+"""The maximum number of characters in a number."""
 
 LARGEST = 100_000
 """The maximum number of values in a YAML text. Each alias counts as all the values that it stands for."""
@@ -29,7 +29,7 @@ LARGEST = 100_000
 def load_yaml(text: str, name: str) -> Any:
     """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
 
-    If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError` with its line.
+    If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError`.
     """
     try:
         with contextlib.suppress(yaml.YAMLError):  # the slower loader below has better error messages

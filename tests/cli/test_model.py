@@ -48,7 +48,7 @@ def test_a_model_is_fetched_listed_used_and_removed(hub: Hub, place: Path, capsy
     assert len(hub.requests) == asked
     assert call(capsys, "model", "remove", "tiny") == (
         0,
-        f"removed {place / 'tiny.gguf'}\nthere is no default model any more\n",
+        f"removed {place / 'tiny.gguf'}\nthere is no longer a default model\n",
         "",
     )
     assert "Now: small talk without a language model" in call(capsys, "model", "list")[1]

@@ -64,7 +64,7 @@ def test_files_that_are_no_pictures_are_reported_and_the_others_are_read(
 
 @pytest.mark.parametrize(
     ("files", "why"),
-    [(("six",), "has 6 faces"), (("obama", "biden"), "shows another person")],
+    [(("six",), "has 6 faces"), (("obama", "biden"), "shows a different person")],
 )
 def test_learn_takes_one_face_of_one_person(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], files: tuple[str, ...], why: str

@@ -84,7 +84,7 @@ export const VERDICTS = {
   },
 };
 
-/** A spike was born; `source` is the activation whose run raised it, or 0 if code outside the rules did. */
+/** A spike was born; `source` is the activation whose run raised it, or 0 if code outside the rules raised it. */
 export interface Born {
   kind: "born";
   time: number;
@@ -138,7 +138,7 @@ export interface Dropped {
   reason: string;
 }
 
-/** An arrow between two nodes, given by their ids, with a label that may be empty. */
+/** An arrow between two nodes, which are given by their ids. The label may be empty. */
 export interface Edge {
   source: string;
   target: string;
@@ -281,7 +281,7 @@ export interface RuleView {
   background: boolean;
 }
 
-/** A slot got a value; `run` is the activation whose run wrote it, or 0 if code outside the rules did. */
+/** A slot got a value; `run` is the activation whose run wrote it, or 0 if code outside the rules wrote it. */
 export interface Set {
   kind: "set";
   time: number;
@@ -413,7 +413,7 @@ export interface ActivationState {
 /**
  * The first frame: it names the conversation or the recording to show.
  *
- * Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the newest conversation. If there is no conversation, the server begins one.
+ * If `session`, `visitor` and `recording` are missing, the server shows the recording that it was started with, or else the newest conversation. If there is no conversation, the server begins one.
  */
 export interface Hello {
   type: "hello";

@@ -53,7 +53,8 @@ class WhyNot:
         at: The time at which the verdict was decided (seconds); None while it is undecided.
         clause: The number of the clause that took a spike; None if no clause did.
         missing: The signals that the rule lacked; empty if it lacked none, or if the verdict has another reason.
-        moments: The rule's history for this cause. Beyond 200 moments, the middle is left out and one moment says so.
+        moments: The rule's history for this cause. If there are more than 200 moments, one moment takes the place of
+            those in the middle.
         whole: Whether the trace reaches back to before the spike; if it does not, the answer may be incomplete.
     """
 

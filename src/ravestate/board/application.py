@@ -1,4 +1,4 @@
-"""The routes of the board (the debugger). They lie beside those of the chat page, and the same checks protect them."""
+"""The routes of the board, the web debugger. The chat page's server serves the board, with the same access checks."""
 
 from __future__ import annotations
 

@@ -23,9 +23,9 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the signals that are without a spike. When the attempt gives up its last spike, `lacks` stays as it was
-    before this loss. `complete` is the time at which the attempt took its last missing spike (seconds);
-    None while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
+    `lacks` has the signals for which the attempt has no spike. When the attempt gives up its last spike, `lacks` stays
+    as it was before this loss. `complete` is the time at which the attempt took its last missing spike (seconds); None
+    while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
     """
 
     id: int
@@ -39,8 +39,8 @@ class Attempt:
     gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])
     started: t.Started | None = None
     settled: t.Settled | None = None
-    _missing: tuple[str, ...] = ()  # the signals that are without a spike now
-    _before: tuple[str, ...] = ()  # those signals before the losses of this instant
+    _missing: tuple[str, ...] = ()  # the signals for which it has no spike now
+    _before: tuple[str, ...] = ()  # the same signals before the losses of this instant
     _holds: set[int] = field(default_factory=set[int])  # the numbers of the spikes that it holds now
 
     @property
@@ -62,11 +62,11 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the attempt's spikes: those that its run began with or, without a run, all that it ever took."""
+        """The numbers of the attempt's spikes: those with which its run began. Without a run, all that it ever took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
-        """Note a spike that the activation took."""
+        """Record a spike that the activation took."""
         self.held.append(record)
         self._holds.add(record.spike)
         self.lacks = self._missing = record.lacks
@@ -74,7 +74,7 @@ class Attempt:
         self.gave_up.clear()
 
     def lose(self, record: t.GaveUp) -> None:
-        """Note a spike that the activation gave up.
+        """Record a spike that the activation gave up.
 
         If the activation gives up all its spikes in one instant, `lacks` stays as it was before the first of these losses.
         """
@@ -105,7 +105,7 @@ class History:
         self.values: dict[str, list[t.Set]] = {}  # by slot
         self.retired: dict[str, float] = {}  # rule → the time at which it retired
         self.fired: dict[str, list[float]] = {}  # rule → the times at which its runs fired
-        self.raising: set[tuple[int, str]] = set()  # each run, with each signal that it raised
+        self.raising: set[tuple[int, str]] = set()  # pairs of a run and a signal that the run raised
         self.dropped: dict[int, t.Dropped] = {}  # by spike
         self.first = self.last = 0.0  # the times of the first and the last record
         self._runs: dict[int, Attempt] = {}  # by activation
@@ -309,7 +309,7 @@ class Rivals:
         return f"{last.by} waited for it from {seconds(last.time)} on, and {ended}"
 
     def _recovered(self, rule: RuleView, time: float) -> float:
-        """Return the share of its utility that a rule has recovered since its last run (L9)."""
+        """Return how far a rule has recovered since its last run, from 0 to 1 (L9)."""
         fired = self._history.fired.get(rule.name, [])
         runs = bisect_right(fired, time)
         return min(1.0, (time - fired[runs - 1]) / rule.cooldown) if rule.cooldown and runs else 1.0

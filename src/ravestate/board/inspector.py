@@ -43,12 +43,12 @@ MOST = 800  # the maximum number of records in a frame; a longer frame would del
 BACKLOG = 20_000  # the maximum number of past records that a new inspector gets
 
 LAG = 25_000
-"""The maximum number of records that an inspector may lag behind. If it lags more, the server skips to the present."""
+"""An inspector may lag behind by this many records. If it lags further behind, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
 """The rate limit for a page's commands: the size of a burst, and the number of commands per second after it."""
 
-LISTED = 1.0  # the seconds between two checks of the list of conversations
+LISTED = 1.0  # check the list of conversations once in this many seconds
 LIST = 100  # the maximum number of conversations in the list: the newest ones, and the one that the page shows
 WORDS = 48  # the maximum number of characters of a visitor's last words in the list of conversations
 REPLIES = 64  # the maximum number of answers that wait to be sent to one page
@@ -79,7 +79,7 @@ class Inspector:
         self._title = title
 
     def wake(self) -> None:
-        """Do nothing when the conversation changes: the records show the change."""
+        """Do nothing when the conversation changes, because the records show the change."""
 
     async def run(self) -> None:
         """Serve the page until either side closes."""
@@ -190,7 +190,7 @@ class Inspector:
         self._channel.reply(protocol.serialise(frame))
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send answers to the page at once, and send new records about twenty times a second at most."""
+        """Send answers to the page immediately, and new records at most about twenty times per second."""
         idle = IdleShare()
         stopped: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None
@@ -264,7 +264,7 @@ class Inspector:
 
 
 def drawing(diagram: Diagram, unfolded: Sequence[str]) -> protocol.Drawing:
-    """Return the diagram with its layout. Only the modules `unfolded` show their rules. 500 nodes need about 1 s."""
+    """Return the diagram with its layout. Only the modules `unfolded` show their rules. 500 nodes take about 1 s."""
     folded = fold(diagram, frozenset(unfolded))
     sizes = {node.id: node_size(node) for node in folded.nodes}
     layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])

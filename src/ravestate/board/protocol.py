@@ -49,8 +49,8 @@ class _Frame(pydantic.BaseModel):
 class Hello(_Frame):
     """The first frame: it names the conversation or the recording to show.
 
-    Without `session`, `visitor` and `recording`, the server shows the recording that it was started with, or else the
-    newest conversation. If there is no conversation, the server begins one.
+    If `session`, `visitor` and `recording` are missing, the server shows the recording that it was started with, or
+    else the newest conversation. If there is no conversation, the server begins one.
 
     Attributes:
         v: The version of the protocol.

@@ -32,14 +32,14 @@ KEPT = 100_000  # the maximum number of records of one context
 IN_ALL = 500_000
 """The maximum number of records of all contexts together. Each record takes about 136 bytes plus its payload."""
 
-BATCH = 100  # the number of records between two calls of `grown`
+BATCH = 100  # a recorder calls `grown` after this many records
 BURST = 20_000  # the maximum number of records in one burst
-RATE = 2_000  # the records per second that a recorder keeps after a burst, while the process is always busy
+RATE = 2_000  # a recorder takes at most this many records per second after a burst, in a process that is always busy
 
 SPARE = 60_000
 """Additional records per second in an idle process. In a process that is half idle, half of this number applies."""
 
-PAUSE = 0.1  # seconds for which a recorder stops listening after too many records
+PAUSE = 0.1  # after too many records, a recorder stops listening for this many seconds
 
 
 @dataclass(slots=True)
@@ -56,7 +56,7 @@ class Gap:
 
 
 SCHEDULE = "/proc/thread-self/schedstat"
-"""The file in which Linux counts a thread's nanoseconds on a processor and in a queue for a processor."""
+"""In this file, Linux counts the nanoseconds for which a thread ran, and those for which it waited for a processor."""
 
 
 class IdleShare:
@@ -81,7 +81,7 @@ class IdleShare:
 
 
 def _kept_waiting() -> float:
-    """Return the seconds for which this thread has waited for a processor so far; 0 if the system does not know."""
+    """Return for how many seconds this thread has waited for a processor; 0 if the system does not measure it."""
     try:
         with open(SCHEDULE, encoding="ascii") as file:
             return int(file.read().split()[1]) / 1e9
@@ -181,7 +181,7 @@ class Recorder:
         self._take(record)  # this call may begin the next gap
 
     def _rest(self) -> None:
-        """Compute how many records the recorder may take now. If it may take none, stop listening for a moment."""
+        """Compute how many records the recorder may take now. If none, stop listening for a moment."""
         loop = asyncio.get_running_loop()
         now = loop.time()
         earned = self._burst if self._granted is None else (now - self._granted) * self._speed()
@@ -201,7 +201,7 @@ class Recorder:
         self._listen()
 
     def _speed(self) -> float:
-        """Return the current rate (records a second)."""
+        """Return the current rate (records per second)."""
         return self._rate + self._spare * self._idle_share.share()
 
 

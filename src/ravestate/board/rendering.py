@@ -1,6 +1,7 @@
 """Values as text: JSON if it can express them, or else their ``repr``; long texts are cut.
 
-Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. Rendering survives that.
+Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. None of this makes
+rendering fail.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def render(value: object, most: int = 2000) -> Rendered:
             if len(whole) <= most:
                 return Rendered(whole)
         return Rendered(json.dumps(well_formed(text[:most]), ensure_ascii=False)[:most], False, True)
-    if kind is Entry:  # an item of a collection: the key comes first, since it matters most
+    if kind is Entry:  # an item of a collection: the key comes first, because it matters most
         key, item = cast("Entry", value)
         name = render(str(key), most).text
         return Rendered((name if item is None else f"{name}: {render(item, most).text}")[:most], False)

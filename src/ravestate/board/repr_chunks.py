@@ -1,4 +1,4 @@
-"""The ``repr`` of a value in chunks. For a huge value, no more chunks are made than the caller reads."""
+"""The ``repr`` of a value in chunks. A caller who reads only some chunks of a huge value saves the rest of the work."""
 
 from __future__ import annotations
 

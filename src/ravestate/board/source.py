@@ -143,7 +143,7 @@ class LiveSource:
                 raise RavestateError(f"an agent takes no {command.type!r}")
 
     def leave(self) -> None:
-        """Start the context's clock again if it is stopped; call this when the last inspector has left."""
+        """Start the context's clock again if it is stopped. Call this when the last inspector has left."""
         if self._session.ended is None and self._context.paused:
             self._context.resume()
             self._session.notify()

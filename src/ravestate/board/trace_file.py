@@ -36,7 +36,8 @@ of 64 MB have about four million commas and brackets."""
 LONGEST = 120  # the maximum number of seconds that reading a file may take
 
 CHUNK = 1000
-"""The number of records in a message between processes. No other thread runs while a message is unpacked."""
+"""The number of records in a message between processes. It is small, because unpacking a message stops all other
+threads."""
 
 SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")  # a pattern for one half of a surrogate pair, as JSON writes it
 
@@ -109,7 +110,7 @@ def open_trace(path: Path) -> Recording:
 
 
 def read_trace(text: str | bytes) -> Recording:
-    """Return the trace that the text of a file describes. Lone surrogates in the text are replaced by question marks.
+    """Return the trace that the text of a file describes. Question marks replace lone surrogates in the text.
 
     Raises:
         ValueError: The text is not a trace; the message names the place of the fault.

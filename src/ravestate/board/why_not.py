@@ -1,8 +1,8 @@
 """Explanations of why a rule did not fire for an input (L25). They need only the trace.
 
 A user asks about one spike and one rule. The answer is about the spike's causal group: all spikes with the same cause.
-An *attempt* is an activation of the rule with spikes of this group (``history.py``). The answer tells the furthest step
-that an attempt reached, and the reason why it stopped there.
+An *attempt* is an activation of the rule with spikes of this group (``history.py``). The answer names the furthest step
+that an attempt reached, and the reason why the attempt stopped there.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def why_not(
 Reached = tuple[Verdict, str, float | None]
 """The furthest step that an attempt reached, the reason as text, and the time at which it stopped there (seconds).
 
-The time is None if the attempt goes on, or if there was no attempt.
+The time is None if the attempt is still in progress, or if there was no attempt.
 """
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
@@ -73,7 +73,7 @@ class _Inquiry:
         self.description = description
         self.opens = opens
         self.rivals = Rivals(history, description)
-        self.asked: list[str] = []  # the rules whose explanation is in progress; none is explained twice
+        self.asked: list[str] = []  # the rules whose explanation is in progress, so that none is explained twice
         self._judged: dict[str, Judgement] = {}
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
@@ -304,7 +304,7 @@ class _Inquiry:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
         verdict, words, at, attempt = self.judge(rule)
-        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # say also why this rule lacked its own signals
+        if verdict in (Verdict.LACKED, Verdict.UNTOUCHED):  # also say why this rule lacked its own signals
             for lack in dict.fromkeys(attempt.lacks if attempt is not None else ()):
                 lacked = self.description.signal(lack)
                 for raiser in () if lacked is None else lacked.raisers:

@@ -19,7 +19,8 @@ from ravestate.board.rendering import Rendered, render, traceback_of
 from ravestate.engine.trace import Record
 
 VERSION = 1
-"""The version of the protocol and of trace files. Additions keep the number; any other change increases it."""
+"""The version of the protocol and of trace files. A new field or a new kind of record does not change this number; any
+other change increases it."""
 
 PAYLOAD = 400  # the maximum number of characters of a payload in a record
 VALUE = 2000  # the maximum number of characters of a slot's value in a record or a `State`
@@ -62,7 +63,7 @@ def data_of(record: Record | Gap) -> TraceRecord:
 
 
 def checked_record(data: TraceRecord) -> Record | Gap:
-    """Return the record that `data` describes. The data must be validated before."""
+    """Return the record that `data` describes. The data must be valid."""
     fields = {f"{name}_" if name == "for" else name: value for name, value in data.items()}
     return KINDS[fields.pop("kind")](**fields)
 
@@ -75,7 +76,7 @@ def rendered_data(rendered: Rendered) -> dict[str, Any]:
 
 
 def _quickly(value: Any) -> dict[str, Any] | None:
-    """Return the data of a frequent kind of value, as `render` would make it; None for any other value."""
+    """Return the data that `render` would make of a frequent kind of value; None for any other value."""
     frequent = value is None or value is True or value is False
     if frequent or (type(value) is str and len(value) < 60 and value.isascii()):
         return {"text": json.dumps(value)}

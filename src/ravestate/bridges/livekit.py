@@ -32,8 +32,8 @@ log = logging.getLogger("ravestate.livekit")
 class RavestateAgent(Agent):
     """A LiveKit agent that answers with a Ravestate agent instead of a language model.
 
-    The session needs no ``llm``. The agent may also speak unasked. LiveKit's preemptive generation is off, because
-    it would send the agent words before the user has finished.
+    The session needs no ``llm``. The agent may also speak unasked. LiveKit's preemptive generation is off, because it
+    would send words to the agent before the user has finished.
 
     Args:
         agent: The Ravestate agent; see `AnyAgent`.
@@ -63,7 +63,7 @@ class RavestateAgent(Agent):
         await self._begun()
 
     async def on_exit(self) -> None:
-        """Stop the agent at once, because the session no longer says the agent's words."""
+        """Stop the agent immediately, because the session no longer speaks the agent's words."""
         conversation, self._conversation = self._conversation, None
         if self._watching is not None:
             self._watching.cancel()
@@ -84,11 +84,11 @@ class RavestateAgent(Agent):
                 async for piece in utterance:
                     yield gap + piece
                     gap = ""
-                yield FlushSentinel()  # speak at once, though the rest of the answer may take long
+                yield FlushSentinel()  # speak now: the rest of the answer may take long
                 gap = " "
 
     async def _begun(self) -> Conversation:
-        """Return the conversation, which begins with the first call."""
+        """Return the conversation. The first call begins it."""
         if self._conversation is None:
             self._conversation = Conversation(self._contexts(), self._say, "livekit")
             self.session.on("conversation_item_added", self._notice)
@@ -119,8 +119,8 @@ class RavestateAgent(Agent):
         self.session.shutdown(drain=failure is None)
 
     def _notice(self, event: ConversationItemAddedEvent | UserStateChangedEvent | UserInputTranscribedEvent) -> None:
-        """Tell the agent what the user has heard, and that they are speaking."""
-        if self._conversation is None:  # the session has gone on to another agent
+        """Tell the agent which of its words the user has heard, or that the user is speaking."""
+        if self._conversation is None:  # the session has switched to another agent
             return
         match event:
             case ConversationItemAddedEvent(item=llm.ChatMessage(role="assistant") as message):
@@ -141,7 +141,7 @@ class RavestateAgent(Agent):
 
 
 class _NoModel(llm.LLM[Any]):
-    """The model that LiveKit demands before it calls `llm_node`; it is never asked."""
+    """A model that never answers. Without a model, LiveKit would not call `llm_node`."""
 
     @property
     def model(self) -> str:

@@ -1,4 +1,4 @@
-"""Ravestate inside a Pipecat pipeline: a processor that stands where the language model would."""
+"""Ravestate inside a Pipecat pipeline: a processor that takes the place of the language model."""
 
 from __future__ import annotations
 
@@ -37,8 +37,9 @@ except ImportError as error:
 class RavestateProcessor(FrameProcessor):
     """A processor that answers with a Ravestate agent instead of a language model.
 
-    It takes the user's words from a user aggregator's `LLMContextFrame`, or from each `TranscriptionFrame` where there is
-    no aggregator. It pushes each utterance of the agent, asked for or not, as the frames of a language model's response.
+    It takes the user's words from a user aggregator's `LLMContextFrame`. Without an aggregator, it takes them from each
+    `TranscriptionFrame`. It pushes each utterance of the agent, answers and unasked ones alike, as the frames of a
+    language model's response.
 
     Args:
         agent: The agent; see `AnyAgent`.
@@ -60,7 +61,7 @@ class RavestateProcessor(FrameProcessor):
         self._conversation = Conversation(contexts_of(agent)(), self._utterances.put_nowait, "pipecat")
         self._tasks: list[asyncio.Task[None]] = []  # they run until `cleanup`
         self._taken: object = None  # the last message of the user that the agent has heard
-        self._guessed = False  # whether the user's turn may go on after the last words
+        self._guessed = False  # whether the user's turn may continue after the last words
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
         """Tell the agent about a frame, and pass the frame on unless it is meant for a language model."""
@@ -75,7 +76,7 @@ class RavestateProcessor(FrameProcessor):
                 if not frame.speculation:
                     conversation.hear(self._new_words(frame.context))
                 return
-            case LLMContextUserTurnFrame() if self._guessed:  # the turn has ended, as the framework guessed
+            case LLMContextUserTurnFrame() if self._guessed:  # the framework guessed right: the turn has ended
                 self._guessed = False
                 conversation.hear(frame.text)
             case EagerEndOfTurnCancelFrame():
@@ -94,7 +95,7 @@ class RavestateProcessor(FrameProcessor):
                 while not self._utterances.empty():
                     self._utterances.get_nowait()
                     self._utterances.task_done()
-                await self._utterances.join()  # the end of the interrupted response precedes the interruption
+                await self._utterances.join()  # so that the interrupted response ends before the interruption passes
             case EndFrame():
                 await conversation.end()
                 await self._utterances.join()
@@ -103,7 +104,7 @@ class RavestateProcessor(FrameProcessor):
         await self.push_frame(frame, direction)
 
     async def cleanup(self) -> None:
-        """Stop the agent, if the pipeline was cancelled instead of ended."""
+        """Stop the agent, if a cancellation has ended the pipeline."""
         await self._conversation.end(at_once=True)
         for task in self._tasks:
             await self.cancel_task(task)
@@ -135,7 +136,7 @@ class RavestateProcessor(FrameProcessor):
             role = message["role"]
             if message is self._taken or (role != "user" and (words or role != "assistant")):
                 break
-            if role == "user":  # the agent's earlier message may come after it
+            if role == "user":  # the agent's earlier message may come after the user's message
                 content = message["content"]
                 newest = newest if words else message
                 words.insert(0, content if isinstance(content, str) else _text_in(content))

@@ -24,13 +24,13 @@ from ravestate.runtime.listeners import Hooks
 AnyAgent = Context | Agent | Policy | Module | ModuleType | str | Path | Sequence[Module | ModuleType]
 """An agent, in one of these forms:
 
-- a module, several modules, or the policy of ``rs.compile``, which many conversations may share
+- a module, several modules, a policy from ``rs.compile``, or an `Agent`; many conversations may share any of these
 - the path of an agent file (``agent.yaml``), or a module's name as on the command line (``hibye``, ``./hello.py``)
 - an ``rs.Context`` that has not started, for special settings or a seed; it serves only one conversation
 """
 
-LONGEST = 30.0  # the maximum number of seconds for which `Conversation.end` waits for an answer
-FAREWELL = 5.0  # the maximum number of seconds for the agent's farewell
+LONGEST = 30.0  # `Conversation.end` waits at most this many seconds for an answer
+FAREWELL = 5.0  # the agent's farewell may take at most this many seconds
 
 
 def contexts_of(agent: AnyAgent) -> Callable[[], Context]:
@@ -38,7 +38,7 @@ def contexts_of(agent: AnyAgent) -> Callable[[], Context]:
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
-        DeclarationError: The agent can neither hear nor speak: it lacks the module rawio.
+        DeclarationError: The agent can neither hear nor speak, because it lacks the module rawio.
         UsageError: There is no such module, or the agent file has mistakes.
     """
     if isinstance(agent, Context):
@@ -66,11 +66,11 @@ def _loaded(agent: Agent | Policy | Module | ModuleType | str | Path | Sequence[
 
 
 class Utterance:
-    """An utterance of the agent, as an async iterator. It yields each piece as soon as the agent has written the piece."""
+    """An utterance of the agent, as an async iterator. It yields each piece as soon as the agent writes it."""
 
     def __init__(self) -> None:
         self.text = ""
-        """The text so far, including the pieces after an interruption."""
+        """The text so far, including pieces from after an interruption."""
         self._pieces: asyncio.Queue[str | None] = asyncio.Queue()
         self.ended = False
         """Whether the iterator ends after the pieces so far."""
@@ -98,7 +98,7 @@ class Utterance:
 
 
 class Conversation:
-    """A conversation with an agent. Call everything on one event loop.
+    """A conversation with an agent. Call all its methods on one event loop.
 
     Args:
         context: The agent's context for this conversation.
@@ -116,7 +116,7 @@ class Conversation:
         self._begun = self._over = False
 
     async def begin(self) -> None:
-        """Start the agent, unless it already runs, and tell it that the user is there."""
+        """Start the agent, unless it runs already, and tell it that the user is present."""
         if self._begun:
             return
         self._begun = True
@@ -129,7 +129,7 @@ class Conversation:
         self._change_users(lambda users: {**users, self._user: None})
 
     async def end(self, *, at_once: bool = False) -> None:
-        """Stop the agent, after its last answer and a farewell; with `at_once`, do not wait for these."""
+        """Stop the agent after its last answer and a farewell. With `at_once`, do not wait for them."""
         if not self._begun or self._over:
             return
         self._over = True
@@ -145,7 +145,7 @@ class Conversation:
             self._fall_silent()
 
     async def until_agent_leaves(self) -> None:
-        """Wait until the agent ends the conversation (``ctx.stop()``). If a call of `end` ends it, wait for ever.
+        """Wait until the agent ends the conversation (``ctx.stop()``). If a call of `end` ends it, never return.
 
         Raises:
             RavestateError: The agent has failed.
@@ -170,8 +170,8 @@ class Conversation:
     def interrupt(self) -> None:
         """End the utterance and the answer in progress: the user has interrupted them.
 
-        A rule that answers is cancelled if it has an ``until``. In any case, its words after the interruption are not
-        said.
+        Async rules that answer the user's words are cancelled. A plain function continues, but the user does not hear
+        its words after the interruption.
         """
         if self._growing is not None:
             self._growing.end()
@@ -233,7 +233,7 @@ class Conversation:
             self._growing = None
 
     async def _follow(self, utterance: Utterance) -> None:
-        """End a growing utterance once no rule may add to it, even if a rule has failed in the middle of it."""
+        """End a growing utterance as soon as no rule can add to it, even if a rule has failed in the middle of it."""
         with contextlib.suppress(RavestateError):  # an error of the engine: `until_agent_leaves` raises it
             await self.context.quiet(rawio.output)
         if self._growing is utterance:

@@ -28,7 +28,7 @@ COMMANDS = {
     "memory": "list, show, export and forget what an agent knows",
     "model": "list, fetch and remove language models for small talk",
     "genqa": "read documents, and answer questions from them",
-    "voice": "check the devices and models of speech, transcribe, speak, hold a conversation with a recording",
+    "voice": "check the devices and models for speech, transcribe, speak, hold a conversation with a recording",
     "vision": "say whose faces are in pictures, learn a face, check the camera",
     "activity": "name the activity that somebody performs in a video, teach an activity",
     "ros": "check an agent's topics and services, list the network's topics, show a topic's messages",
@@ -38,7 +38,7 @@ COMMANDS = {
 
 
 LAST_GRACE = 0.5
-"""The seconds for which an ending command waits for rules whose functions still run."""
+"""A command that ends waits this many seconds for rules whose functions are still running."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -94,9 +94,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def script() -> int:
     """Run the command ``ravestate``, and end the process.
 
-    The interpreter stops the remaining threads in the middle of their work. In a C++ library, such as a model that is
-    still loading, this aborts the process. So the process ends here, after everything else has been cleaned up. It waits
-    for threads no longer than `LAST_GRACE`, which is enough for functions that save something.
+    At its end, the interpreter stops the remaining threads in the middle of their work. If a thread is inside a C++
+    library, for instance to load a model, this aborts the process. So this function ends the process itself, after
+    everything else has been cleaned up. It waits for threads no longer than `LAST_GRACE`, which is enough for functions
+    that save something.
     """
     import atexit
     import os
@@ -122,10 +123,10 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=allow_abbrev, **options)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
-        """Parse the arguments. Refuse unknown arguments, for which the main parser would show its own usage."""
+        """Parse the arguments. Refuse unknown ones here, because the main parser would show its own usage for them."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]
-        # After an option, further words belong to the argument that takes several words.
+        # Words after an option belong to the argument that takes several words.
         if many and unknown and all(not word.startswith("-") for word in unknown):
             setattr(options, many[0], [*getattr(options, many[0]), *unknown])
             return options, []

@@ -23,15 +23,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     guessing = actions.add_parser(
         "guess",
         help="name the activity that somebody performs in a video or a file of landmarks",
-        description="Print a line for each window of some seconds: its beginning and end (seconds), the activity or "
+        description="Print a line for each window of a few seconds: its beginning and end (seconds), the activity or "
         "'unknown', and the confidence. Exit code 1: no body can be seen.",
     )
     guessing.add_argument("file", type=Path, metavar="FILE", help="a video, or landmarks (.npz)")
     teaching = actions.add_parser(
         "teach",
-        help="teach an activity by recordings of it",
-        description="Learn an activity from recordings, and keep their landmarks, not their pictures. Cut a recording to the "
-        "time in which somebody performs the activity. A recording of some seconds is enough, but several are better.",
+        help="teach an activity with recordings of it",
+        description="Learn an activity from recordings, and keep their landmarks, not their pictures. Cut each recording to the "
+        "time in which somebody performs the activity. A few seconds are enough, but several recordings are better.",
     )
     teaching.add_argument("name", metavar="NAME", help="the name as it is spoken, such as 'playing the flute'")
     teaching.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a video, or landmarks (.npz)")
@@ -118,8 +118,8 @@ def _teach(options: argparse.Namespace, folder: Path, settings: Any) -> int:
     unlike = sum(known.recognise(part).name != name for part in parts)
     if unlike:
         print(
-            f"ravestate activity: {unlike} of {len(parts)} demonstrations would not be recognised: film one person from the front, "
-            f"who does nothing else. Then forget these: ravestate activity forget {shlex.quote(name)}",
+            f"ravestate activity: {unlike} of {len(parts)} demonstrations would not be recognised: film one person from the front "
+            f"who does nothing else. First forget these demonstrations: ravestate activity forget {shlex.quote(name)}",
             file=sys.stderr,
         )
     return 0

@@ -1,4 +1,4 @@
-"""The arguments by which a user names an agent: modules, an agent file, settings."""
+"""The arguments with which a user names an agent: modules, an agent file, settings."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
     """Return the agent that the parsed arguments describe. The modules `first` come before the agent's modules.
 
-    With `announce`, print which Python code the agent files run. Commands that only inspect an agent need this.
+    With `announce`, print which Python code the agent files run. Commands that only inspect an agent use this.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.
@@ -86,7 +86,7 @@ def announce_platforms(agent: AgentSpec, command: str) -> None:
     """Print which platforms have no user, because another platform serves all users."""
     modules = with_required(agent.modules)
     servers = [module.name for module in modules if module.serve is not None]
-    # The page of webio has a microphone of its own, for which it needs voiceio.
+    # webio needs voiceio, too, for the microphone of its page.
     idle = [name for name in ("conio", "voiceio") if any(module.name == name for module in agent.modules)]
     idle = [name for name in idle if name != "voiceio" or "webio" not in servers]
     if servers and idle:
@@ -97,10 +97,10 @@ def announce_platforms(agent: AgentSpec, command: str) -> None:
 
 
 def check_voice(agent: AgentSpec) -> None:
-    """Check the parts of speech before the agent greets, if the agent listens to this machine's microphone.
+    """If the agent listens to this machine's microphone, check before the greeting whether it can hear and speak.
 
     Raises:
-        PlatformError: A part is missing.
+        PlatformError: A device, a model or a package for speech is missing.
     """
     modules = with_required(agent.modules)
     if all(module.name != "voiceio" for module in modules) or any(module.serve is not None for module in modules):

@@ -1,4 +1,4 @@
-"""``ravestate check``: the faults of an agent, and the findings that its designer should look at."""
+"""``ravestate check``: the faults of an agent, and its findings, which are probable mistakes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
         for fault in error.exceptions if isinstance(error, DeclarationErrors) else [error]:
             _print(f"fault: {fault}", error=True)
         return 1
-    # It is no mistake if a built-in module offers signals and cooldowns that this agent does not use.
+    # It is not a mistake if a built-in module has signals and cooldowns that this agent does not use.
     findings = [
         f
         for f in policy.findings(inspect.getsource)

@@ -31,12 +31,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     forgetting = actions.add_parser("forget", help="forget files and folders")
     for action in (indexing, forgetting):
         action.add_argument(
-            "paths", nargs="+", type=Path, metavar="PATH", help="a file, or a folder with all that is in it"
+            "paths", nargs="+", type=Path, metavar="PATH", help="a file, or a folder with everything in it"
         )
     asking = actions.add_parser("ask", help="ask a question, and see the passages found")
     asking.add_argument("question", nargs="+", metavar="QUESTION")
     for action in (indexing, listing, forgetting, asking):
-        _add_index(action, default=argparse.SUPPRESS)  # without a default here, an option before the action is kept
+        _add_index(action, default=argparse.SUPPRESS)  # a default here would replace an option before the action
 
 
 def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:
@@ -44,14 +44,14 @@ def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:
         "--index",
         metavar="FILE",
         default=default,
-        help="the index file; by default RAVESTATE_GENQA_INDEX of the environment, or else a file in your data folder",
+        help="the index file; by default the one in the variable RAVESTATE_GENQA_INDEX, or else one in your data folder",
     )
 
 
 def run(options: argparse.Namespace) -> int:
     try:
         return _run(options)
-    except PlatformError as error:  # the message names the option of `ravestate run`; this command has another option
+    except PlatformError as error:  # the message names the option of `ravestate run`, not that of this command
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 

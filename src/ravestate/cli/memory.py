@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
     """Add the options that choose a memory.
 
-    With `later`, the options come after an action. An option that is left out after the action keeps
+    With `later`, the options come after an action. If the user leaves an option out after the action, the option keeps
     its value from before the action.
     """
     default = argparse.SUPPRESS if later else None
@@ -77,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         try:
             memory.opened().result()
-        except PlatformError as error:  # the message names the option of `ravestate run`; this command has another
+        except PlatformError as error:  # the message names the option of `ravestate run`, not that of this command
             raise PlatformError(str(error).replace("--set ontology.path=", "--path ")) from error
         unseen = memory.undeclared().result()
         if unseen:
@@ -228,7 +228,7 @@ def _everything(memory: Memory) -> list[Node]:
 
 
 def _chosen(memory: Memory, which: str) -> Node:
-    """Return the only node with this id or this name; upper and lower case do not matter in names."""
+    """Return the node with this id, or the only node with this name. Upper and lower case do not matter in names."""
     node = memory.get(which).result()
     if node is not None:
         return node

@@ -117,5 +117,5 @@ def _remove(model: CatalogueModel) -> int:
     if was_default:
         left = next((other for other in model_store.catalogue().values() if other.installed), None)
         model_store.set_default(left and left.name)
-        print(f"the default is {left.name} now" if left else "there is no default model any more")
+        print(f"the default is {left.name} now" if left else "there is no longer a default model")
     return 0

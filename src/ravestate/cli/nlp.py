@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SHOWN = 5
 """The maximum number of intents in the table."""
 PATIENCE = 60.0
-"""Seconds to wait for a language model. The wait may be long, because no user of an agent waits for an answer here."""
+"""Wait this many seconds for a language model. The wait may be long, because nobody waits for an agent's answer."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a name of the agent (may be repeated), as in the setting nlp.agent_names",
     )
     parser.add_argument("--model", default="", metavar="NAME", help="a language model, as in the setting nlp.model")
-    parser.add_argument("--base-url", default="", metavar="URL", help="its server, as in the setting nlp.base_url")
+    parser.add_argument(
+        "--base-url", default="", metavar="URL", help="the model's server, as in the setting nlp.base_url"
+    )
     parser.add_argument("-f", "--file", metavar="FILE", help="an agent file: show the scores of its intents")
     parser.add_argument(
         "-m",

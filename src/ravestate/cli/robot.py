@@ -107,7 +107,7 @@ def _known(settings: dict[str, Any]) -> dict[str, Any]:
 
 
 async def _running(settings: dict[str, Any]) -> str:
-    """Return ``ros1`` if a master of ROS 1 answers, ``ros2`` if an installation of ROS 2 is sourced, else ``bus``."""
+    """Return ``ros1`` if a ROS 1 master answers, ``ros2`` if a ROS 2 installation is sourced, else ``bus``."""
     import os
     from urllib.parse import urlsplit
 

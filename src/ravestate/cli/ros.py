@@ -1,4 +1,4 @@
-"""``ravestate ros``: check what an agent is bound to, list the topics of the network, and show a topic's messages."""
+"""``ravestate ros``: check an agent's topics and services, list the network's topics, show a topic's messages."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.ros.checking import Bound
 
 LONG = 64
-"""The number of items of a list above which `echo` leaves out the rest."""
+"""If a list has more items than this, `echo` shows only its beginning."""
 LOOKS = 24
-"""The number of attempts to find a topic: nodes of ROS 2 find each other one by one, on a busy machine slowly."""
+"""Look for a topic this many times: ROS 2 nodes find each other one by one, and slowly on a busy machine."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -174,7 +174,7 @@ def _finds(graph: dict[str, Any], topic: str) -> bool:
 
 
 async def _look_again(node: Node, topic: str) -> dict[str, Any]:
-    """Return the graph once it has the topic, or after six seconds: nodes of ROS 2 find each other one by one."""
+    """Return the graph as soon as it has the topic, or after `LOOKS` attempts, which take at least six seconds."""
     graph: dict[str, Any] = {}
     for _ in range(LOOKS):
         graph = await node.graph()
@@ -234,7 +234,7 @@ async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) 
 
 
 def _shortened(value: Any) -> Any:
-    """Return plain data without the middle of its long lists, such as the pixels of an image."""
+    """Return plain data with only the beginnings of long lists, such as the pixels of an image."""
     if isinstance(value, dict):
         fields = cast("dict[str, Any]", value)
         return {key: _shortened(item) for key, item in fields.items()}

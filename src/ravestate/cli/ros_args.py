@@ -1,4 +1,4 @@
-"""The arguments that launch files of ROS pass to a node, as settings of an agent."""
+"""Convert the arguments that a ROS launch file passes to a node into settings of an agent."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from ravestate.cli.ros_params import from_file, from_server, setting
 
 SPECIAL = {"__ns": "namespace", "__node": "node", "__name": "node"}
-"""The special names of a remapping → the settings of ``ros1`` and ``ros2``."""
+"""Special name in a remapping → the setting of ``ros1`` and ``ros2`` that it gives."""
 
 IGNORED = ("__log", "__master", "__ip", "__hostname")
 """Arguments of ROS 1 that say nothing about the agent."""
@@ -24,11 +24,12 @@ OPTIONS = {
 
 
 def translate(arguments: Sequence[str]) -> list[str]:
-    """Return a command line in which arguments of ROS are options ``--set``.
+    """Return the command line with options ``--set`` in place of ROS arguments.
 
-    ROS 2: ``--ros-args -p module.key:=value --params-file FILE -r /from:=/to -r __ns:=/robot --``. ROS 1:
-    ``_module.key:=value``, ``/from:=/to``, ``__name:=guide``. A parameter is a setting of a module. With ``__name``, as
-    roslaunch gives it, the node's parameters on the parameter server are settings as well.
+    Arguments of ROS 2 look like ``--ros-args -p module.key:=value --params-file FILE -r /from:=/to -r __ns:=/robot
+    --``. Arguments of ROS 1 look like ``_module.key:=value``, ``/from:=/to`` or ``__name:=guide``. A parameter becomes
+    a setting of a module. If the arguments give ``__name``, as those of roslaunch do, the node's parameters on the
+    parameter server become settings, too.
 
     Raises:
         UsageError: A parameter file is missing or wrong.

@@ -1,4 +1,4 @@
-"""Parameters of ROS as settings: those of a parameter file of ROS 2, and those of the parameter server of ROS 1."""
+"""Convert ROS parameters into settings: from a ROS 2 parameter file, or from the ROS 1 parameter server."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from ravestate.yaml_text import load_yaml
 
 PARAMETERS = "ros__parameters"
 SIMULATED = "use_sim_time"
-"""The parameter of every node that says whether time is simulated; a setting of `ros1` and `ros2`."""
+"""Every node has this parameter, which says whether time is simulated. It is also a setting of `ros1` and `ros2`."""
 OTHERS = ("qos_overrides", "start_type_description_service")
-"""The beginnings of the names of parameters that ROS 2 gives to every node."""
+"""ROS 2 gives every node parameters whose names begin like this. They are no settings."""
 
 Found = list[tuple[str, Any]]
 
 
 def from_file(path: Path, node: str, namespace: str) -> Found:
-    """Return settings and their values from a parameter file of ROS 2.
+    """Return the settings in a ROS 2 parameter file, each with its value.
 
     Args:
-        path: The file. A launch file passes one with ``--params-file``.
+        path: The file. A launch file names it with ``--params-file``.
         node: The node's name.
         namespace: Its namespace, such as ``/robot``.
 
@@ -50,7 +50,7 @@ def from_file(path: Path, node: str, namespace: str) -> Found:
 
 
 def from_server(node: str, namespace: str) -> Found:
-    """Return the private parameters of a node on the parameter server of ROS 1, as settings and their values.
+    """Return settings with their values: the private parameters of a node on the ROS 1 parameter server.
 
     ``roslaunch`` writes these parameters to the server. Without a master, the result is empty.
     """
@@ -67,7 +67,7 @@ def from_server(node: str, namespace: str) -> Found:
 
 
 def setting(version: str, name: str) -> str | None:
-    """Return the setting ``module.key`` that a parameter stands for; None if the parameter concerns no module."""
+    """Return the setting ``module.key`` that a parameter sets; None if the parameter concerns no module."""
     if name == SIMULATED:
         return f"{version}.{SIMULATED}"
     return name if "." in name and not name.startswith(OTHERS) else None

@@ -1,4 +1,4 @@
-"""``ravestate vision``: say whose faces are in pictures, learn a face, and check the eyes."""
+"""``ravestate vision``: say whose faces are in pictures, learn a face, and check the camera."""
 
 from __future__ import annotations
 
@@ -149,13 +149,15 @@ def _learn(options: argparse.Namespace, settings: dict[str, Any]) -> int:
                 raise UsageError(f"{file}: {str(error).removeprefix('visionio: ')}") from None
             if len(found) != 1:
                 problem = (
-                    f"has {len(found)} faces: cut out the one of {name}" if found else "has no face that can be found"
+                    f"has {len(found)} faces: crop it to the face of {name}"
+                    if found
+                    else "has no face that can be found"
                 )
                 raise UsageError(f"{file} {problem}")
             [face] = found
             vector: Vector = tuple(face["vector"])
             if vectors and (far := min(dist(vector, other) for _, other in vectors)) > vision.threshold:
-                raise UsageError(f"{file} shows another person than {options.files[0]} (distance {far:.3f})")
+                raise UsageError(f"{file} shows a different person from {options.files[0]} (distance {far:.3f})")
             if face["quality"] < vision.quality:
                 print(
                     f"ravestate vision: {file}: left out, the face is hard to see ({face['quality']:.2f})",
@@ -214,7 +216,7 @@ def _eye(settings: Any) -> Generator[Eye]:
 
 @contextmanager
 def _memory(settings: Any, *, make: bool) -> Generator[Memory | None]:
-    """Open the memory. Give None if there is no memory and `make` is false."""
+    """Open the memory, and yield it. Yield None if there is no memory and `make` is false."""
     from ravestate.modules.meta.ontology.opening import open_memory, path_of
 
     path = path_of(settings)

@@ -23,7 +23,7 @@ R = TypeVar("R")
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that makes a method refuse an unknown keyword; the message names the nearest known keyword.
 
-    The method takes `options` besides the keywords in its signature.
+    The method accepts `options`, too, besides the keywords in its signature.
     """
 
     def decorate(method: Callable[P, R]) -> Callable[P, R]:
@@ -63,7 +63,7 @@ def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None
 
 
 def check_function(function: object, title: str, *, named: bool, where: str, decorator: str) -> None:
-    """Refuse a value that cannot be a rule's function. If the declaration has a ``name=``, `named` is true.
+    """Refuse a value that cannot be a rule's function. `named` says whether the declaration has a ``name=``.
 
     The messages use `where`, the place of the declaration, and `decorator`, the decorator as the user types it.
     """
@@ -89,8 +89,8 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 def condition(value: object, what: str, where: str, home: str) -> Condition:
     """Return `value` if it is a condition; refuse any other value.
 
-    For the message, `what` is the argument's name, and `where` is the place of the declaration. In the message, names
-    of the module `home` appear without the module's name.
+    The message uses `what`, the argument's name, and `where`, the place of the declaration. It shows names of the
+    module `home` without the module's name.
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)

@@ -23,7 +23,7 @@ DEFAULT_MAX_AGE = 5.0  # the default `max_age` of a constraint, in seconds (L4)
 Predicate = Callable[[Any], object]  # a function of a payload or of a slot's value
 
 LATER = inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
-"""The flags of a code object. A call of code with one of these flags only makes a generator or a coroutine."""
+"""Flags of a code object. Calling code with one of these flags only makes a generator or a coroutine."""
 
 
 class Condition:
@@ -67,7 +67,7 @@ class Constraint(Condition):
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give up a spike when it is older than `seconds`; with ``None``, keep it for ever. The default is 5 s."""
+        """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s."""
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:
@@ -131,9 +131,9 @@ class AnyOf(Compound):
 
 
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
-    """Return `predicate` if it is a plain function; refuse any other value. `what` and `of` are for the message.
+    """Return `predicate` if it is a plain function; refuse any other value. The message uses `what` and `of`.
 
-    A call of an asynchronous function or a generator only creates an object, and that object always counts as true.
+    Calling an asynchronous function or a generator only creates an object, and that object always counts as true.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")

@@ -21,7 +21,7 @@ startup = core.signal("startup", input=True)
 """Raised once, when a context starts."""
 
 shutdown = core.signal("shutdown", input=True)
-"""Raised once, when a context is about to end; the context waits a few seconds for rules that react to it."""
+"""Raised once, when a context is about to end. The context waits a few seconds for rules that react to this signal."""
 
 error = core.signal("error", payload=RuleFailure, input=True)
 """Raised when a rule fails (L18)."""

@@ -33,7 +33,7 @@ class Module:
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
         serve: An async function, for platforms that serve many users at once. ``rs.run`` calls it with the `Agent`
-            instead of running one context. The function makes a context for each user, and returns when cancelled.
+            instead of running one context. The function makes a context for each user, and ends when it is cancelled.
 
     Example:
         >>> import ravestate as rs
@@ -111,7 +111,7 @@ class Module:
 
         Args:
             name: The slot's name within the module.
-            default: The slot's value before the first write. Each context starts with a copy of its own.
+            default: The slot's value before the first write. Each context gets its own copy.
             type: The value's type, e.g. ``str`` or ``str | Path``. Writing a value of another type fails; None is
                 allowed if it is the default. Types that ``isinstance`` cannot check are not enforced.
             options: See `SlotOptions`.
@@ -130,7 +130,7 @@ class Module:
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. Arguments: see `slot`."""
+        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. Options: see `SignalOptions`."""
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)
@@ -168,10 +168,11 @@ class Module:
                 cause exclude each other (L10).
             emits: The signal or signals that the function may emit.
             weight: A factor above 0 that multiplies the utility (L9).
-            cooldown: Seconds over which the utility recovers from 0 after a run (L9).
-            patience: Seconds that other rules wait for this rule to be ready (L16); by default, the context's patience.
+            cooldown: After a run, the utility takes this many seconds to recover from 0 (L9).
+            patience: Other rules wait this many seconds for this rule to become ready (L16). The default is the
+                context's patience.
             until: A condition that interrupts a run (L21).
-            timeout: Seconds that a run may take (L18); no limit by default.
+            timeout: The maximum duration of a run in seconds (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
             background: If true, the rule never makes ``rs.activity`` true (L22).
             name: The rule's name within the module; by default the function's name.

@@ -22,7 +22,7 @@ class Rule(Generic[P, R]):
     """A function with its declaration, made by ``@module.rule(...)``. Calling the rule calls the function.
 
     Attributes:
-        name: The qualified name, ``module:function``.
+        name: The qualified name, ``module:name``; by default, the function's name comes after the colon.
         function: The function that runs when the rule fires.
         is_async: Whether the function is a coroutine function. Coroutine functions run on the loop, plain functions in
             a worker thread.

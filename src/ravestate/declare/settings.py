@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """The name of a numeric setting, and its `owner`: a settings class, or None for that of the rule's own module."""
+    """The name of a numeric setting, and its `owner`: a settings class, or None for that of the rule's module."""
 
     name: str
     owner: type | None = None

@@ -11,7 +11,7 @@ from ravestate.declare.settings import Number
 T = TypeVar("T")
 
 Keep = Literal["all", "latest"]
-"""The effect of a new spike on its signal's older live spikes: ``"all"`` keeps them up to a limit, ``"latest"``
+"""The effect of a new spike on the older live spikes of its signal: ``"all"`` keeps them, up to a limit. ``"latest"``
 withdraws them (L20, L23)."""
 
 DEFAULT_LIMIT = 100_000  # the default of a signal's `limit`: its maximum number of live spikes
@@ -38,7 +38,7 @@ class Signal(Condition, Generic[T]):
 
     Attributes:
         name: The qualified name, ``module:name``.
-        payload: The payload's type. It is None if there is no payload; it is also None for a slot's signal, whose
+        payload: The payload's type; None if there is no payload. It is also None for the signal of a slot, whose
             payload has the slot's type.
         input, keep, limit: As for `SignalOptions`.
         origin: The place of the declaration, ``file:line``.

@@ -39,7 +39,7 @@ class Slot(Generic[T]):
 
     Attributes:
         name: The qualified name, ``module:name``.
-        default: The value before the first write; each context gets a copy of its own.
+        default: The value before the first write. Each context gets its own copy.
         type: The type that `isinstance` checks at each write; None if writes are not checked.
         declared: The type as the designer wrote it, such as ``list[int]``; None if the designer gave no type.
         always: Whether writing an equal value also raises the slot's signals.

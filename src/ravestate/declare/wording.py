@@ -5,15 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 
-LENGTH = 60  # the maximum number of characters that a value takes up in a message
+LENGTH = 60  # the maximum number of characters of a value in a message
 
 HERE = __file__.removesuffix("wording.py")
 CORE = HERE + "core.py"  # the only file in this folder that declares signals
 
 
 def spelt(name: str, home: str = "") -> str:
-    """Return a qualified name as Python code: ``rawio.output``, or ``output`` in the file of its own module
-    (`home`)."""
+    """Return a qualified name as Python code: ``rawio.output``, or just ``output`` if `home` is the name's module."""
     parts = name.split(":")
     if parts[0] == "core":
         parts[0] = "rs"

@@ -1,8 +1,9 @@
 """Acyclic graphs: a topological order, and a small set of edges whose reversal makes a graph acyclic.
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
-both ends at once; the edges that point backwards in this order are reversed. There are two refinements: weak edges are
-reversed before strong edges, and the vertex's number breaks ties, so that the result depends on the input alone.
+both ends at the same time. Then it reverses the edges that point backwards in this order. There are two refinements.
+Weak edges are reversed before strong edges. The vertex's number breaks ties, so that the result depends only on the
+input.
 """
 
 from __future__ import annotations

@@ -18,8 +18,8 @@ Extent = tuple[float, float]
 """Width and height in pixels."""
 
 _SCREEN = 720.0  # pixels: a picture of at most this height fits a screen, even if the picture is narrow
-_TALLEST = 1.2  # the minimum of width : height; a narrower picture is too tall
-_ASPECT = 1.6  # desired width : height
+_TALLEST = 1.2  # a picture is too tall if its width : height is less than this
+_ASPECT = 1.6  # the best width : height
 _SPLITS = 16  # the maximum number of parts into which the largest layer is split
 
 

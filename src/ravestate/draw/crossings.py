@@ -13,8 +13,8 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph, places
 
-_WORK = 400_000  # the maximum product of the numbers of segments and sweeps
-_PATIENCE = 4  # sweeps without improvement before the search ends
+_WORK = 400_000  # the maximum of segments x sweeps
+_PATIENCE = 4  # the search ends after this many sweeps without improvement
 
 
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
@@ -29,7 +29,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
         after = [_dummies_centred(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
-    # The 1 lets an equally good initial order replace the order of creation.
+    # With the 1, an equally good initial order replaces the order of creation.
     least = count_crossings(best, after) + 1
     for downwards in (True, False):
         order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)

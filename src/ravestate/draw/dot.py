@@ -67,5 +67,5 @@ def _quoted(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape quotes, backslashes and ampersands; Graphviz would take an ampersand for an HTML entity."""
+    """Escape quotes, backslashes and ampersands; Graphviz would read an ampersand as an HTML entity."""
     return clean(text).replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')

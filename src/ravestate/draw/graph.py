@@ -35,7 +35,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """An arrow between two nodes, given by their ids, with a label that may be empty."""
+    """An arrow between two nodes, which are given by their ids. The label may be empty."""
 
     source: str
     target: str

@@ -2,7 +2,7 @@
 
 Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line begins
 and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at one port
-share their dummies too: a hub shows one hyperedge with branches instead of a bundle of parallel lines.
+share their dummies, too. So a hub shows one hyperedge with branches instead of a bundle of parallel lines.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""Two adjacent vertices of a layer (upper, lower), `False` for a dummy → the minimum pixels between the two."""
+"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper, and the lower, is not a dummy."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
@@ -102,8 +102,8 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # A label needs a piece of line that belongs to its edge alone, near the arrow's head. Two dashed lines
-            # look like one only if they start at the same point.
+            # A label needs a piece of line that belongs only to its edge, near the arrow's head. The dashes of two
+            # lines match only if both lines start at the same point, so dashed lines share dummies only from there.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
@@ -183,7 +183,7 @@ class _Builder:
 
 
 def place_ports(graph: LayeredGraph) -> None:
-    """Place the ports of each side in the order of the vertices to which they lead; the layers must be in order."""
+    """Place the ports of each side in the order of the vertices that they lead to. Call this after `order` is final."""
     place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:

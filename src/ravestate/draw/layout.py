@@ -6,7 +6,8 @@
 4. Coordinate assignment places ports (`layered`) and vertices (`coordinates`).
 5. Edge routing sets the distances between the layers and the turns of the lines (`tracks`, `routing`).
 
-Connected components are laid out one by one and packed in rows. The result depends on the diagram and its order alone.
+Connected components are laid out one by one and packed in rows. The result depends only on the diagram and the order of
+its nodes and edges.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from ravestate.policy.components import components
 Size = tuple[float, float]
 """Width and height in pixels."""
 
-_GAP = 32.0  # pixels between layers with straight lines
+_GAP = 32.0  # pixels between two layers if all lines between them are straight
 _TURN = 2.0  # average pixels that each port adds to a gap, for the turns of its lines
 _BETWEEN = 36.0  # pixels between components
 _ASPECT = 1.6  # desired width : height of packed components

@@ -15,7 +15,7 @@ from ravestate.draw.acyclic import topological
 Arc = tuple[int, int, int, int]
 """An arc: its tail, its head, its weight, and its minimum length in layers."""
 
-_WORK = 2_000_000  # the maximum product of the numbers of exchanges and vertices
+_WORK = 2_000_000  # the maximum of exchanges x vertices
 
 
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:

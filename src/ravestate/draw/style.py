@@ -58,7 +58,7 @@ EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
     "condition": EdgeStyle(_INK, 1.6, "", "open"),
     "condition_detached": EdgeStyle(_INK, 2.0, "0.1 5", "hollow"),
 }
-"""Kind of edge → its style. Dashes of length 0.1 look like dots, since line ends are round."""
+"""Kind of edge → its style. Dashes of length 0.1 look like dots, because line ends are round."""
 
 
 def stylesheet() -> str:

@@ -1,4 +1,4 @@
-"""The diagram as a standalone SVG: it loads nothing, and follows the viewer's light or dark mode."""
+"""The diagram as a standalone SVG, which loads no other files and follows the viewer's light or dark mode."""
 
 from __future__ import annotations
 

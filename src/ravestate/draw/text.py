@@ -22,8 +22,8 @@ _CLASSES: tuple[tuple[float, str], ...] = (
     (1.10, "@"),
 )
 _EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
-_OTHER = 0.85  # the width of any other character
-_WIDE = 1.05  # the width of an East Asian wide character
+_OTHER = 0.85  # the width of any other character, in ems
+_WIDE = 1.05  # the width of an East Asian wide character, in ems
 
 
 def width(text: str, size: float) -> float:
@@ -32,7 +32,7 @@ def width(text: str, size: float) -> float:
 
 
 def shorten(text: str, size: float, limit: float) -> str:
-    """Cut the middle out of a text wider than `limit` pixels; both ends stay, since names often differ there."""
+    """Cut the middle out of a text wider than `limit` pixels; both ends stay, as names often differ there."""
     if width(text, size) <= limit:
         return text
     room = limit - width("…", size)

@@ -18,7 +18,7 @@ Segment = tuple[int, int, float, float]
 
 _NEAR = 5.0  # pixels: closer stubs look like one line
 _APART = 7.0  # pixels: minimum distance between two vertical lines on one track
-_LEVEL = 0.01  # pixels: a net whose ends differ by less needs no track
+_LEVEL = 0.01  # pixels: a net needs no track if the heights of its ends differ by less
 _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of all crossings together
 
 
@@ -110,7 +110,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
     """Return the segments to slant if `a` cannot be left of `b`.
 
-    If two stubs overlap, the segments of the stub with fewer segments are slanted.
+    If two stubs overlap, slant the segments of the stub that has fewer of them.
     """
     found: set[int] = set()
     for p, y in a.left.items():

@@ -3,31 +3,32 @@
 The code cites the laws of the automaton by number, such as L15. ``docs/explanation/processing-model.md`` explains the
 laws, and ``tests/laws`` has one file of tests for each law.
 
-An `Engine` at work has `Parts` (``parts.py``): one class per file, all with the same `State`. An event passes through
-the parts in this order:
+A working `Engine` has `Parts` (``parts.py``): objects that share one `State`, each with a file of its own. An event
+passes through the parts in this order:
 
 1. *Receive.* `Engine.receive` finds the event's handler in the table `HANDLERS` (``parts.py``). A write goes to `Slots`,
    which raises the slot's signals.
-2. *Match.* `Matching.birth` creates the spike and offers it to activations, which take it by `Holdings.acquire`. Then
+2. *Match.* `Matching.birth` creates the spike and offers it to activations, which take it with `Holdings.acquire`. Then
    `Holdings.update` finds out whether the activation is ready. A simple clause needs no such check, because one spike
    makes it ready (`Clause.simple`). `Holdings.complete` queues the ready activation. `Halves`, `Benches` and
    `ConflictSets` create an activation only when it may run, so most activations are never created.
 3. *Start.* `Engine.effects` runs the loop in `Parts.effects`, until a run must start or stop, or nothing is left to do.
    Activations that need no consent start first (`Agenda.start_free`). The caller performs these effects, reports the
    runs that have ended, and calls `Engine.effects` again.
-4. *Consent.* Once all these have started, `Agenda.consent_round` lets the other ready activations ask. `Consent.ask`
-   looks for rivals, and a `Horizon` judges whether each may still become ready. With consent, `Runs.start` orders the
-   run. Without it, `Waits.begin` keeps the `Refusal`. A `Roster` finds the rivals in a large group, and `Leaders`
-   answer if a refusal is certain. `stalemate` finds activations that wait for nothing but each other.
+4. *Consent.* After all of these have started, `Agenda.consent_round` lets the other ready activations ask.
+   `Consent.ask` looks for rivals, and a `Horizon` judges whether each may still become ready. With consent,
+   `Runs.start` starts the run. Without it, `Waits.begin` keeps the `Refusal`. A `Roster` finds the rivals in a large
+   group. If a refusal is certain, `Leaders` give it without a search. `stalemate` finds activations that wait for
+   nothing but each other.
 5. *End.* `Runs.finish` settles a run by the table `OUTCOMES`.
 6. *Wake.* A change that may lift a refusal marks a causal group in `State.dirty`, or a *hope* in `State.stirred`, or
    puts the activation into `State.asking`. A hope is something outside the activation's groups that may lift its
    refusal (``refusal.py``). The next round of consent begins with `Waits.wake`, which returns the activations that ask
    again.
 
-The passing of time goes through the same steps. `Engine.advance` finds the deadlines that are due, and the table `DUE`
-(``parts.py``) has a handler for each kind of deadline. When a patience ends, the waiting activation asks again, and
-`Consent` eliminates the rival.
+Deadlines go through the same steps. `Engine.advance` finds the deadlines that are due, and the table `DUE`
+(``parts.py``) has a handler for each kind of deadline. When a rival's patience ends, the activation that waits for it
+asks again, and `Consent` eliminates the rival.
 
 To see why a rule waits, call `explain`: it names the rules that each activation waits for. The activation's `Refusal`
 also has the activations (`blockers`), groups (`interests`) and hopes on which the wait depends.

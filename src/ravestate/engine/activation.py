@@ -1,15 +1,15 @@
 """The life of an activation (L12, L14, L17, L18).
 
-An activation is a clause plus the spikes that it has acquired. Once it has consent, it is a run of the rule. Every
-clause also has an activation in stand-by, which holds no spike yet. No object represents a stand-by: the engine creates
-an object only when the first spike comes.
+An activation is a clause plus the spikes that it has acquired. With consent, it becomes a run of the rule. Every clause
+also has an activation on stand-by, which holds no spike yet. No object represents a stand-by: the engine creates an
+object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
 - `WAITING`: a group refused consent; the activation asks again when something changes.
 - `RUNNING`: the rule's function runs.
 - `CANCELLING`: the engine has cancelled the function, which is cleaning up.
-- `ENDED`: the activation holds nothing any more.
+- `ENDED`: the activation no longer holds anything.
 
 A step that is not in the table of transitions is a bug in the engine.
 """
@@ -76,14 +76,14 @@ TRANSITIONS: dict[tuple[State, Step], State] = {
 
 _TABLE: Final = [[int(TRANSITIONS.get((state, step), -1)) for step in Step] for state in State]
 
-# The same states and steps as whole numbers, which cost less than members of an enumeration.
+# The same states and steps as plain integers, which are faster than members of an enumeration.
 GATHERING: Final = 0
 READY: Final = 1
 WAITING: Final = 2
 RUNNING: Final = 3
 ENDED: Final = 5
 NAMES: Final = tuple(state.name.lower() for state in State)
-"""The names of the states."""
+"""The names of the states, in lower case, by the number of the state."""
 COMPLETE: Final = 0
 LOSE: Final = 1
 REFUSE: Final = 2
@@ -96,24 +96,24 @@ class Activation:
     """A clause plus the spikes that it has acquired.
 
     Attributes:
-        id: A number that grows with each new activation. Only the trace, snapshots and explanations show it, because it
-            may depend on the tracer: with a tracer, a different activation may run with the same spikes.
-        number: The number of its run in events and effects; 0 until it runs. Runs are numbered in the order of their
-            start, so a tracer cannot change the number (L24, L25).
-        state: The `State`, as a whole number.
-        missing: The bits of the clause's needs without a spike.
-        ripens: While one of its spikes is too young: the time at which all will be old enough (seconds).
-        newest: If it needs no consent: the number of the newest spike that it held when it became ready.
-        place: While it is ready and needs no consent: its place in the queue (``free.py``), if it has one of its own.
-        patience_ends: Group in which others wait for it, although it may never become ready → when its patience ends
-            there (seconds; L16).
-        refusal: While it waits: the reasons (``refusal.py``).
+        id: A number that grows with each new activation. It may depend on whether there is a tracer, so only the trace,
+            snapshots and explanations show it.
+        number: The number that events and effects use for its run; 0 until it runs. Runs are numbered in the order of
+            their start, so a tracer cannot change the number (L24, L25).
+        state: The `State`, as an integer.
+        missing: The needs of the clause that no spike meets yet, as bits.
+        ripens: The time (seconds) at which all its spikes will be old enough; `NEVER` unless a spike is too young.
+        newest: In the queue of ``free.py``: the number of the newest spike that it held when it became ready.
+        place: Its place in the queue of ``free.py``; None if it is not there, or is still in the queue's batch.
+        patience_ends: Key: a group in which other activations wait for this one; value: the time at which this
+            activation's patience ends in that group (seconds; L16).
+        refusal: The reasons for which it waits (``refusal.py``); None unless it waits.
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
         groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
         deadline: The time at which the run times out (seconds).
-        told: The reason for which the engine cancelled the run; empty if it did not.
-        lineage: In an instant with many runs: the rules that led to the run, including its own rule (L23).
+        told: The reason for which the engine cancelled the run; empty if the engine did not cancel it.
+        lineage: The rules that led to the run, including its own rule. Only kept in an instant with many runs (L23).
     """
 
     __slots__ = (
@@ -173,7 +173,7 @@ class Activation:
         return spike in self._several if self._several else spike is self._only
 
     def put(self, need: Need, spike: Spike | None) -> None:
-        """Set the spike that meets one of the clause's needs; None if no spike does any more."""
+        """Set the spike that meets one of the clause's needs, or None if no spike meets it any longer."""
         if self._several:
             spikes = list(self._several)
             spikes[need.index] = spike
@@ -182,10 +182,10 @@ class Activation:
             self._only = spike
 
     def step(self, step: int) -> None:
-        """Change the state by one `Step` of the table.
+        """Take a `Step`: change the state as the table of transitions says.
 
         Raises:
-            EngineError: The table has no such transition.
+            EngineError: The table has no transition for this step from the present state.
         """
         state = _TABLE[self.state][step]
         if state < 0:

@@ -1,8 +1,9 @@
 """The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
 
 1. Activations that need no consent start at once: their rules write no slot, or all their constraints are detached.
-2. When none of these is left, the other ready activations ask for consent (``consent.py``): older causes first, and
-   within a cause the greatest utility first. By then, the rules of step 1 that never suspend have ended.
+2. When none of these is left, the other ready activations ask for consent (``consent.py``). Activations with older
+   causes ask first; of those with the same cause, the one with the greatest utility. By then, the rules of step 1 that
+   never suspend have ended.
 3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true comes
    earlier, before step 1 (``parts.py``).
 
@@ -27,7 +28,7 @@ from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
 
 BATCH: Final = 100
-"""The maximum number of free activations that start in one go. Then the caller reports the events of these runs."""
+"""Start at most this many free activations at a time. Then the caller reports the events of these runs."""
 
 Turn = tuple[int, float, int, int, Activation]
 """A place in the queue of activations that ask: the number of the activation's oldest causal group, its sort key
@@ -47,7 +48,7 @@ class Agenda:
         self.queue = Line()
         """The activations that ask in this instant, the best first."""
         self.places: dict[Activation, Any] = {}
-        """Activation in the queue → its valid place. The queue may also hold earlier places of it, which do not count."""
+        """Activation in the queue → its valid place. The queue may also hold outdated places of the activation."""
         self.recovering = False
         """Whether time changes the order of the queue, because rules with a cooldown are in it."""
         self.time = 0.0
@@ -87,7 +88,7 @@ class Agenda:
         )
 
     def consent_round(self) -> None:
-        """Let ready activations ask for consent: older causes first, and the best activation first within a cause.
+        """Let ready activations ask for consent: oldest cause first, and for one cause the best activation first.
 
         If a rule has started in this round, an activation that reads one of the rule's slots asks in the next round. By
         then, the rule has made the writes that precede its first suspension, and the activation sees them.
@@ -201,7 +202,7 @@ class Agenda:
         return False
 
     def _turn(self, activation: Activation) -> Any:
-        """Return the activation's place in the queue, a `Turn`: older causes first, and the best first within a cause."""
+        """Return the activation's place in the queue, a `Turn`: first by age of cause, then by `State.order`."""
         groups, clause = activation.firm_groups(), activation.clause
         cause = groups[0].id if len(groups) == 1 else min([group.id for group in groups])
         return (cause, -self.state.effective(clause), clause.index, activation.id, activation)
@@ -210,7 +211,7 @@ class Agenda:
         """Start the best of the activations that wait for nothing but each other, if there are any."""
         state, breakers = self.state, self.breakers
         if not (state.refused or state.stuck):
-            breakers.clear()  # no activation is stuck any more
+            breakers.clear()  # no activation is stuck now
             return
         found = stalemate(self.consent, state.refused, state.stuck)
         state.refused.clear()
@@ -238,7 +239,7 @@ class Agenda:
                 if best in freed:
                     continue
             for group in best.firm_groups():
-                for other in group.interested:  # the start changes the group, so these may be stuck no more
+                for other in group.interested:  # the start changes the group, so these may no longer be stuck
                     stuck.discard(other)
                     state.refused[other] = None
             self.runs.start(best)
@@ -255,7 +256,7 @@ def _is_taken(activation: Activation) -> bool:
 
 
 def _presses(activations: Iterable[Activation]) -> bool:
-    """Return whether one of the activations counts for ``core:pressure``. Those that hear a built-in flag do not."""
+    """Return whether one of the activations counts for ``core:pressure``: it hears no built-in flag."""
     for activation in activations:
         if not activation.clause.reflexive:
             return True

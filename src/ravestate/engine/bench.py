@@ -15,7 +15,7 @@ class Bench:
         half: The half.
         spikes: The spikes, oldest first. Each has a number *n*: its activations get the numbers from *n* + 1 on.
         partner: The counterpart, or None if the spikes lack one.
-        late: The spikes that have grown too old for the half while they had a counterpart.
+        late: The spikes that became too old for the half while they had a counterpart.
     """
 
     __slots__ = ("half", "late", "partner", "spikes")
@@ -27,7 +27,7 @@ class Bench:
         self.late: list[Spike] = []
 
     def join(self, other: Bench) -> None:
-        """Take the spikes of another bench, and keep the order of age."""
+        """Take over the spikes of another bench, and keep all of them in order of age."""
         mine, theirs = self.spikes, other.spikes
         if next(iter(theirs.values())) > next(reversed(mine.values())):
             mine.update(theirs)

@@ -2,14 +2,14 @@
 
 A clause with two needs takes a pair of spikes. Suppose that a hundred first spikes wait when a counterpart arrives. The
 counterpart completes a hundred pairs. Only one pair runs, and the first spikes of the other pairs take the next
-counterpart (L12). So only the oldest pair gets an activation, the *head*. The other first spikes stay on the bench, and
-the whole bench takes the next counterpart.
+counterpart (L12). So only the oldest pair gets an activation, the *head* of the bench. The other first spikes stay on
+the bench, and the whole bench takes the next counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). Its activations wait for no rival, so a
-group refuses them only while a slot is taken there. If a group refuses the head, the engine makes a head of the next
-spike at once. The new head asks in the same round of consent.
+group refuses them only while a slot is taken there. If a group refuses the head, the engine at once creates a new head,
+for the next first spike. The new head asks in the same round of consent.
 
-So the pairs with older first spikes ask first. Consent goes by the age of causal groups, which is the same order: no
+So the pairs with older first spikes ask first. In consent, older causal groups go first. Both orders are the same: no
 rule raises these signals, so each spike begins a group. Before a group merges, its spikes leave their benches.
 `Consent` treats each spike on a bench with a counterpart as a ready activation. Activations with less utility wait for
 it.
@@ -136,7 +136,7 @@ class Benches:
                 self.holdings.entries.let_expire(spike, spike.born + half.max_age)
 
     def _join(self, one: Bench, other: Bench) -> Bench:
-        """Make one bench of two: the longer one takes the spikes of the other."""
+        """Join two benches into one: the longer bench takes over the spikes of the other."""
         longer, shorter = (one, other) if len(one.spikes) >= len(other.spikes) else (other, one)
         seats = self.state.seats[one.half]
         for spike in shorter.spikes:
@@ -157,7 +157,7 @@ class Benches:
             if holder.state >= RUNNING:
                 return
             if holder.state == WAITING and not taken and holder not in self.state.asking:
-                continue  # another group refuses this activation
+                continue  # a group other than the counterpart's refuses this activation
             if (min([group.id for group in holder.firm_groups()]), holder.id) <= order:
                 return
         self.make(bench, first)

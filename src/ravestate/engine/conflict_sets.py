@@ -2,8 +2,8 @@
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
 the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
-its run resigns or fails, the next clause takes its place. The queue is *unfolded* into ordinary activations if there is
-a tracer, and when a rule retires or is added. It also unfolds if a rival may come between the clauses
+its run resigns or fails, the next clause takes its place. If there is a tracer, or when a rule retires or is added, the
+queue *unfolds* into ordinary activations. It also unfolds if a rival's utility may lie between those of the clauses
 (`Consent.is_contested`). The number of each activation is fixed from the start, and no signal that an alternative
 raises can help a rival (`find_conflict_sets`). So it does not matter when a queue unfolds. An explanation unfolds
 nothing.
@@ -74,7 +74,7 @@ class ConflictSets:
             self.unfold(activation)
 
     def _enters(self, clause: Clause, spike: Spike) -> bool:
-        """Return whether a clause takes a spike: its rule has not retired, and its predicates fit the payload."""
+        """Return whether a clause takes a spike: its rule has not retired, and its predicates accept the payload."""
         if self.state.retired and clause.rule.index in self.state.retired:
             return False
         need = clause.needs[0]

@@ -8,8 +8,8 @@ that a rule of the group may cause.
 If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience ends,
 the activation stops waiting for it. A rival gets its patience once in each group (L16).
 
-A clause without an activation may be a rival, too. Its *stand-by*, which holds no spike, is then the rival. A *half*
-(``halves.py``) holds spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and
+A clause without an activation may be a rival, too. The rival is then the clause's *stand-by*, which holds no spike. A
+*half* (``halves.py``) holds spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and
 `_judge_rival` judges all rivals.
 """
 
@@ -68,7 +68,7 @@ class Consent:
         for group in groups:
             refusal.interests[group] = None
         horizon: Horizon | None = None
-        # Rivals that are behind now, but will be ahead in the next moment.
+        # Rivals that are behind the activation now, but will be ahead of it in the next moment.
         soon: list[tuple[Clause, list[Activation], Group]] = []
         eliminated = False
         for group in groups:
@@ -115,7 +115,7 @@ class Consent:
         *,
         commit: bool,
     ) -> bool:
-        """Judge a rival's activations in a group, and its stand-by. Return whether an activation was eliminated.
+        """Judge a rival in a group: its activations and its stand-by. Return whether an activation was eliminated.
 
         If the rival may still become ready, add it to `refusal`, which `ask` returns.
         """
@@ -126,7 +126,7 @@ class Consent:
             self.halves.unfold_clause(rival)
         living = [*members, *horizon.elsewhere(rival, group)]
         if len(living) > 1:
-            living.sort(key=by_age)  # oldest first, because an older activation may cover younger ones (`_is_covered`)
+            living.sort(key=by_age)  # an older activation may cover younger ones (`_is_covered`)
         for member in (*living, None):
             if member is None:
                 if outside:
@@ -160,7 +160,7 @@ class Consent:
         """Judge the clauses of a half that holds a spike. Return whether a clause was eliminated.
 
         Each clause lacks only a second spike. If all have the same prospects of getting it, the verdict on the best
-        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, and `ask` judges it by itself.
+        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, which `ask` judges.
 
         If a clause may still become ready, add it to `refusal`, which `ask` returns.
         """
@@ -188,7 +188,7 @@ class Consent:
         return False
 
     def _is_held_beside(self, half: Half, spike: Spike) -> bool:
-        """Return whether a clause has both: a spike in a half, and an activation that already holds this spike."""
+        """Return whether an activation holds a spike that the half holds for the activation's clause, too."""
         for holder in spike.holders:
             rank = half.rank.get(holder.clause.index)
             if rank is not None and self.state.keeps(half.best[rank], spike):
@@ -227,7 +227,7 @@ class Consent:
         return eliminated
 
     def _best(self, half: Half, spike: Spike, clause: Clause) -> Need | None:
-        """Return the need of the best rival of `clause` for which a half holds a spike; None without a rival."""
+        """Return the need of the best rival of `clause` for which a half holds a spike; None if there is none."""
         for need in half.best:
             if need.clause is not clause and self.state.keeps(need, spike):
                 return need if self.state.standing.is_ahead(need.clause, clause) else None
@@ -269,7 +269,9 @@ class Consent:
     def press(
         self, rival: Clause, member: Activation | None, group: Group, by: Activation, *, commit: bool = True
     ) -> float:
-        """Start a rival's patience in a group, unless it has begun; return its end (seconds), or minus infinity without one.
+        """Start a rival's patience in a group, unless it has started already.
+
+        Return when the patience ends (seconds), or minus infinity if it has not started.
 
         Args:
             rival: The rival, which may never become ready.
@@ -332,7 +334,7 @@ class Consent:
         return Horizon(self.state, inert, stuck)
 
     def _rival_halves(self, clause: Clause, group: Group) -> list[tuple[Half, Spike]]:
-        """Return each half that writes a slot of `clause`, paired with each spike of the group that the half holds."""
+        """Return the halves whose rules write a slot of `clause`, each with each spike of the group that it holds."""
         slots = clause.rule.slotset
         found: list[tuple[Half, Spike]] = []
         for spike in group.entries:
@@ -342,8 +344,7 @@ class Consent:
     def _rivals(self, activation: Activation, group: Group) -> list[tuple[Clause, list[Activation]]]:
         """Return the possible rivals of an activation in a group, in declaration order, with their activations there.
 
-        A clause that has no activation there, only its stand-by, is left out if it has less utility than the
-        activation's clause.
+        A clause that has only its stand-by there is left out if it has less utility than the activation's clause.
         """
         clause = activation.clause
         slots = clause.rule.slotset
@@ -374,7 +375,7 @@ def _is_taken(groups: Sequence[Group], rule: RulePlan) -> bool:
 
 
 def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
-    """Return whether one of the rule's slots is taken in a group; note the runs that took it in the refusal."""
+    """Return whether one of the rule's slots is taken in a group; record in the refusal which runs took it."""
     if group.taken.keys().isdisjoint(rule.slotset):
         return False
     for slot in rule.slots:
@@ -386,7 +387,7 @@ def _note_taken(refusal: Refusal, group: Group, rule: RulePlan) -> bool:
 
 
 def _note_sure(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
-    """Note the activations whose progress decides whether a rival becomes ready."""
+    """Record the activations whose progress decides whether a rival becomes ready."""
     for root in roots:
         refusal.blockers[root] = None
     refusal.sure.append(roots)

@@ -1,4 +1,4 @@
-"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or needs no deadline.
+"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or no longer needs one.
 
 `Deadlines` knows which entries still count. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
 """
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Kind(enum.IntEnum):
-    """A kind of deadline. Deadlines of the same time fall due in this order: gains before losses."""
+    """A kind of deadline. Deadlines at the same time fall due in this order: gains before losses."""
 
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need
@@ -29,7 +29,7 @@ class Kind(enum.IntEnum):
     WATCH = 7  # the spikes of an `until` condition are old enough
 
 
-# Reading an attribute of an enumeration costs more than using its value.
+# Reading a member from its enumeration takes longer than reading one of these names.
 RIPEN, LOOK, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
@@ -44,7 +44,7 @@ class Deadlines:
     def __init__(self, state: State) -> None:
         self.state = state
         self.earliest = inf
-        """A time (seconds) before which no entry is due."""
+        """No entry is due before this time (seconds)."""
         self._heap: list[Entry] = []
         self._count = 0
         self._limit = 256

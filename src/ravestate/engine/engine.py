@@ -1,10 +1,10 @@
 """The Signal-Rule-Slot automaton as a pure state machine.
 
 The engine has four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
-Time is an argument, in seconds from any origin. Nothing here knows a clock, a thread or a loop.
+Time is an argument, in seconds from any origin. The engine uses no clock, thread or event loop.
 
 Most engines are at rest most of the time: nothing is live, and nothing is left to do. Such an engine has only its
-`Memory`. For an event it borrows `Parts` from the policy, and returns them when it comes to rest.
+`Memory`. To handle an event, it borrows `Parts` from the policy, and returns them when it comes to rest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ DEFAULT_PATIENCE = 1.0
 """The default patience of a rival under pressure, in seconds (L16)."""
 
 SPARE: Final = 64
-"""The maximum number of parts that a policy keeps for its engines."""
+"""The maximum number of unused `Parts` that a policy keeps for its engines."""
 
 
 class Engine:
@@ -36,7 +36,7 @@ class Engine:
     Args:
         policy: A policy from ``rs.compile``.
         patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (L16).
-        report_ends: Whether each run ends with an `Ended` effect.
+        report_ends: Whether the engine reports the end of each run as an `Ended` effect.
 
     Example:
         >>> import ravestate as rs
@@ -58,7 +58,7 @@ class Engine:
     # ------------------------------------------------------------------------------------ the four verbs
 
     def receive(self, event: Event, now: float) -> None:
-        """Handle an event at the time `now` (seconds). A time before that of an earlier call counts as the latest time.
+        """Handle an event at the time `now` (seconds). An earlier time counts as the latest time so far.
 
         Raises:
             UndeclaredError: The event names a signal or slot that the policy does not have.
@@ -102,7 +102,7 @@ class Engine:
 
     @property
     def parts(self) -> Parts:
-        """The parts of the engine; at rest, it borrows them."""
+        """The parts of the engine. An engine at rest borrows parts first."""
         parts = self._parts
         if parts is None:
             spare = self._memory.policy.spare
@@ -115,14 +115,14 @@ class Engine:
         return parts
 
     def parts_at(self, now: float) -> Parts:
-        """Let time pass until `now` (seconds), and return the parts. Use them only for an event that nothing records."""
+        """Let time pass until `now` (seconds), and return the parts. Use them only for events that nothing records."""
         parts = self._parts or self.parts
         if now != parts.state.now:
             parts.pass_time(now)
         return parts
 
     def rest(self) -> None:
-        """Give the parts back if nothing is live, and nothing is left to do. Call this after a look at the state."""
+        """Return the parts to the policy if nothing is live and nothing is left to do. Call this after reading `state`."""
         parts = self._parts
         if parts is not None and parts.state.at_rest:
             self._rest(parts)
@@ -139,7 +139,7 @@ class Engine:
 
     @property
     def state(self) -> State:
-        """The tables of the engine. The engine's parts change them; other code may read them, before the next event."""
+        """The tables of the engine. The engine's parts change them. Other code may read them until the next event."""
         return self.parts.state
 
     @property

@@ -42,7 +42,7 @@ class Entries:
             self.let_expire(spike, spike.born + half.max_age)
 
     def part(self, spike: Spike, need: Need) -> None:
-        """Note that the need's half no longer holds a spike for the need's clause."""
+        """Record that the need's half no longer holds a spike for the need's clause."""
         half = need.half
         if half is None or self.state.entries(half, spike) is None:
             return
@@ -117,9 +117,9 @@ class Entries:
                     self.part(spike, need)
 
     def refuse_best(self, spike: Spike, half: Half, begin: int, end: int) -> bool:
-        """Make rules give a spike up for good: those of the half's clauses from place `begin` to `end` in `Half.best`.
+        """Make the rules of the needs `half.best[begin:end]` give a spike up for good.
 
-        Return whether the half held the spike for one of these clauses.
+        Return whether the half held the spike for one of these needs.
         """
         parted, refused = spike.parted or set(), spike.refused or set()
         needs = [need for need in half.best[begin:end] if need.clause.index not in parted]

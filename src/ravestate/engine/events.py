@@ -22,7 +22,7 @@ class Stop:
 
 @dataclass(slots=True)
 class Write:
-    """A run, or code outside (``run=None``), writes a slot. The value of a collection is a whole mapping."""
+    """A run, or code outside the rules (``run=None``), writes a slot. The value of a collection is a whole mapping."""
 
     slot: str
     value: Any
@@ -31,7 +31,7 @@ class Write:
 
 @dataclass(slots=True)
 class Store:
-    """A run, or code outside (``run=None``), stores an item in a collection."""
+    """A run, or code outside the rules (``run=None``), stores an item in a collection."""
 
     slot: str
     key: str
@@ -41,7 +41,7 @@ class Store:
 
 @dataclass(slots=True)
 class Discard:
-    """A run, or code outside (``run=None``), removes an item from a collection, if it is there."""
+    """A run, or code outside the rules (``run=None``), removes an item from a collection, if it is there."""
 
     slot: str
     key: str
@@ -50,7 +50,7 @@ class Discard:
 
 @dataclass(slots=True)
 class Emit:
-    """A run, or code outside (``run=None``), raises a signal."""
+    """A run, or code outside the rules (``run=None``), raises a signal."""
 
     signal: str
     payload: Any = None
@@ -59,7 +59,7 @@ class Emit:
 
 @dataclass(slots=True)
 class Wipe:
-    """A run, or code outside (``run=None``), withdraws the live spikes of a signal and all their descendants (L20)."""
+    """A run, or code outside the rules (``run=None``), withdraws a signal's live spikes and their descendants (L20)."""
 
     signal: str
     run: int | None = None
@@ -77,7 +77,7 @@ class Finish:
 
 @dataclass(slots=True)
 class AddRule:
-    """The context gets a policy that has the same rules and more."""
+    """The context gets a policy with more rules; it has all rules of the present policy, too."""
 
     policy: Policy
 

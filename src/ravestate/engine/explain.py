@@ -67,7 +67,8 @@ class Explanation:
         missing: A sentence for each of the rule's signals that did not occur in the trace: the rules that may raise the
             signal, and how each rule last ended. Empty without a trace.
         history: The rule's latest records in the trace, as text. Empty without a trace.
-        inputs: The rule's signals that are inputs: no rule can promise them, so only patience bounds a wait for one.
+        inputs: The rule's signals that are inputs. An input may come at any time, so only patience bounds a wait for
+            one.
     """
 
     rule: str
@@ -181,7 +182,7 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
 def stand_ins(state: State) -> dict[int, list[Activation]]:
     """Return the activations that the entries of halves and the queues of alternatives stand for, by rule.
 
-    They are in no table: an explanation changes nothing.
+    No table of the engine has them, because an explanation changes nothing.
     """
     found: dict[int, list[Activation]] = {}
     for half, spikes in state.halves.items():
@@ -218,7 +219,7 @@ def stand_ins(state: State) -> dict[int, list[Activation]]:
 
 
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
-    """Return what a record means for its rule, as a phrase; empty for a record without a rule.
+    """Return a phrase that says what a record means for its rule; empty for a record without a rule.
 
     `others` describes the rules that the rule waits for; `behind` is the rule that raised the answering rule's input.
     """
@@ -263,12 +264,12 @@ def seconds(time: float) -> str:
 
 
 def latest(until: float | None) -> str:
-    """Return the latest time (seconds) of something as the end of a sentence; empty for None."""
+    """Return the words that end a sentence with a latest time (seconds); empty for None."""
     return "" if until is None else f", until {seconds(until)} at the latest"
 
 
 def join(names: Iterable[str]) -> str:
-    """Return names as a list within a sentence: ``a, b and c``."""
+    """Join names as in a sentence: ``a, b and c``."""
     *first, last = [*names] or [""]
     return f"{', '.join(first)} and {last}" if first else last
 

@@ -11,12 +11,12 @@ Place = tuple[int, int, int, Activation]
 
 
 class Free(Line):
-    """A queue of ready activations. Most join at its end; one that lost a spike and took another may join anywhere.
+    """A queue of ready activations. Most join at its end. One that lost a spike and took another may join anywhere.
 
     Attributes:
         new: The activations that have become ready since the last call of `pop`.
-        batch: Activations that became ready while the queue was empty, the first one last. Thousands may wait, so they
-            get places only if others join before all of them have started.
+        batch: Activations that became ready while the queue was empty, in reverse order. There may be thousands. They
+            get places only if other activations join before all of them have started.
     """
 
     __slots__ = ("batch", "new")
@@ -87,6 +87,6 @@ def _order(activation: Activation) -> tuple[int, int, int]:
 
 
 def _place(activation: Activation) -> Any:
-    """Give an activation a place of its own, in the order of `_order`."""
+    """Give an activation a place in the queue (see `_order`), and return the place."""
     activation.place = (activation.newest, activation.clause.index, activation.id, activation)
     return activation.place

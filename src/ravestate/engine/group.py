@@ -30,23 +30,24 @@ class Nothing(dict[Any, Any]):
 
 
 NOTHING: Final[dict[Any, Any]] = Nothing()
-"""The shared empty table. An attribute keeps it until the first entry, which needs a table of its own."""
+"""The shared empty table: the value of an attribute that has no entry yet. The first entry makes a new table."""
 
 NO_NUMBERS: Final[frozenset[int]] = frozenset()
-"""An empty set of numbers, shared by all engines. A set that seldom gets a member starts as this one."""
+"""The shared empty set of numbers: the value of an attribute that seldom gets a member."""
 
 
 class Group:
     """The slots that are taken in a group, and the activations that have a stake in it.
 
     Attributes:
-        taken: Number of a slot taken in the group → the runs that hold it, or None once a run has finished with it.
+        taken: Number of a slot taken in the group → the runs that hold it, or None if a run has finished with it.
         entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
         interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
-        patience_ends: Number of the clause of a rival in stand-by → when its patience ends, or has ended (seconds).
-        roster: The members of a large group by slot and by rule (``roster.py``), once a question has needed them.
-        answers: Number of a slot → the rule that first finished with it, and the number of its activation. The engine notes
-            them for the trace, while there is a tracer.
+        patience_ends: Key: the number of a clause whose stand-by is a rival; value: when the rival's patience ends or
+            has ended (seconds).
+        roster: The members of a large group by slot and by rule (``roster.py``); None until a question needs them.
+        answers: Key: the number of a slot; value: the rule that first finished with the slot, and the number of that
+            rule's activation. The engine fills this table only while there is a tracer.
     """
 
     __slots__ = (
@@ -100,7 +101,7 @@ class Group:
         return activation is self._member or activation in self._others
 
     def join(self, activation: Activation) -> None:
-        """Note that an activation has a non-detached spike of the group."""
+        """Record that an activation has a non-detached spike of the group."""
         if self.has(activation):
             return
         if self._others:
@@ -115,7 +116,7 @@ class Group:
             self.roster.enter(activation)
 
     def part(self, activation: Activation) -> None:
-        """Note that an activation has no non-detached spike of the group any more."""
+        """Record that an activation no longer has a non-detached spike of the group."""
         if activation is self._member:
             self._member = None
         elif activation in self._others:
@@ -150,7 +151,7 @@ class Group:
         return bool(taken) and any(slot in taken and taken[slot] is None for slot in slots)
 
     def note(self, slots: tuple[int, ...], rule: str, activation: int) -> None:
-        """Note that the run of an activation of `rule` has finished with `slots`; an earlier note about a slot stays."""
+        """Record that a run of `rule` has finished with `slots`; an earlier record about a slot stays."""
         self.answers = {**dict.fromkeys(slots, (rule, activation)), **self.answers}
 
     def answer(self, slots: tuple[int, ...]) -> tuple[str, int]:
@@ -165,19 +166,19 @@ class Group:
             self.interested[activation] = None
 
     def forget(self, activation: Activation) -> None:
-        """Remove an activation that no longer waits from `interested`."""
+        """Remove from `interested` an activation that no longer waits."""
         if activation in self.interested:
             self.interested.pop(activation)
 
     def enter(self, spike: Spike) -> None:
-        """Note that a half holds a spike of the group."""
+        """Record that a half holds a spike of the group."""
         if self.entries is NOTHING:
             self.entries = {spike: None}
         else:
             self.entries[spike] = None
 
     def leave(self, spike: Spike) -> None:
-        """Note that no half holds the spike any more."""
+        """Record that no half holds the spike any longer."""
         if spike in self.entries:
             self.entries.pop(spike)
 

@@ -1,9 +1,9 @@
 """Halves: first spikes that wait, without an activation, for a second spike.
 
-A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) collects such needs, all for the same
-signal, that the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each
-input, although only a few of the topics occur. So the half holds the first spike as an *entry* in a table
-(``entries.py``), without activations.
+A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) groups needs for the same signal that
+the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each input, although
+only a few of the topics occur. So the half holds the first spike as an *entry* in a table (``entries.py``), without
+activations.
 
 The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
 number of activations depends on the rule:
@@ -12,13 +12,13 @@ number of activations depends on the rule:
 - for a rule without a better rival (`Half.sole`): also one activation, but all first spikes share the counterpart
   (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses one of them
-- for a rule that was added while a spike of its signals was live: again one activation with each first spike, because
-  each of them may lose a spike and then take that older spike
+- for a rule that was added while a spike of its signals was live: also one activation with each first spike, because
+  each activation may lose a spike and then take that older one
 
 To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
-added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge each of its clauses by
-itself. The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no
-signal that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
+added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge its clauses one by
+one. The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no signal
+that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from ravestate.policy.model import Clause, Half, Need, SignalPlan
 from ravestate.policy.policy import Policy
 
 MANY: Final = 8
-"""A search may pass this many spikes that do not fit. If it passes more, the half gets a `Row`, an index."""
+"""If a search passes more than this many spikes that do not fit, the half gets an index, a `Row`."""
 
 
 class Halves:
@@ -64,7 +64,7 @@ class Halves:
         for half in signal.halves:
             if state.retired and state.retired.issuperset(half.places):
                 continue
-            first = half.needs[0]  # a need with a predicate has a half of its own
+            first = half.needs[0]  # a need with a predicate is the only need of its half
             if group.finished(first.clause.rule.slots):
                 continue
             if first.predicates and not state.accepts(first, spike.payload):
@@ -192,7 +192,7 @@ class Halves:
         return activation
 
     def _pair(self, need: Need, spike: Spike, group: Group) -> bool:
-        """Make the activations for which a new spike is the counterpart. Return whether the clause needs no entry for it.
+        """Make the activations for which a new spike is the counterpart. Return whether the clause needs no entry.
 
         A clause whose rule writes no slot needs no entry: its activation with the oldest first spike takes the new spike.
         """
@@ -251,7 +251,7 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If the stand-by of a clause was under pressure, create the clause's activation, and put it under pressure, too."""
+        """If the stand-by of a clause was under pressure, create its activation, and put that under pressure."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)

@@ -136,7 +136,7 @@ class Holdings:
     # ------------------------------------------------------------------------------------ becoming ready
 
     def update(self, activation: Activation) -> None:
-        """Judge an activation whose spikes have changed or aged: make it ready, or set its deadlines (L14)."""
+        """Judge an activation after its spikes have changed or aged: make it ready, or set its deadlines (L14)."""
         state = self.state
         clause = activation.clause
         if not activation.missing:
@@ -164,7 +164,7 @@ class Holdings:
                 self.entries.let_expire(spike, spike.born + need.max_age)
 
     def complete(self, activation: Activation, *, late: bool = False) -> None:
-        """Make an activation ready and queue it: a writer asks for consent, and any other activation just starts.
+        """Make an activation ready and queue it, to ask for consent or, if it needs no consent, to start.
 
         If the activation is a turn of a loop that must wait (L23), a second call, with `late`, queues it.
         """
@@ -223,7 +223,7 @@ class Holdings:
     def lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
         """Make an activation give up the spikes of `needs`, and end it if nothing keeps it alive.
 
-        A non-detached spike keeps it alive. In a clause with detached needs only, any spike does. `by` is the run
+        A non-detached spike keeps it alive. If all needs of its clause are detached, any spike does. `by` is the run
         that is the cause, or None.
         """
         needs = [need for need in needs if not need.bit & activation.missing]
@@ -261,7 +261,7 @@ class Holdings:
         self.lose(activation, needs, reason, by)
 
     def give_up(self, run: Activation, reason: str) -> None:
-        """Make the rule of a run give up the run's non-detached spikes for good, in all other activations of the rule."""
+        """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
         rule = run.clause.rule
         for spike in run.stands_on:  # refuse all first: an activation that loses a spike takes another at once
             self.benches.unbench(spike)
@@ -314,7 +314,7 @@ class Holdings:
             state.busy -= 1
 
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
-        """Take the spike of a need from an activation; `by` is the run that is the cause, or None.
+        """Make an activation give up the spike of a need; `by` is the run that is the cause, or None.
 
         The spike's causal group becomes *dirty*: the activations that wait in it ask again (`Waits.wake`).
         """
@@ -388,5 +388,5 @@ class Holdings:
 
 
 def _of_spike(activation: Activation, spike: Spike) -> list[Need]:
-    """Return the needs that an activation meets with a spike."""
+    """Return the needs of an activation that a spike meets."""
     return [need for need in activation.clause.needs if activation.spike(need) is spike]

@@ -17,10 +17,10 @@ The asking activation cannot help either, nor can an activation that waits for i
 A chain of causes may be too long for recursion. So each step of a derivation is a generator, a `Step`, which yields the
 steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack.
 
-In a cycle of causes, a derivation needs its own result. It reads its *bound* instead: the strength proven so far, at
-first `NO`. A strength that rests on a bound is *open*. If a bound has risen when the oldest derivation of the cycle ends,
-the engine derives the cycle again. Otherwise, the open strengths are final. A strength rises at most twice, so a cycle
-of n signals takes at most 2n turns.
+In a cycle of causes, a derivation needs its own result. It uses its *bound* instead: the strength proven so far, at
+first `NO`. A strength that rests on a bound is *open*. If a bound has risen when the oldest derivation of the cycle
+ends, the engine derives the cycle again. Otherwise, the open strengths are final. A strength rises at most twice, so a
+cycle of n signals takes at most 2n turns.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ SURE: Final = 2
 
 SlotNumbers = frozenset[int]
 Place = tuple[int, Group, SlotNumbers]
-"""The goal of a derivation: a signal (its number), the group that may cause it, and slots that no helping rule writes."""
+"""The goal of a derivation: a signal (its number), the group that may cause it, and slots that no helper may write."""
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
@@ -65,9 +65,9 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest derivation with the result `SURE` rests.
         visited: The groups on whose state the results depend.
-        hopes: A kind (``refusal.py``) and the number of a rule or signal → a count. If this rule or signal changes, the
-            results may change. For `OUTSIDE`, the count is a limit: the change of an activation matters only if its rule has
-            at most that many other activations.
+        hopes: Key: a kind (``refusal.py``), and the number of a rule or signal whose change may change the results;
+            value: a count. For `OUTSIDE`, the count is a limit: the change of an activation matters only if its rule
+            has at most that many other activations. For other kinds, it is 0.
         recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
     """
 
@@ -184,7 +184,7 @@ class Horizon:
                     self.visited[home] = None
             if not missing:
                 self.roots.append(activation)  # the activation is ready, or will be when its spikes are old enough
-        # `here` has the strength of each need, or set of kin needs, in this group; `best` has it in any group.
+        # For each missing need, or set of kin needs: `here` has its strength in this group, `best` in any group.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -244,7 +244,7 @@ class Horizon:
         return strength or (SPECULATIVE if self._outside(need, group) else NO)
 
     def _guards(self, clause: Clause, group: Group, slots: SlotNumbers) -> Generator[Any, int, bool]:
-        """Return whether every slot predicate of a clause is true, or has a slot that this group may yet change."""
+        """Return whether every slot predicate of a clause is true, or tests a slot that this group may yet change."""
         for slot, guard in clause.guards:
             if self.state.opens(slot, guard):
                 continue
@@ -327,7 +327,7 @@ class Horizon:
         return best
 
     def _rules(self, group: Group) -> Mapping[int, Mapping[Activation, None]]:
-        """Return the members of a group by rule (its number), and note that the results depend on the group."""
+        """Return the members of a group by rule (its number), and record that the results depend on the group."""
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
@@ -345,7 +345,7 @@ class Horizon:
         return found
 
     def _is_far(self, signal: int, group: Group) -> bool:
-        """Return whether a live rule of another group might raise a signal. Note in `hopes` that the answer may change."""
+        """Return whether a live rule of another group might raise a signal. `hopes` records that this may change."""
         causes = self.state.causes
         wide = causes.wide_ancestors(signal)
         if wide:
@@ -363,7 +363,7 @@ class Horizon:
         return False
 
     def _helpless(self, rule: int, group: Group, *, near: bool) -> int:
-        """Count a rule's activations that cannot help from another group: inert ones and, with `near`, the group's members."""
+        """Count a rule's activations that cannot help from another group: inert ones and, with `near`, members of `group`."""
         if self._inert is None:
             self._inert = {}
             for activation in self.inert:
@@ -382,8 +382,8 @@ class Horizon:
 def _solve(step: Step) -> int:
     """Run a derivation with all its steps, and return its strength.
 
-    Each step towards another cause comes to this loop by ``yield`` (`_comes`, `_caused`). A ``yield from`` only divides
-    one step into several functions.
+    A step that needs the strength of another step yields that step to this loop (`_comes`, `_caused`). A ``yield from``
+    only divides one step into several functions.
     """
     waiting: list[Step] = []
     strength: Any = None

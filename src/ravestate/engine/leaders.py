@@ -1,15 +1,15 @@
-"""Leaders: once one activation is refused, the activations behind it need not ask in full.
+"""Leaders: when one activation is refused, the activations behind it need not ask in full.
 
 An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are ready
 to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one is a
 rival of each. So only the best one, the *leader*, asks in full (``consent.py``). The others *follow*: they wait for the
-leader, and look at no other rival.
+leader, and examine no other rival.
 
-An activation cannot follow if a rival stands between the leader and the activation in utility. The leader did not look
-at this rival. But the activation would put the rival under pressure, or expect help from it (L16). So the activation
-asks in full, and becomes the leader of the activations behind it.
+An activation cannot follow if the utility of a rival lies between the leader's and its own. The leader did not examine
+this rival, but the activation would put it under pressure, or expect help from it (L16). So the activation asks in
+full, and becomes the leader of the activations behind it.
 
-An activation that asks in full may also expect help from the effects of the leader; a follower does not. So an activation
+An activation that asks in full may also expect help from the leader's effects. A follower does not. So an activation
 can lead only if its effects help no rule that writes a slot.
 """
 
@@ -29,7 +29,8 @@ class Leader:
     Attributes:
         activation: The activation.
         next: The best rival behind the leader. Activations behind this rival cannot follow. None without such a rival.
-        recovering: The rivals behind the leader whose rules recover from a run. Their places in the order change.
+        recovering: The rivals behind the leader whose rules are still in their cooldown. Their places in the order
+            change.
     """
 
     __slots__ = ("activation", "known", "next", "recovering")
@@ -82,7 +83,7 @@ class Leaders:
         return refusal
 
     def _look_behind(self, leader: Leader, group: Group) -> None:
-        """Find the rivals behind a leader: activations behind such a rival cannot follow."""
+        """Find the rivals behind a leader. An activation behind such a rival cannot follow."""
         state, first = self.state, leader.activation.clause
         causes, slots = state.causes, first.rule.slots
         found: dict[Clause, None] = {}

@@ -1,4 +1,4 @@
-"""A line: places in order. Most places join in one batch or return to the front, and so need no search."""
+"""A line: places in order. Most places join in one batch or return to the front, so that no search is needed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ class Line:
     """A queue of places, which are tuples; the least one is the first.
 
     Attributes:
-        line: The places that joined ahead of all others, in reverse order. This list is empty only if the queue is.
+        line: The places that joined ahead of all others, in reverse order. This list is empty only if the queue is
+            empty.
     """
 
     __slots__ = ("_between", "line")

@@ -2,7 +2,7 @@
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant, the engine notes for each
 new spike which rules led to the spike. A run is a further *turn* of a loop if its rule also led to one of its spikes.
-After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. Once a
+After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. When a
 single loop has had `TURNS` turns, the engine names the loop's rules in an error.
 
 The turns of all loops count together, because a rule that triggers two runs of itself soon makes thousands of loops.
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from ravestate.policy.model import RulePlan
 
 MANY: Final = 500
-"""The number of runs in one instant after which the engine notes which rules led to a spike. Most instants have fewer."""
+"""After this many runs in one instant, the engine notes which rules led to a spike. Most instants have fewer runs."""
 
 TURNS: Final = 500
-"""The number of turns in one instant before the engine defers turns. `MANY` and `TURNS` make the 1,000 runs of L23."""
+"""After this many turns in one instant, the engine defers turns. `MANY` and `TURNS` add up to the 1,000 runs of L23."""
 
 
 class Loop:
@@ -37,7 +37,7 @@ class Loop:
     Attributes:
         instant: The number of the instant.
         turns: How many of the runs were further turns of the loop.
-        rules: The rules of these further turns.
+        rules: The rules that had these further turns.
     """
 
     __slots__ = ("instant", "rules", "turns")
@@ -113,7 +113,7 @@ class Loops:
         return run.lineage
 
     def find(self, run: Activation) -> Sequence[RulePlan]:
-        """Note the lineage of a run that starts. If an error must name the run's loop now, return the loop's rules."""
+        """Record the lineage of a run that starts. If an error must name its loop now, return the loop's rules."""
         lines = self._lines(run)
         if not lines:
             return ()  # `lineage` begins a loop if the run raises a spike

@@ -1,4 +1,4 @@
-"""Matching: spikes are born into causal groups and offered to the activations that lack them (L11, L12, L19)."""
+"""Matching: each new spike joins a causal group, and is offered to the activations that lack it (L11, L12, L19)."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Matching:
     # ------------------------------------------------------------------------------------ groups
 
     def parents(self, run: Activation | None) -> tuple[Spike, ...]:
-        """Return the parents of the spikes that a run raises; none for a detached rule, or for code outside (L19)."""
+        """Return the parents of the spikes that a run raises; none for a detached rule or outside code (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on
 
     def new_group(self) -> Group:
@@ -83,7 +83,7 @@ class Matching:
     def _offer_again(self, group: Group) -> None:
         """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
 
-        As at its birth, a spike is offered only to activations that are older than the spike, oldest first.
+        As at its birth, a spike is offered only to activations that are older than itself, oldest first.
         """
         state, holdings = self.state, self.holdings
         offers: list[tuple[int, int, int, Activation, Spike]] = []
@@ -109,7 +109,7 @@ class Matching:
     # ------------------------------------------------------------------------------------ births
 
     def emit(self, signal: SignalPlan, payload: Any, run: Activation | None) -> None:
-        """Raise a signal, for a run or for code outside (L11)."""
+        """Raise a signal, for a run or for code outside the rules (L11)."""
         if signal.keep_latest:
             self.holdings.withdraw(signal, "superseded")
         parents = self.parents(run)
@@ -210,7 +210,7 @@ class Matching:
         holdings.update(activation)
 
     def _show(self, need: Need, spike: Spike) -> None:
-        """Give a new spike to the activations that look at its signal: these hold the newest spike (L19)."""
+        """Give a new spike to the activations that look at its signal, because they hold the newest spike (L19)."""
         for activation in list(self.state.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
                 held = activation.spike(need)

@@ -1,4 +1,4 @@
-"""The memory of an engine: all that it keeps when nothing is live and nothing is left to do."""
+"""The memory of an engine: the data that it keeps when nothing is live and nothing is left to do."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 
 
 class Memory:
-    """The slots and the counters of an engine, and what its rules have done.
+    """The slots and counters of an engine, and notes about its rules.
 
-    An engine at rest has nothing else. An engine at work has them in its `State`.
+    An engine at rest has nothing else. In a working engine, these are in the `State`.
 
     Args:
         policy: A policy from ``rs.compile``.
         patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (L16).
-        report_ends: Whether each run ends with an `Ended` effect.
+        report_ends: Whether the engine reports the end of each run as an `Ended` effect.
     """
 
     __slots__ = (
@@ -51,13 +51,14 @@ class Memory:
         self.values: dict[int, Any] = {}
         """Number of a slot that was written or read → its value."""
         self.unseen: dict[int, dict[str, Any]] = NOTHING
-        """Number of a collection that was not read since its last change → its items. Changing them needs no copy."""
+        """Key: the number of a collection that was not read since its last change; value: its items, which can change
+        without a copy."""
         self.ran: dict[int, float] = NOTHING
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.retired = NO_NUMBERS
         """The numbers of the rules that have retired."""
         self.dropped: dict[str, int] = NOTHING
-        """Signal's name → how many of its spikes were dropped by its limit (L23)."""
+        """Name of a signal → how many of its spikes were dropped because of its limit (L23)."""
         self.watched: dict[str, int] = {}
         """The names of the signals whose spikes are reported as effects, as the keys of a table."""
         self.blamed = NO_NUMBERS

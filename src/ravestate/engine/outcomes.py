@@ -1,8 +1,8 @@
-"""The table of outcomes, by the end of a run's function and by the engine's cancellation, if any (L18, L20, L21).
+"""The table of the outcomes of runs (L18, L20, L21).
 
-The key of a row is the engine's reason to cancel the run (empty without a cancellation), and the end of the function. A
-row has two outcomes: one for a run that wrote no slot, and one for a run that wrote a slot. A run that *fired* consumes
-its slots. After any other end the slots are free, and the next best rule may answer.
+The key of a row has two words: the engine's reason to cancel the run (empty without a cancellation), and the end of the
+run's function. A row has two outcomes: one for a run that wrote no slot, and one for a run that wrote a slot. A run
+that *fired* consumes its slots. After any other end the slots are free, and the next best rule may answer.
 """
 
 from __future__ import annotations

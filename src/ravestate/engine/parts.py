@@ -1,4 +1,4 @@
-"""The parts of an engine at work, one file each, which share one `State`.
+"""The parts of a working engine. Each part has a file of its own, and all share one `State`.
 
 This file has the handlers of events and deadlines, and the loop that decides what comes next. The parts do the work.
 """
@@ -33,7 +33,7 @@ from ravestate.policy.policy import Policy
 
 
 class Parts:
-    """The parts of one engine at work. They have no state of their own: all their state is in `state`."""
+    """The parts of one working engine. They have no state of their own: all their state is in `state`."""
 
     __slots__ = ("agenda", "halves", "holdings", "matching", "runs", "slots", "state")
 
@@ -51,7 +51,7 @@ class Parts:
     # ------------------------------------------------------------------------------------ time and effects
 
     def pass_time(self, now: float) -> None:
-        """Let time pass until `now` (seconds), before an event; an earlier time counts as the latest time."""
+        """Let time pass until `now` (seconds), before an event. An earlier time than the latest one changes nothing."""
         state = self.state
         if now > state.now:
             self.holdings.waits.pass_time()
@@ -111,19 +111,19 @@ class Parts:
     # The runner calls these, after `Engine.parts_at`, if nothing records the events.
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
-        """Handle the event `Write` at the present time; `run` is the number of the run, or None for code outside."""
+        """Handle the event `Write` now; `run` is the number of the run, or None for code outside the rules."""
         state = self.state
         writer = None if run is None else state.running.get(run) or self._run(run)
         self.slots.write(state.slot_of.get(slot) or self._slot(slot), value, writer)
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
-        """Handle the event `Emit` at the present time; `run` is the number of the run, or None for code outside."""
+        """Handle the event `Emit` now; `run` is the number of the run, or None for code outside the rules."""
         state = self.state
         emitter = None if run is None else state.running.get(run) or self._run(run)
         self.matching.emit(state.signal_of.get(signal) or self._signal(signal), payload, emitter)
 
     def done(self, run: int) -> None:
-        """Handle the event `Finish` at the present time, for a run that is done."""
+        """Handle the event `Finish` now, for a run that is done."""
         self.runs.finish(self.state.running.get(run) or self._run(run), DONE, "", None)
 
     # ------------------------------------------------------------------------------------ events
@@ -189,11 +189,11 @@ class Parts:
         for plan in plans[len(known) :]:
             for need in (need for clause in plan.clauses for need in clause.needs if need.predicates):
                 for spike in state.live.get(need.signal.index, ()):
-                    state.accepts(need, spike.payload)  # only to report a predicate that raises
+                    state.accepts(need, spike.payload)  # only to report a predicate that raises an exception
             looking = [clause for clause in plan.clauses if clause.asks_detached]
             for need in (need for clause in looking for need in clause.needs if need.detached):
                 for spike in state.live.get(need.signal.index, ()):
-                    if spike.born + need.min_age > state.now:  # for older rules, the spike's birth set these times
+                    if spike.born + need.min_age > state.now:  # the spike's birth set these times for older rules only
                         state.deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
 
     def _retire(self, rule: RulePlan) -> None:

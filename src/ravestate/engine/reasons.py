@@ -1,4 +1,4 @@
-"""Every reason that a trace or an explanation gives, with its wording (L25). The board's page is built from this table."""
+"""All reasons that traces and explanations give, with their wording (L25). The board's page uses this table, too."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, Self
 
 
 def reason(*parts: str) -> Any:
-    """Return the value of a `Reason` member. A bare tuple would hide from type checkers that members are strings."""
+    """Return the value of a `Reason` member. From a bare tuple, type checkers do not learn that members are strings."""
     return parts
 
 

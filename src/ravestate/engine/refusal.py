@@ -24,17 +24,18 @@ class Refusal:
     """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
 
     Attributes:
-        names: Name of a rule that the activation waits for → the best of the rule's clauses that are rivals.
+        names: Key: the name of a rule that the activation waits for; value: the best of that rule's clauses that are
+            rivals.
         blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
-        sure: For each rival that work in progress makes ready or rules out: the activations that do this work.
+        sure: For each rival that work in progress will make ready or rule out: the activations that do this work.
         taken: Whether a run has taken one of the activation's slots.
         in_doubt: Whether a rival may never be ready, so that only the end of its patience ends the wait.
         hopes: The hopes of the activation → a count for each (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
-        leader: The activation that speaks for this one (``leaders.py``), or None.
-        told: The names in the trace's record of this wait, if there is a tracer.
-        recheck: The earliest time (seconds) at which time alone may lift the refusal. Causes are a rule that recovers, a
-            spike that grows too old, and the end of the patience of a rival without an activation.
+        leader: The activation that this one follows (``leaders.py``), or None.
+        told: The names of rules in the trace's record of this wait; empty without a tracer.
+        recheck: The earliest time (seconds) at which the refusal may end without any event: because a rule recovers,
+            because a spike becomes too old, or because the patience of a rival without an activation ends.
     """
 
     __slots__ = ("blockers", "sure", "hopes", "interests", "leader", "names", "in_doubt", "recheck", "taken", "told")
@@ -52,7 +53,7 @@ class Refusal:
         self.told: tuple[str, ...] = ()
 
     def name(self, rival: Clause) -> None:
-        """Note that the activation waits for a rival."""
+        """Record that the activation waits for a rival."""
         known = self.names.get(rival.rule.name)
         if known is None or known.base < rival.base:
             self.names[rival.rule.name] = rival
@@ -67,7 +68,7 @@ class Refusal:
 
     @property
     def bounded(self) -> bool:
-        """Whether the wait ends in any case: when a run frees its slot, or when a rival's patience ends."""
+        """Whether the wait is sure to end: when a run frees its slot, or when a rival's patience ends."""
         return self.taken or self.in_doubt
 
     def __bool__(self) -> bool:
@@ -75,4 +76,4 @@ class Refusal:
 
 
 CONSENT: Final = Refusal()
-"""The refusal without reasons: the activation has consent."""
+"""The empty refusal: the activation has consent."""

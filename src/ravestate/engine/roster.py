@@ -1,8 +1,8 @@
 """A roster: the members of a large causal group by slot and by rule.
 
-A thousand rules may hear one input. A question about one slot then concerns only the few members that write the slot.
-So the engine must not search all members to answer it. A group of few members needs no roster. The roster of a larger
-group is made at the first such question. From then on, `Group.join` and `Group.part` keep it up to date.
+A thousand rules may hear one input. A question about one slot then concerns only the few members that write the slot,
+and a roster finds these without a search. A group of few members needs no roster. The engine makes the roster of a
+larger group at the first such question. From then on, `Group.join` and `Group.part` keep it up to date.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ravestate.policy.causes import Causes
 from ravestate.policy.model import RulePlan
 
 FEW: Final = 8
-"""The maximum number of members of a group without a roster."""
+"""A group with at most this many members needs no roster."""
 
 
 class Roster:
@@ -90,7 +90,7 @@ def causers(group: Group, slots: tuple[int, ...], causes: Causes) -> Iterable[Ru
 
 
 def by_rule(group: Group, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
-    """Return a map from the numbers of the members' rules to their activations."""
+    """Return the activations of the members, by the number of their rule."""
     if group.count > FEW:
         return _roster(group, causes).rules
     found: dict[int, dict[Activation, None]] = {}

@@ -1,4 +1,5 @@
-"""A row: the spikes of a half in order, so that each clause of the half finds its spikes without a long search."""
+"""A row: an ordered list of a half's spikes, in which each clause of the half finds its spikes without a long
+search."""
 
 from __future__ import annotations
 
@@ -12,14 +13,14 @@ if TYPE_CHECKING:
     from ravestate.engine.state import State
 
 SPARE = 32
-"""The number of spikes that a row may keep although the half has given them up."""
+"""If a row has this many spikes more than twice those of its half, it drops the spikes that the half has given up."""
 
 
 class Row:
     """The spikes of a half, oldest first.
 
     A half may hold a spike for only some of its clauses. A spike that the half has given up for a clause does not come
-    back. So the row notes, for each clause, how many spikes at the row's beginning are of no use.
+    back. So the row notes, for each clause, how many spikes at the beginning of the row the clause can skip.
     """
 
     __slots__ = ("_held", "_last", "_spikes", "_starts")
@@ -31,7 +32,7 @@ class Row:
         self._starts: dict[Need, int] = {}
 
     def find(self, need: Need, state: State, *, all_: bool) -> list[Spike]:
-        """Return the oldest spike that the half holds for a need, or with `all_` each such spike."""
+        """Return a list of the oldest spike that the half holds for a need or, with `all_`, of all these spikes."""
         self._catch_up()
         spikes, found = self._spikes, list[Spike]()
         place = self._starts.get(need, 0)
@@ -45,7 +46,7 @@ class Row:
         return found
 
     def _catch_up(self) -> None:
-        """Add the spikes that have come since the last call. If too many spikes have gone, remove these."""
+        """Add the half's new spikes to the row. Remove the spikes that have gone, if there are too many."""
         held = self._held
         new: list[Spike] = []
         for spike in reversed(held):

@@ -101,7 +101,7 @@ class Runs:
                 if run.state == RUNNING and state.accepts(need, spike.payload):
                     held = watch.spikes[need.index]
                     if held is None or not need.min_age or held.born + need.max_age < state.now:
-                        watch.spikes[need.index] = spike  # else keep the older spike, which ripens first
+                        watch.spikes[need.index] = spike  # else keep the older spike, which is old enough earlier
                         if state.watched_by is NOTHING:
                             state.watched_by = {}
                         state.watched_by.setdefault(spike, {})[watch] = None
@@ -110,7 +110,7 @@ class Runs:
                     self.judge(watch)
 
     def judge(self, watch: Watch) -> None:
-        """Interrupt the run of a watch whose condition is met, or set the time at which it will be met (L21)."""
+        """Interrupt a run if the condition of its watch is met, or set the time at which it will be met (L21)."""
         state = self.state
         due = watch.met_at(state.now)
         if due is None or watch.run.state != RUNNING:
@@ -127,7 +127,7 @@ class Runs:
         self.judge(watch)
 
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
-        """Note that a watch no longer keeps a spike."""
+        """Record that a watch no longer keeps a spike."""
         watches = self.state.watched_by.get(spike, {})
         watches.pop(watch, None)
         if not watches:
@@ -136,7 +136,7 @@ class Runs:
     # ------------------------------------------------------------------------------------ the end
 
     def finish(self, run: Activation, kind: events.OutcomeKind, reason: str, exception: BaseException | None) -> None:
-        """Settle a run whose function has ended: `verdict` has the table of the outcomes (L18)."""
+        """Settle a run whose function has ended (L18). `verdict` decides its outcome."""
         state = self.state
         del state.running[run.number]
         rule = run.clause.rule
@@ -169,7 +169,7 @@ class Runs:
             state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run))
 
     def _begin_recovery(self, rule: RulePlan) -> None:
-        """Note that a rule with a cooldown has run: the activations whose order this changes ask again (L9, L15)."""
+        """Record that a rule with a cooldown has run. The activations whose order this changes ask again (L9, L15)."""
         state = self.state
         if state.ran is NOTHING:
             state.ran = state.standing.ran = {}

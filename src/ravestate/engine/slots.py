@@ -1,4 +1,4 @@
-"""Slots: values change, and signals are raised (L2, L13)."""
+"""Slots: a write changes a value and raises the slot's signals (L2, L13)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Slots:
         self.matching = matching
 
     def write(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
-        """Write a slot, for a run or for code outside. An equal value changes nothing, unless the slot has `always`."""
+        """Write a slot, for a run or outside code. An equal value changes nothing, unless the slot has `always`."""
         if slot.is_collection:
             self._replace(slot, value, run)
             return
@@ -140,7 +140,7 @@ class Slots:
 
 
 def _mark_write(slot: SlotPlan, run: Activation | None) -> None:
-    """Note that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
+    """Record that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
     if run is not None:
         if slot.index not in run.clause.rule.slotset:
             raise UndeclaredError(f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}")

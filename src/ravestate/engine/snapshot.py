@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def snapshot(engine: Engine) -> dict[str, Any]:
-    """Return all live objects of an engine as dictionaries, lists, texts and numbers.
+    """Return all live objects of an engine as dictionaries, lists, strings and numbers.
 
     A payload or value of any other type appears as its ``repr``.
 

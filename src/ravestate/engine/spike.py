@@ -18,15 +18,15 @@ class Spike:
     """An occurrence of a signal: payload, time of birth (seconds), parents, causal group, and holders.
 
     Attributes:
-        rule: The number of the rule that raised the spike; -1 if code outside or a detached rule raised it.
-        before: The number of the last activation that is older than the spike.
-        lineage: In an instant with many runs: the rules that led to the spike (L23).
-        holder: The first activation that has taken the spike, while it holds the spike. Most spikes never have a second
-            holder, and need no table.
+        rule: The number of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
+        before: The number of the youngest activation that is older than the spike.
+        lineage: The rules that led to the spike. Only kept in an instant with many runs (L23).
+        holder: One of the activations that hold the spike, or None. Most spikes never have a second holder, and need no
+            table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         in_halves: How many halves hold the spike without an activation (``halves.py``).
-        parted: The numbers of the clauses for which these halves do not hold the spike: a clause gave the spike up, or
-            has an activation with it.
+        parted: The numbers of the clauses for which these halves do not hold the spike: the clause gave it up, or has
+            an activation that holds it.
         refused: The numbers of the rules that gave the spike up for good.
     """
 
@@ -89,7 +89,7 @@ class Spike:
         return () if holder is None else (holder,)
 
     def hold(self, holder: Activation) -> None:
-        """Note that an activation holds the spike."""
+        """Record that an activation holds the spike."""
         if self._others:
             if holder is not self.holder:
                 self._others[holder] = None
@@ -99,7 +99,7 @@ class Spike:
             self._others = {holder: None}
 
     def release(self, holder: Activation) -> bool:
-        """Note that one of the holders gives the spike up; return whether another activation holds it."""
+        """Record that one of the holders gives the spike up; return whether another activation holds it."""
         if holder is self.holder:
             self.holder = None
             return bool(self._others)
@@ -107,7 +107,7 @@ class Spike:
         return self.is_held
 
     def refuse(self, rule: int) -> None:
-        """Note that a rule gives the spike up for good."""
+        """Record that a rule gives the spike up for good."""
         if self.refused is None:
             self.refused = set()
         self.refused.add(rule)

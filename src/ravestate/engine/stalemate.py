@@ -12,9 +12,9 @@ from ravestate.engine.stuck import Stuck
 def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | None = None) -> set[Activation]:
     """Return activations that wait for nothing but each other.
 
-    Suppose that two rules are ready, and each waits for a rival. Each rival lacks a signal that only the other rule may
-    cause, so both rules would wait for ever. The engine starts the rule with the greater effective utility. If both
-    utilities are equal, it starts the rule declared first.
+    Suppose that two rules are ready, and each waits for a rival. Each rival lacks a signal that only the other ready
+    rule may cause, so both rules would wait forever. The engine starts the rule with the greater effective utility. If
+    both utilities are equal, it starts the rule declared first.
 
     Args:
         consent: The part of the engine that asks for consent.
@@ -56,7 +56,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
 
 
 def no_longer_stuck(one: Activation, stuck: Stuck) -> list[Activation]:
-    """Return the members of a stalemate that wait for an activation outside it by now; oldest first.
+    """Return the members of a stalemate that by now wait for an activation outside the stalemate, oldest first.
 
     Only `one` and the members for which it waits, directly or through others, are searched.
     """

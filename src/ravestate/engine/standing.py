@@ -12,17 +12,17 @@ from math import inf
 from ravestate.policy.model import Clause
 
 SAME = 1e-9
-"""Worths whose relative difference is at most this count as equal, because the times of crossings are rounded."""
+"""Two worths count as equal if their relative difference is at most this, because times of crossings are rounded."""
 
 DIGITS = 9
-"""Digits of a second to which the time of a crossing is rounded, so that events of the same moment coincide."""
+"""The time of a crossing (seconds) is rounded to this many decimal places, so that events of one moment coincide."""
 
 INSTANT = 0.5e-9
-"""Moments that differ by less than this (seconds) are the same: half of the last of these digits."""
+"""Moments that differ by less than this (seconds) are the same: half a unit of the last decimal place."""
 
 
 class Standing:
-    """The worth of clauses at the present moment of an engine; `ran` is a rule's number → the time of its last run."""
+    """The worth of clauses at the present moment of an engine; `ran` has the times of the rules' last runs."""
 
     __slots__ = ("now", "ran")
 
@@ -74,9 +74,9 @@ class Standing:
         return (lead or first) > 0, (soon or first) > 0
 
     def crossing(self, one: Clause, other: Clause) -> float:
-        """Return when recovery next changes the order of two clauses (seconds); `inf` if it never does.
+        """Return the time (seconds) at which recovery next changes the order of two clauses; `inf` for never.
 
-        The time is counted from the last run. So all activations that wait for it get the same time, to the last digit.
+        The time is computed from the last run. So all activations that wait for it get exactly the same time.
         """
         (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
         closing = one.base * fast - other.base * their_fast

@@ -14,10 +14,10 @@ The parts of the engine share one state. Only `State.adopt` and these files chan
 - `patience_ends`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
 - `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: ``waits.py`` and ``agenda.py``
 - `running`, `ran`, `watches`: ``runs.py``; `watched_by`: ``runs.py`` and ``holdings.py``; `retired`: ``parts.py``
-- `values`: ``slots.py``; the first read of a slot adds its default
+- `values`: ``slots.py``; also, the first read of a slot adds its default
 
-Any part may add to the work that is left: `asking`, `dirty`, `stirred`, `free`, `errors`, `out`. `Waits.wake` empties
-the first three, ``agenda.py`` empties `free`, and ``parts.py`` empties `errors` and `out`.
+Any part may add to the tables of the work that is left: `asking`, `dirty`, `stirred`, `free`, `errors`, `out`.
+`Waits.wake` empties the first three, ``agenda.py`` empties `free`, and ``parts.py`` empties `errors` and `out`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ from ravestate.policy.policy import Policy
 class State(Memory):
     """The memory, live spikes and activations of an engine, and the work that is left to do.
 
-    An engine at rest has a `Memory` only. When it begins to work, a state takes this memory over (`begin`).
+    An engine at rest has only a `Memory`. When the engine begins to work, a state takes over this memory (`begin`).
 
     Args:
         policy: A policy from ``rs.compile``.
@@ -113,25 +113,26 @@ class State(Memory):
         self.active: dict[int, dict[Activation, None]] = {}
         """Number of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
-        """Need → the activations that hold a spike, but none for this need."""
+        """Need → the activations that hold a spike, but lack one for this need."""
         self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING
         """Half → the spikes that it holds without an activation, oldest first (``halves.py``). Each spike has a number
-        *n*: if its activations are made, they get the numbers from *n* + 1 on."""
+        *n*: its activations, if the engine makes them, get the numbers from *n* + 1 on."""
         self.rows: dict[Half, Row] = NOTHING
-        """Half that holds many spikes, each for only some of the half's clauses → an index of these spikes (``row.py``)."""
+        """Half whose spikes are slow to search → an index of these spikes (``row.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
         """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
         self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
-        """Spike → half → the half's bench that has this spike as counterpart."""
+        """Spike → half → the bench of the half that has this spike as its counterpart."""
         self.seats: dict[Half, dict[Spike, Bench]] = NOTHING
-        """Half with benches → each spike that the half holds → the spike's bench."""
+        """Half with benches → spike that the half holds → the spike's bench."""
         self.headless: dict[Spike, None] = NOTHING
         """The counterparts of benches whose heads may have gone."""
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
-        """Spike → half that holds it → pairs: how many of the half's best clauses have a patience, and when it ends
-        (seconds; L16). Each count includes the clauses of earlier pairs."""
+        """Spike → half that holds the spike → pairs of a count and a time (seconds). The count says how many of the
+        half's best clauses are under pressure. Each count includes the clauses of earlier pairs; the time is the end of
+        the patience of those that it adds (L16)."""
         self.gated: dict[Activation, None] = NOTHING
-        """Activations that hold all their spikes while a predicate on a slot is false."""
+        """Activations that hold all their spikes, but have a slot predicate that is false."""
         self.free = Free()
         """The ready activations that need no consent."""
         self.asking: dict[Activation, None] = {}
@@ -148,20 +149,21 @@ class State(Memory):
         """The groups that have changed: a run or a patience has ended, or a member has come, changed or gone. The
         activations whose refusals depend on these groups ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
-        """Hope, that is, a thing outside an activation's groups that may lift its refusal (``refusal.py``) → the waiting
-        activations that have this hope."""
+        """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
+        the activation's refusal (``refusal.py``)."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
         """Hope → its greatest count in the refusals of these activations (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING
         """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
-        """Activation that stands for a conflict set (``conflict_sets.py``) → three values: the clauses of the set, how
-        many of them have had an activation, and a number *n*. Their activations get the numbers from *n* + 1 on."""
+        """Key: the activation of the best clause of a conflict set (``conflict_sets.py``). Value: the clauses of the
+        set, how many of them have had an activation, and a number *n*. Their activations get the numbers from *n* + 1
+        on."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.standing = Standing(self.ran)
         self.watches: dict[Clause, dict[Activation, Watch]] = NOTHING
-        """Clause of an `until` condition → run → the `Watch` for that clause and run."""
+        """Clause of an `until` condition → run → the run's `Watch` for that clause."""
         self.watched_by: dict[Spike, dict[Watch, None]] = NOTHING
         """Spike → the watches that hold it."""
         self.out: list[Effect] = []
@@ -169,10 +171,10 @@ class State(Memory):
         self.acts = False
         """Whether one of these effects starts or cancels a run."""
         self.errors: tuple[tuple[RuleFailure, Lineage | None], ...] = ()
-        """Failures that ``core:error`` has not reported yet, each with the rules that led to it."""
+        """The failures that ``core:error`` has not reported yet, each with its lineage: the rules that led to it."""
         self.faults: dict[int, tuple[Clause, Any, Exception]] = NOTHING
-        """`id` of a predicate that has raised and is not reported yet → the first declared clause with the predicate, the
-        predicate, and the exception."""
+        """Key: the `id` of a predicate whose exception is not reported yet. Value: the first declared clause with the
+        predicate, the predicate, and the exception."""
         self.loops = Loops(self)
         self.busy = 0
         """How many activations count for ``core:activity``."""
@@ -196,7 +198,7 @@ class State(Memory):
         if self.live or self.active or self.out or self.errors or self.faults or self.tracer is not None:
             return False
         if self.values.get(self.activity.index) or self.values.get(self.pressure.index):
-            return False  # code outside has set a built-in flag, which the engine must settle
+            return False  # code outside the rules has set a built-in flag, which the engine must settle
         return self.deadlines.next() is None
 
     def adopt(self, policy: Policy) -> None:
@@ -283,7 +285,7 @@ class State(Memory):
         return held[spike] + half.places[need.clause.rule.index] + 1
 
     def stand_in(self, need: Need, spike: Spike) -> Activation:
-        """Return a copy of the activation that the need's half would make of a spike. No table has the copy."""
+        """Return a copy of the activation that the need's half would make of a spike. No table has this copy."""
         activation = Activation(self.entry_number(need, spike), need.clause)
         activation.put(need, spike)
         activation.missing &= ~need.bit
@@ -326,7 +328,7 @@ class State(Memory):
         """Return the result of a clause's predicate. A predicate that raises counts as false, and is reported once."""
         try:
             return bool(predicate(value))
-        except Exception as exception:  # a predicate is the designer's code: it may raise anything
+        except Exception as exception:  # a predicate is the designer's code, which may raise anything
             if id(predicate) not in self.blamed:
                 self._note_fault(clause, predicate, exception)
             return False
@@ -341,7 +343,7 @@ class State(Memory):
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:
-        """Return whether all predicates of a need accept a payload. After the first that does not, the rest are not called."""
+        """Return whether all predicates of a need accept a payload. The first that refuses is the last to be called."""
         for predicate in need.predicates:
             if not self.test(predicate, payload, need.clause):
                 return False

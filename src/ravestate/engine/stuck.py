@@ -8,7 +8,7 @@ from ravestate.engine.activation import Activation
 
 
 class Stuck:
-    """A set of activations in a fixed order; `counts` is the number of a rule → how many members it has."""
+    """A set of activations in a fixed order; `counts` has the number of members of each rule, by the rule's number."""
 
     __slots__ = ("_members", "counts")
 

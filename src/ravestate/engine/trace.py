@@ -13,7 +13,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Born:
-    """A spike was born; ``source`` is the activation whose run raised it, or 0 if code outside the rules did."""
+    """A spike was born; ``source`` is the activation whose run raised it, or 0 if code outside the rules raised it."""
 
     time: float
     spike: int
@@ -45,7 +45,7 @@ class Merged:
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A slot got a value; ``run`` is the activation whose run wrote it, or 0 if code outside the rules did."""
+    """A slot got a value; ``run`` is the activation whose run wrote it, or 0 if code outside the rules wrote it."""
 
     time: float
     slot: str
@@ -131,7 +131,7 @@ class Started:
     rule: str
     clause: int
     spikes: tuple[int, ...]
-    number: int = 0  # 0 if the trace is from a release without it
+    number: int = 0  # 0 if the trace is from a release without this number
 
 
 @dataclass(frozen=True, slots=True)

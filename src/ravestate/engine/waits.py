@@ -3,10 +3,11 @@
 Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of these changes:
 
 - a causal group on which the refusal depends (`Refusal.interests`)
-- a *hope*: a thing outside these groups that may lift the refusal, such as a live rule elsewhere (``refusal.py``)
+- a *hope*: something outside these groups that may lift the refusal, such as a live rule of another group
+  (``refusal.py``)
 
-It also asks again at its recheck time, and when its rule or a rival begins a cooldown. A change of the rules, or a write
-of a slot with predicates, makes all waiting activations ask again. The engine compares each change of an activation
+It also asks again at its recheck time, and when its rule or a rival begins a cooldown. All waiting activations ask
+again when the rules change, or when a slot with predicates changes. The engine compares each change of an activation
 with all hopes (`Waits.stir_rule`).
 """
 
@@ -30,7 +31,7 @@ class Waits:
         self.state = state
 
     def begin(self, activation: Activation, refusal: Refusal) -> None:
-        """Make an activation wait for the reasons in `refusal`, and note the changes after which it asks again."""
+        """Make an activation wait for the reasons in `refusal`, and record the changes after which it asks again."""
         state = self.state
         before = activation.refusal
         activation.step(REFUSE)
@@ -52,13 +53,13 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Trace the rules for which followers wait, if the rules for which their leaders wait have changed."""
+        """Record in the trace which rules the followers wait for, where that has changed with their leaders' waits."""
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)
 
     def _tell(self, activation: Activation, refusal: Refusal) -> bool:
-        """Trace the names of a refusal, unless the trace has the same names already; return whether they are new."""
+        """Record a refusal's names in the trace, unless it has the same names already. Return whether they are new."""
         state = self.state
         names = tuple(refusal.all_names)
         if names == refusal.told or state.tracer is None:
@@ -97,7 +98,7 @@ class Waits:
             self.stir_rule(activation.clause.rule)
 
     def stir_rule(self, rule: RulePlan) -> None:
-        """Note that an activation of a rule has come, changed or gone. Activations that hope for the rule ask again."""
+        """Record that an activation of a rule came, changed or went. Activations that hope for the rule ask again."""
         state = self.state
         others = len(state.active.get(rule.index, ())) - 1
         for hope in state.hoping:
@@ -113,7 +114,7 @@ class Waits:
                 state.stirred[hope] = None
 
     def stir_half(self, half: Half) -> None:
-        """Note that a half has taken a spike. Activations that hope for one of its rules ask again."""
+        """Record that a half has taken a spike. Activations that hope for one of its rules ask again."""
         state = self.state
         for hope in state.hoping:
             if hope[0] == RULE and hope[1] in half.places:
@@ -134,14 +135,14 @@ class Waits:
         return asking
 
     def pass_time(self) -> None:
-        """Let the next search for a stalemate begin with all stuck activations, because time may change their reasons."""
+        """Make the next search for a stalemate begin with all stuck activations, as time may change their reasons."""
         if self.state.stuck:
             self.state.refused.update(dict.fromkeys(self.state.stuck))
             self.state.stuck.clear()
 
 
 def patience_of_rivals(state: State, activation: Activation) -> float | None:
-    """Return when the last patience of a waiting activation's rivals ends (seconds); None without pressure."""
+    """Return when the last rival of a waiting activation loses its patience (seconds); None without pressure."""
     names = activation.refusal.names if activation.refusal is not None else ()
     clauses = state.policy.clause_plans
     times: list[float] = []

@@ -1,1 +1,1 @@
-"""Load modules by name, path or file, and agent files. An agent file lists modules with their settings."""
+"""Load agent files, and modules by name, path or file. An agent file lists modules and their settings."""

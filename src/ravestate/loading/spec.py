@@ -33,9 +33,9 @@ class AgentSpec:
 
     Attributes:
         modules: The modules, in order.
-        settings: Module's name → key → value, for the settings that files and options set.
+        settings: Name of a module → key → value. Only settings from files and options are here.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: The seconds after which a pressured rival gives up if it is not ready (L16).
+        patience: A rival under pressure gives up if it is not ready after this many seconds (L16).
         faults: A message for each mistake so far.
     """
 
@@ -58,7 +58,7 @@ class AgentSpec:
         return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
 
     def read(self, path: Path) -> list[tuple[str, Path]]:
-        """Take the settings and numbers of an agent file, and add its mistakes to `faults`.
+        """Read the settings and numbers of an agent file, and add its mistakes to `faults`.
 
         Return the names of the file's modules, each with the folder of the file. If the file cannot be read at all,
         raise a `UsageError`.
@@ -90,7 +90,7 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load the modules with these names. Each name comes with the folder to which a relative path refers."""
+        """Load the modules with these names. Each name comes with a folder, to which a relative path refers."""
         for name, folder in names:
             try:
                 module = load_module(name, folder)
@@ -127,7 +127,7 @@ class AgentSpec:
     def check(self) -> None:
         """If there are `faults`, raise a `UsageError` with all of them, and with the faults of the settings.
 
-        If there are no `faults`, do not check the settings: compiling the modules finds the faults of the settings.
+        Without `faults`, do not check the settings, because compiling the modules checks them anyway.
         """
         if not self.faults:
             return

@@ -5,7 +5,7 @@ detached rule, because its effects have no causes. The closure of a signal holds
 which a path of edges leads to it.
 
 A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
-intersections are fast.
+intersecting two closures is fast.
 """
 
 from __future__ import annotations
@@ -230,12 +230,11 @@ class Causes:
 
     @property
     def contested(self) -> frozenset[int]:
-        """The slots that a search along a chain of effects must note: a chain writes a slot only once in a group (L19).
+        """The slots that a search along a chain of effects must note, because a group allows one write of a slot (L19).
 
         A slot that several rules write is contested. If only one rule writes a slot, a chain that writes the slot twice
-        passes this rule twice. Within one group, a shorter chain then reaches the same end: the chain without the part
-        between the two passes. So this slot is contested only if its rule is on a cycle with a clause that joins
-        groups.
+        visits this rule twice. Within one group, the chain can leave out the part between the two visits, and still
+        reaches the same end. So this slot is contested only if its rule is on a cycle with a clause that joins groups.
         """
         if self._contested is None:
             self._contested = self._find_contested()
@@ -262,7 +261,7 @@ class Causes:
         )
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """Return the signals that may ever occur if those in `given` may occur: a least fixed point over all rules."""
+        """Return the signals that can ever occur if those in `given` can occur: a least fixed point over all rules."""
         reached = set(given)
         lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}

@@ -46,7 +46,7 @@ def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
 
 
 def _inner_first(condition: Condition) -> Iterator[Condition]:
-    """Yield the condition and each of its parts once; a part follows the parts that it contains."""
+    """Yield the condition and each of its parts once. Each part comes after the parts inside it."""
     seen: set[int] = set()
     stack = [(condition, False)]
     while stack:

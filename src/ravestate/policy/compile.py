@@ -91,7 +91,7 @@ def build(
 
 
 def _check_reachable(causes: Causes, faults: list[str]) -> None:
-    """Add a fault for each rule that no input can start; such rules wait for effects of each other.
+    """Add a fault for each rule that no input can start, because it waits for effects of rules that wait in turn.
 
     A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
     may write slots, and detached effects make loops on purpose.
@@ -149,8 +149,8 @@ def _in_order(given: Iterable[Module], faults: list[str]) -> list[Module]:
     return list(ordered)
 
 
-PREDICATE = math.log(2)  # the nats that a ``where`` or ``holds`` predicate adds: it halves the probability (L9)
-SAME = 1e-9  # base utilities whose relative difference is at most this are equal
+PREDICATE = math.log(2)  # a ``where`` or ``holds`` predicate adds this many nats: it halves the probability (L9)
+SAME = 1e-9  # base utilities count as equal if their relative difference is at most this
 NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: above 0, so that its weight counts
 
 
@@ -181,7 +181,7 @@ def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], 
 
 
 def _make_equal(clauses: Iterable[Clause]) -> None:
-    """Give one base utility to clauses whose base utilities differ in their last digits alone: they are equals (L15)."""
+    """Make base utilities equal if they differ only in their last digits: such clauses count as equals (L15)."""
     last = 0.0
     for clause in sorted(clauses, key=lambda clause: clause.base):
         if clause.base - last <= SAME * clause.base:

@@ -4,8 +4,8 @@ An *alternative* of a signal is a set of signals that together may cause it. An 
 has the empty alternative. A pathway of a clause is a set of signals. It holds the clause's own signals and, for each
 signal in the pathway, one alternative of that signal.
 
-A set of signals is an integer here. Bit *n* stands for the signal at *place* *n*; causes have places before their
-effects. Except in cycles, the signal of a set's highest bit causes no other signal of the set.
+A set of signals is an integer here. Bit *n* stands for the signal at *place* *n*. The places of causes come before
+those of their effects. Except in cycles, the signal of a set's highest bit causes no other signal of the set.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Completion:
         return sum(information * (bits & alike).bit_count() for information, alike in self._alike.items())
 
     def signals(self, bits: int) -> frozenset[Signal[object]]:
-        """Return the signals that the bits of a set stand for."""
+        """Return the signals of a set of bits."""
         return frozenset(self._signals[place] for place in each(bits))
 
 

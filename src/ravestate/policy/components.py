@@ -10,7 +10,7 @@ from dataclasses import dataclass
 class Components:
     """The strongly connected components of a graph: the members of each component, and each node's component number.
 
-    If edges lead from one component to another, the other component comes first.
+    If an edge leads from component A to component B, B comes before A.
     """
 
     members: list[list[int]]

@@ -99,7 +99,7 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
 
 def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
-    """Set the halves of each signal, and the listeners in no conflict set and no half.
+    """Set the halves of each signal, and its `others`: the listeners that are in no conflict set and in no half.
 
     A half collects the needs for one signal, from clauses that have two needs. The first spike only changes which need
     such a clause lacks, so a table of spikes is enough (``engine/halves.py``). As for a conflict set, none of the
@@ -121,7 +121,7 @@ def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
 
 def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
-    """Return a map: (slot, part of the policy) → the part's best clause that writes the slot (`Causes.parts`)."""
+    """Return the best clause that writes a slot, for each pair of a slot and a part of the policy (`Causes.parts`)."""
     best: dict[tuple[int, int], Clause] = {}
     for rule in causes.rules:
         for clause in rule.clauses if rule.slots else ():
@@ -145,7 +145,7 @@ def _is_sole(clause: Clause, best: dict[tuple[int, int], Clause], causes: Causes
 
 
 def _is_plain(clause: Clause) -> bool:
-    """Return whether a clause is its rule's only one, and two spikes make it ready at once."""
+    """Return whether a clause is the only one of its rule, and becomes ready as soon as it has two spikes."""
     rule = clause.rule
     return (
         len(clause.needs) == 2
@@ -157,7 +157,7 @@ def _is_plain(clause: Clause) -> bool:
 
 
 def _likeness(need: Need, causes: Causes) -> Any:
-    """Return a key: needs of one signal with equal keys are alike for every decision about a first spike."""
+    """Return a key. All decisions about a first spike are the same for needs for one signal with equal keys."""
     rule = need.clause.rule
     if need.predicates:
         return need

@@ -15,7 +15,7 @@ from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.policy import Policy
 from ravestate.policy.source import Source, acts_of, undeclared
 
-BREAKING = frozenset({"undeclared", "unknown", "await"})  # the kinds of findings that make a rule fail at run time
+BREAKING = frozenset({"undeclared", "unknown", "await"})  # findings of these kinds make a rule fail at run time
 
 MAX_PEERS = 64
 """The search for ties compares each rule with at most this many other rules, those declared first.
@@ -26,7 +26,7 @@ Without a limit the time would grow with the square of the number of rules; ``po
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One remark on a policy.
+    """A remark on a probable mistake in a policy.
 
     Attributes:
         kind: ``"undeclared"``, ``"unknown"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``,
@@ -162,7 +162,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
 
 
 def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
-    """Return a map: (slot, the clause's rarest signal) → the clauses that wait only for signals, the best first."""
+    """Return the clauses that wait only for signals, by slot and by the clause's rarest signal; the best come first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:

@@ -3,11 +3,11 @@
 An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
 alternative of each of its signals (`Completion`). Its *cost* is its information.
 
-The search begins with the clause's own signals. Each step takes the signal with the highest bit that lacks an
-alternative, and tries each alternative of this signal. Two sets may agree in all signals that further steps may reach.
-Then these steps are the same for both, so the search follows only the cheaper set. So independent choices do not
-multiply. The search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree,
-it takes one or two steps.
+The search begins with the clause's own signals. Each step takes the signals that lack an alternative, and tries each
+alternative of the one with the highest bit. Two sets may agree in all signals that further steps may reach. Then these
+steps are the same for both, so the search follows only the cheaper set. So independent choices do not multiply. The
+search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree, it takes one or
+two steps.
 
 If alternatives have causes in common, the search is a weighted set cover problem, for which no quick method is known.
 If a step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens
@@ -27,7 +27,7 @@ EFFORT = 100_000
 Each search may use a tenth of the sets that are left. It divides this tenth among its steps.
 """
 
-FREE = 100  # the number of sets that each search may always examine
+FREE = 100  # each search may examine this many sets, whatever is left of `EFFORT`
 
 
 class Least:
@@ -78,7 +78,7 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other. Those of their other causes are known already."""
+        """Find the least pathways of signals that lead to each other. The pathways of their other causes are known."""
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}

@@ -24,7 +24,7 @@ from ravestate.policy.policy import Policy
 QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
 """Types of values that take no time to use."""
 
-HOME = "ravestate"  # the start of the names of the Python modules whose content takes no time to use
+HOME = "ravestate"  # the content of Python modules whose names start with this takes no time to use
 
 
 def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
@@ -88,7 +88,7 @@ def _wanted(clause: Clause) -> list[Need]:
 
 
 def _raised(policy: Policy, rule: RulePlan) -> list[int]:
-    """Return the numbers of the signals by which a rule may start the loop's next run at once."""
+    """Return the numbers of the signals with which a rule may immediately start the loop's next run."""
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]
 

@@ -56,7 +56,7 @@ class SignalPlan:
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
-    """Seconds for which detached needs can see a spike that no activation holds; below 0 if there are no such needs."""
+    """For this many seconds, detached needs can see a spike that no activation holds; negative without such needs."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name
@@ -146,7 +146,7 @@ class Clause:
     asks_detached: bool = False
     """Whether some, but not all, of the clause's needs are detached."""
     simple: bool = False
-    """Whether a spike makes the clause ready at once: it has a single need, without `min_age`, and no guard."""
+    """Whether one spike is enough to make the clause ready: it has a single need, without `min_age`, and no guard."""
     apart: bool = False
     """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
     reflexive: bool = False
@@ -201,18 +201,18 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """Needs for one signal that the engine treats alike; each is one of its clause's two needs.
+    """Needs for one signal that the engine treats alike. Each belongs to a clause with two needs.
 
-    A first spike gets no activation.
+    The half holds the first spike of such a clause without an activation.
 
     Attributes:
         needs: The needs, in declaration order.
         best: The same needs; the need of the best clause comes first.
-        ranks: For each clause in `best`: its base utility (negative) and its number.
+        ranks: For each clause in `best`: its negated base utility, and its number.
         rank: Number of a clause → its place in `best`.
-        patience: The patience of the rules in seconds, or None for the context's (L16).
+        patience: The patience of the rules in seconds; None if they have the context's patience (L16).
         kin: Whether both spikes of a clause must belong to one causal group (L12).
-        max_age: The age at which the needs give a spike up (seconds).
+        max_age: The age (seconds) at which the needs give a spike up.
         slotset: The numbers of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
         places: Number of a rule → the place of its need in `needs`.

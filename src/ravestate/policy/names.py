@@ -1,4 +1,4 @@
-"""The names of a policy: name → the numbered signal or slot."""
+"""The names of a policy's signals and slots: each name leads to a numbered record."""
 
 from __future__ import annotations
 
@@ -58,12 +58,12 @@ class Names:
         return plan
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
-        """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, have one name."""
+        """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, share a name."""
         if self._modules[name.split(":")[0]] < 2:  # two modules with one name are a fault reported elsewhere
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """Return the record of a signal that a declaration (`where`) uses. If none exists, add a fault; return None."""
+        """Return the record of a signal that a declaration (`where`) uses. Without one, add a fault and return None."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan

@@ -1,4 +1,4 @@
-"""The numbers in rules: checks of their range, and the values of settings that stand for numbers."""
+"""The numbers in rules: the checks of their range, and the values of settings that rules use as numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ravestate.errors import nearest
 
 
 class Numbers:
-    """Checks the numbers in rules, and replaces a setting by its value.
+    """Checks the numbers in rules, and replaces settings with their values.
 
     It adds numbers out of range, and missing settings, to `faults`. `refers` is true if a rule refers to a setting.
     """
@@ -29,7 +29,7 @@ class Numbers:
     def number(
         self, rule: Rule[Any, Any], number: Number, what: str, valid: Callable[[float], bool], wanted: str
     ) -> float:
-        """Return the value of the argument `what` of a rule; if it is not `valid`, add a fault and return 1."""
+        """Return the value of a rule's argument `what`. If the value is not `valid`, add a fault and return 1."""
         where = f"rule {rule.name} ({rule.origin}): {what}"
         source = repr(number)
         if isinstance(number, SettingRef):

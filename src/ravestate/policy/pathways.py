@@ -25,7 +25,7 @@ from ravestate.policy.model import Clause, Need
 MAX_PATHWAYS = 256  # the maximum number of pathways of a clause or signal; those with the least information are kept
 
 MAX_UNIONS = 200_000
-"""The maximum number of unions for one clause. A clause that needs more shows its least pathway alone."""
+"""The maximum number of unions for one clause. A clause that needs more shows only its least pathway."""
 
 Costs = dict[int, int]
 """Set of signals → the information of the set, in units."""
@@ -45,7 +45,7 @@ class Pathways:
         self.completion = completion
         self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
-        self._within: dict[tuple[int, int], Costs] = {}  # (place, signals of its cycle on the way) → pathways
+        self._within: dict[tuple[int, int], Costs] = {}  # (place, signals on the way that share its cycle) → pathways
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:
@@ -69,7 +69,7 @@ class Pathways:
         found: Costs = {0: 0}
         for need in needs:
             place = self.completion.place[need.signal.index]
-            if need.detached:  # a detached need stands alone: the causes of its signal do not count
+            if need.detached:  # the causes of a detached need's signal do not count
                 found = self._product(found, {1 << place: self.completion.information[place]})
             else:
                 found = self._product(found, (yield self._of_signal(place, 0)))

@@ -47,7 +47,7 @@ class Policy:
     def __post_init__(self, completion: Completion) -> None:
         self.pathways = Pathways(completion)
         self.spare: list[Any] = []
-        """Parts of engines (``engine/parts.py``) that serve no engine at present."""
+        """Parts of engines (``engine/parts.py``) that no engine uses at present."""
         clauses = [clause for rule in self.rule_plans for clause in (*rule.clauses, *rule.until)]
         self.clause_plans = {clause.index: clause for clause in clauses}
         self.plan_of = {plan.name: plan for plan in self.rule_plans}
@@ -72,8 +72,9 @@ class Policy:
     def utility(self, rule: str | Rule[Any, Any]) -> float:
         """Return the utility of a rule in nats: the greatest utility of its clauses, without weight and cooldown (L9).
 
-        The result may be slightly too high if dozens of signals on a pathway each have several causes, and these share
-        causes (``policy/least.py``). In all other cases, it is exact. Raise a `DeclarationError` for an unknown rule.
+        The result is exact in almost all cases. It may be slightly too high if dozens of signals on a pathway each have
+        several causes, which in turn share causes (``policy/least.py``). Raise a `DeclarationError` for an unknown
+        rule.
 
         Example:
             >>> import ravestate as rs

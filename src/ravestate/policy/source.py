@@ -1,8 +1,8 @@
 """Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``.
 
-An act is a read, a write, an emit or the use of a payload. It is checked here only if the function's globals or closure
-hold its slot or signal. All other acts are checked when the rule runs (L3), e.g. an act on a name that the function
-itself binds.
+An act is a read, a write, an emit or the use of a payload. This file checks an act only if the function's globals or
+closure hold the slot or signal. All other acts are checked when the rule runs (L3), e.g. an act on a name that the
+function itself binds.
 
 Guarded code is also checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
 ``hasattr``, or on a variable of an enclosing function. Such a function may make several rules with different

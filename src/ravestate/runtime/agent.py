@@ -13,9 +13,9 @@ from ravestate.settings import Settings
 
 
 class Agent:
-    """A policy and its settings, read and checked once, and shared by all contexts of the agent.
+    """A policy and its settings, which are checked once and shared by all contexts of the agent.
 
-    The arguments, and the exceptions, are those of `Context`.
+    The arguments and the exceptions are those of `Context`.
     """
 
     def __init__(self, *modules: Module | ModuleType | Policy, **options: Any) -> None:
@@ -25,6 +25,6 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context of this agent. A context starts only once. `options` override the agent's options."""
+        """Return a new context of this agent. `options` override the agent's options. A context can start only once."""
         merged: Any = self._options | options
         return Context(self.policy, **merged)

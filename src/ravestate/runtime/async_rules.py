@@ -15,10 +15,10 @@ from ravestate.runtime.spares import Spares
 if TYPE_CHECKING:
     from ravestate.runtime.functions import Functions
 
-GRACE = 5.0  # the seconds that a cancelled rule has to clean up before its run counts as ended
+GRACE = 5.0  # a cancelled rule has this many seconds to clean up; then its run counts as ended
 
 CLEANING = 10
-"""The turns of the event loop that a cancelled rule has for its last writes before any other rule continues."""
+"""A cancelled rule has this many turns of the event loop for its last writes, before any other rule continues."""
 
 log = logging.getLogger("ravestate")
 
@@ -26,14 +26,14 @@ log = logging.getLogger("ravestate")
 class AsyncRules:
     """Starts, cancels and ends the async rules of one context.
 
-    This class calls `Functions.finish` when the function of a run has ended. If a run does not end within `GRACE`
-    seconds of its cancellation, the run is dropped (`Functions.drop`). When the tasks in `cleaning` have ended, or
-    their turns are over, other effects follow (`Functions.go_on`).
+    When the function of a run has ended, this class calls `Functions.finish`. If a run does not end within `GRACE`
+    seconds of its cancellation, this class calls `Functions.drop`. When the tasks in `cleaning` have ended, or have
+    used up their turns, it calls `Functions.go_on`, and other effects follow.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, functions: Functions) -> None:
         self.cleaning: tuple[asyncio.Task[Any], ...] = ()
-        """The tasks that have just been cancelled. Their last writes come before any other effect."""
+        """The tasks that have just been cancelled. Until their last writes, other effects wait."""
         self._loop = loop
         self._functions = functions
         spares = Spares.join(loop)
@@ -44,9 +44,9 @@ class AsyncRules:
         self._spare: EagerTask | None = None
 
     def start(self, ctx: RuleContext) -> None:
-        """Run a function up to its first ``await`` that suspends it. A task continues from there.
+        """Run a function to its end, or up to the first ``await`` that suspends it; a task continues from there.
 
-        No task may be current on the loop. The caller calls `rest` once it has no more functions to start.
+        No task may be current on the loop. When the caller has no more functions to start, it must call `rest`.
         """
         task, self._spare = self._spare, None  # the function may start other functions
         if task is None:
@@ -75,7 +75,7 @@ class AsyncRules:
             task.close()
 
     def rest(self) -> None:
-        """Let other contexts have the spare task."""
+        """Return the spare task, so that other contexts can use it."""
         if self._spare is not None and self._spares is not None:
             self._spares.give(self._spare)
             self._spare = None
@@ -91,7 +91,7 @@ class AsyncRules:
         self._grace[ctx] = self._loop.call_later(GRACE, self._grace_is_over, ctx)
 
     async def close(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all runs, and wait at most `GRACE` seconds until they end. Then abandon the runs that have not ended.
+        """Cancel all runs, and wait at most `GRACE` seconds for them to end. Then abandon the runs that have not ended.
 
         With `at_once`, do not wait.
         """

@@ -15,13 +15,14 @@ except ImportError:  # Windows
     resource = None
 
 BLOCKING: Final = 0.1
-"""The seconds that one step of an async rule may take before a warning names the rule: nothing else runs meanwhile."""
+"""If one step of an async rule takes longer than this (seconds), a warning names the rule: nothing else runs
+meanwhile."""
 
-FRESH: Final = 0.01  # steps that begin within so many seconds share one reading of the thread's CPU time
+FRESH: Final = 0.01  # steps that begin within this many seconds share one reading of the thread's CPU time
 
 ASLEEP = 0.05
-"""A step counts as sleeping if its sleeps are longer than this on average (seconds). A thread that waits for the
-interpreter's lock sleeps again and again, for about 5 ms each time."""
+"""A step counts as sleeping only if its sleeps are longer than this on average (seconds). Shorter sleeps are waits for
+the interpreter's lock: a thread that waits for the lock sleeps again and again, for about 5 ms each time."""
 
 log = logging.getLogger("ravestate")
 
@@ -29,11 +30,11 @@ log = logging.getLogger("ravestate")
 class StepTimer:
     """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
-    A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. Time in which the thread waits for a
-    processor or for the interpreter's lock does not count, so a busy machine causes no warning. The system counts how
-    often the thread slept voluntarily, and how often the scheduler preempted the thread. If the scheduler preempted the
-    thread in a step, the timer ignores the sleeps of this step. Windows and macOS do not have these numbers; there, the
-    timer ignores sleeps.
+    A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. The time for which the thread waits
+    for a processor or for the interpreter's lock does not count, so a busy machine causes no warning. The system counts
+    how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted the
+    thread during a step, the timer ignores the sleeps of this step. Windows and macOS do not have these numbers; there,
+    the timer ignores all sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.
@@ -47,7 +48,7 @@ class StepTimer:
         self._sleeps = 0, 0
 
     def begin(self) -> float:
-        """Note that a step begins; return the time (seconds of `perf_counter`), for `end`."""
+        """Record that a step begins. Return the time that `end` needs (seconds of `perf_counter`)."""
         now = perf_counter()
         if now > self._fresh_until:
             self._fresh_until = now + FRESH

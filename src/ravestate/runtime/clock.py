@@ -1,6 +1,6 @@
-"""A context's clock. It starts at zero, follows the loop's time, and can be halted, set forward and started again.
+"""A context's clock. It starts at zero and follows the loop's time. It can be halted, set forward and started again.
 
-It can also be driven by another clock, such as that of a simulation.
+Another clock, such as that of a simulation, can drive it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Clock:
         return self._driven is not None
 
     def drive(self, time: float) -> None:
-        """Set the clock forward to `time` (seconds). From now on it moves only by such calls, not with the loop's time."""
+        """Set the clock forward to `time` (seconds). From now on, only calls of `drive` move the clock."""
         self._driven = max(self.now() if self._driven is None else self._driven, time)
         for sleeper, (until, timer) in self._sleepers.items():
             if timer is not None:
@@ -73,7 +73,7 @@ class Clock:
         return min((until for until, _ in self._sleepers.values()), default=None)
 
     def halt(self) -> None:
-        """Halt the clock, and the calls of `sleep` with it."""
+        """Halt the clock. Calls of `sleep` do not end until it moves again."""
         if self._halted is None:
             self._halted = self.now()
             for sleeper, (until, timer) in self._sleepers.items():

@@ -34,13 +34,14 @@ TRACE_LIMIT = 100_000  # the maximum number of records in a context's trace
 
 
 class Context:
-    """An agent that runs: ``async with rs.Context(module, ...) as context``.
+    """A running agent: ``async with rs.Context(module, ...) as context``.
 
     Args:
         modules: Modules to compile, or one compiled `Policy` to share.
-        settings: Module's name → the module's settings. They override settings from the environment.
+        settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: Seconds after which a pressured rival gives up if it is not ready (L16). A rule may set its own value.
+        patience: A rival under pressure gives up if it is not ready after this many seconds (L16). A rule may set its
+            own value.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
 
@@ -92,7 +93,7 @@ class Context:
         self._journal = journal
         self._runner: Runner | None = None
         self._is_to_stop = False
-        self._stopping: asyncio.Event | None = None  # made for the first task that waits for the end
+        self._stopping: asyncio.Event | None = None  # made when the first task waits for the end
 
     # ------------------------------------------------------------------------------------ life
 
@@ -126,8 +127,8 @@ class Context:
         """End the context in order.
 
         The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
-        are cancelled, and may clean up. A rule that runs for ever does not delay the end if it has ``background=True``.
-        If `stop` itself is cancelled, it stops waiting.
+        are cancelled, and may clean up. An endless rule with ``background=True`` does not delay the end. If `stop`
+        itself is cancelled, it stops waiting.
         """
         runner = self._running()
         self.ask_to_stop()
@@ -159,7 +160,7 @@ class Context:
         """Wait until a rule (``ctx.stop()``) or other code (`ask_to_stop`) has asked the context to end.
 
         Raises:
-            RavestateError: A rule has asked for the end because of this error (``ctx.stop(failure)``).
+            RavestateError: A rule has asked the context to end because of this error (``ctx.stop(failure)``).
             EngineError: The engine has failed, which is a bug in this library.
         """
         runner = self._running()
@@ -174,22 +175,23 @@ class Context:
         """Wait until no foreground rule runs or waits for consent.
 
         Args:
-            slot: Wait only for rules that may write this slot, or cause another rule to write it; None for all rules.
+            slot: Wait only for rules that may write this slot, or may cause another rule to write it. None: wait for
+                all rules.
         """
         await self._running().quiet(None if slot is None else slot.name)
 
     # ------------------------------------------------------------------------------------ its clock
 
     def pause(self) -> None:
-        """Halt the context's clock. Call `pause`, `step` and `resume` on the context's loop only.
+        """Halt the context's clock. Call `pause`, `step` and `resume` only on the thread of the context's loop.
 
-        The context still takes events from outside. No rule starts, no deadline passes, and ``ctx.sleep`` does not end.
-        A rule that computes, or waits for something else, continues.
+        The context still accepts events from outside. But no rule starts, no deadline passes, and ``ctx.sleep`` does
+        not end. A rule that computes, or waits for something other than the clock, continues.
         """
         self._running().pause()
 
     def step(self) -> bool:
-        """Perform the next step of a paused context. Several rules may start in one step (a wave).
+        """Perform the next step of a paused context. One step is one wave of effects: it may start several rules.
 
         If nothing is due now, set the clock forward to the next time at which something is due.
 
@@ -210,7 +212,7 @@ class Context:
     # ------------------------------------------------------------------------------------ acting from outside
 
     def put(self, slot: Slot[T], value: T) -> None:
-        """Write a slot from outside. Any thread may call this. After the context's end it does nothing.
+        """Write a slot from outside. Any thread may call this. After the end of the context, the call does nothing.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
@@ -221,7 +223,7 @@ class Context:
         self._running().write(slot.name, value, None)
 
     def emit(self, signal: Signal[T], payload: T | None = None) -> None:
-        """Raise a signal from outside. Any thread may call this. After the context's end it does nothing.
+        """Raise a signal from outside. Any thread may call this. After the end of the context, the call does nothing.
 
         Raises:
             UndeclaredError: The policy does not have the signal.
@@ -230,7 +232,7 @@ class Context:
         self._running().emit(signal.name, payload, None)
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal, and all that they have caused (L20). Any thread may call this."""
+        """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this."""
         self._known(signal, self.policy.signals, "signal")
         self._running().receive(Wipe(signal.name))
 
@@ -247,12 +249,12 @@ class Context:
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """Wait for the next spike of a signal, and return its payload.
 
-        The call first performs the effects that are due. If these raise the spike, the call returns without a turn for
-        other tasks. After 64 such calls the event loop gets its turn.
+        The call first performs the effects that are due. If these raise the spike, the call returns immediately, and
+        other tasks get no turn. After 64 such calls in a row, the event loop gets a turn.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.
-            timeout: Seconds to wait; for ever by default.
+            timeout: The maximum time to wait, in seconds. By default, there is no limit.
 
         Raises:
             TimeoutError: No spike came in time.
@@ -274,10 +276,10 @@ class Context:
     # ------------------------------------------------------------------------------------ looking in
 
     def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
-        """Call `observer` with every record of the trace from now on; return a function that stops the calls.
+        """Call `observer` with each new record of the trace. Return a function that stops these calls.
 
         The observer runs on the context's loop, in the middle of an event. It must be quick, must not raise, and must not
-        act on the context. Without observers the engine makes no records, and spends no time on them.
+        act on the context. Without observers, the engine makes no records.
         """
         self._observers = (*self._observers, observer)
         self._attach()

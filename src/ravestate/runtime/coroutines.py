@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Done:
-    """The end of a coroutine, with its result."""
+    """A sign that a coroutine has ended, with its result."""
 
     __slots__ = ("result",)
 
@@ -21,15 +21,15 @@ class Done:
 
 
 DONE = Done(None)
-"""The end of a coroutine without a result."""
+"""The sign for all coroutines that end without a result."""
 
 
 @types.coroutine
 def drive() -> Generator[Any, Any, Any]:
     """Run the functions of rule contexts, one after another.
 
-    Each context comes by `send`. The generator yields all that the function's coroutine yields, and then `Done`. Thus the
-    end of a coroutine needs no exception. An exception would take longer than a short rule.
+    `send` takes each context. The generator yields everything that the function's coroutine yields, and then a `Done`.
+    So the end of a coroutine needs no exception, which would take longer than a short rule.
     """
     ctx: Any = yield
     while True:
@@ -38,7 +38,7 @@ def drive() -> Generator[Any, Any, Any]:
 
 
 async def main(host: Generator[Any, Any, Any]) -> Any:
-    """Run a `host` as a coroutine: a task accepts only a coroutine, and a host must be free to yield anything."""
+    """Run a `host` as a coroutine. A task accepts only coroutines, but a host must be free to yield anything."""
     return await host  # type: ignore[misc]  # it is decorated with types.coroutine
 
 
@@ -58,7 +58,7 @@ def host(eager: EagerTask) -> Generator[Any, Any, Any]:
     pending = eager.first
     eager.first = None
     if error is not None and pending is not None and pending.cancel():
-        error = None  # the awaited future raises the cancellation, as in any task
+        error = None  # the awaited future will raise the cancellation, as in any task
     while True:
         value = None
         if error is None:

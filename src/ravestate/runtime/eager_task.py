@@ -1,9 +1,9 @@
-"""A task for a coroutine that may end before it needs a task.
+"""Run the first step of a coroutine without a task of its own. If the coroutine suspends, give it a task.
 
-To make a task and switch to it takes longer than most rules. So the first step of a coroutine runs outside
-of any task, while a spare task counts as the current task. Thus `asyncio.current_task`, `asyncio.timeout` and context
-variables work as usual. If the coroutine ends in its first step, the spare task is kept for the next coroutine. If the
-coroutine suspends, the spare task adopts it.
+Making a task and switching to it takes longer than running most rules. So a coroutine runs its first step without a
+task of its own. During this step, a spare task counts as the current task. So `asyncio.current_task`, `asyncio.timeout`
+and context variables work as usual. If the coroutine ends in its first step, the spare task remains free for the next
+coroutine. If the coroutine suspends, the spare task adopts it.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from ravestate.runtime.blocking import StepTimer
 from ravestate.runtime.coroutines import DONE, Done, drive, host, main
 from ravestate.runtime.rule_context import RuleContext
 
-ENTER: Final = _enter_task  # the compiled build finds a constant at once, and looks an import up each time
+ENTER: Final = _enter_task  # the compiled build looks an imported name up each time, but not a constant
 LEAVE: Final = _leave_task
 END: Final = DONE
 KIND: Final = Done
 
 
 class EagerTask:
-    """A spare task. Once it has adopted the coroutine of a rule, it is the rule's task; the timer measures each step.
+    """A spare task. When it has adopted the coroutine of a rule, it is the rule's task. The timer measures each step.
 
-    The coroutine starts with the context variables `variables`. No other code sees its changes to these variables.
+    The coroutine starts with the context variables `variables`. No other code sees the coroutine's changes to them.
 
     Attributes:
         task: The task.
-        rule: The rule whose coroutine the task has adopted, if it has adopted one.
+        rule: The rule whose coroutine the task has adopted; None if the task is spare.
         driver: The generator that runs the coroutine (`drive`).
-        first: The object that the adopted coroutine has yielded in its first step.
-        wake: A future that is done once the task has adopted a coroutine.
-        abandoned: Whether the task is to end although its coroutine does not end.
+        first: The object that the adopted coroutine yielded at the end of its first step.
+        wake: A future that is done as soon as the task has adopted a coroutine.
+        abandoned: Whether to end the task before its coroutine has ended.
     """
 
     __slots__ = (
@@ -64,7 +64,7 @@ class EagerTask:
         self._clean = variables
         self._renew()
         waiting: Any = host(self)
-        waiting.send(None)  # from now on, a cancellation reaches the host even before the task's first step
+        waiting.send(None)  # from now on, a cancellation reaches the host, even before the task's first step
         self.task: asyncio.Task[Any] = loop.create_task(main(waiting), context=self._context)
 
     def _renew(self) -> None:
@@ -77,11 +77,12 @@ class EagerTask:
         """Run a rule's function to its end or to its first suspension; no task may be current on the loop.
 
         Returns:
-            The end of the function. The spare task is then free for another function, unless it is `spoilt`. None if
-            the function's coroutine is suspended: then the task has adopted the coroutine.
+            A `Done` with the function's result, if the function has ended. The spare task is then free for another
+            function, unless it is `spoilt`. None, if the function's coroutine is suspended. The task has then adopted
+            the coroutine.
 
         Raises:
-            BaseException: The function has failed with this exception. The spare task is free, as above.
+            BaseException: The function has raised this exception. The spare task is free, as above.
         """
         rule = ctx.rule
         ENTER(self._loop, self.task)
@@ -104,7 +105,7 @@ class EagerTask:
 
     @property
     def spoilt(self) -> bool:
-        """Whether the last function has cancelled its task, or has set a context variable."""
+        """Whether the last function has cancelled the task, or has set a context variable."""
         return self.task.cancelling() > 0 or not are_equal(self._context, self._clean)
 
     def suits(self, variables: contextvars.Context) -> bool:
@@ -117,7 +118,7 @@ class EagerTask:
             self.task.cancel()
 
     def abandon(self) -> None:
-        """End the task although its coroutine does not end: close the coroutine where it is."""
+        """End the task before its coroutine has ended: close the suspended coroutine."""
         self.abandoned = True
         self.task.cancel()
 

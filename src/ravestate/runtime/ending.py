@@ -1,4 +1,4 @@
-"""The outcome of a run, from the value that its function returned or the exception that it raised (L18)."""
+"""How a run ended, according to the value that its function returned or the exception that it raised (L18)."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
 
 
 def _place(rule: Rule[Any, Any], failure: BaseException) -> str:
-    """Return the line of the rule's file in which the rule failed, e.g. `` (guide.py:42)``; empty if there is none."""
+    """Return the line of the rule's file at which the rule failed, e.g. `` (guide.py:42)``; empty if it is unknown."""
     file = rule.origin.rpartition(":")[0]
     line, step = 0, failure.__traceback__
     while step is not None:

@@ -1,4 +1,4 @@
-"""The functions of the rules that run in one context: how they start, are cancelled, and end."""
+"""The functions of the rules of one context: how they start, are cancelled, and end."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Functions:
     """Starts, cancels and ends the functions of one context's rules. It reports to the runner how each run has ended.
 
     Attributes:
-        tasks: The functions of async rules.
-        plain: The plain functions in worker threads; None before the first.
+        tasks: The runs of async rules.
+        plain: The runs of plain functions, in worker threads; None before the first such run.
         last: The rule whose function started last.
-        running: Number of a run → the context of its function. It has the runs that did not end at once.
+        running: Number of a run that did not end immediately → the context of its function.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner, *, is_virtual: bool) -> None:
@@ -72,7 +72,7 @@ class Functions:
             runner.schedule()
 
     def drop(self, ctx: RuleContext, reason: str) -> None:
-        """End a run, for a `reason`, although its function is still running. The function must not act any more."""
+        """End a run, for a `reason`, although its function is still running. The function may no longer act."""
         if self.running.pop(ctx.run, None) is not None and not self._runner.closed:
             ctx.ended = reason
             self._runner.receive(Finish(ctx.run, "done", reason))
@@ -90,8 +90,7 @@ class Functions:
             self.drop(ctx, effect.reason)
 
     def holds(self, *, halted: bool) -> bool:
-        """Return whether effects must wait: for a plain function in virtual time, or for rules that were just
-        cancelled.
+        """Return whether effects must wait for a plain function in virtual time, or for rules that were just cancelled.
 
         While the clock is `halted`, effects do not wait for the cancelled rules.
         """
@@ -104,16 +103,16 @@ class Functions:
         return [] if self.plain is None else [ctx.rule.name for ctx in self.plain.runs]
 
     def go_on(self) -> None:
-        """Let other effects follow, after the last writes of rules that were cancelled."""
+        """Perform the effects that waited for the last writes of cancelled rules."""
         self._runner.pump()
 
     async def cancel_all(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all async rules, and wait until they have cleaned up; with `at_once`, do not wait. No function starts any more."""
+        """Cancel all async rules. Unless `at_once`, wait until they have cleaned up. No function starts from now on."""
         self._closing = True
         await self.tasks.close(reason, at_once=at_once)
 
     def abandon(self, reason: str) -> None:
-        """End all runs, for a `reason`. Their functions must not act any more."""
+        """End all runs, for a `reason`. Their functions may no longer act."""
         for ctx in self.running.values():
             ctx.ended = reason
         self.running.clear()

@@ -1,4 +1,4 @@
-"""A journal of an engine's events, and its replay: the same events give the same effects (L24)."""
+"""A journal of an engine's events, and the replay of a journal: the same events give the same effects (L24)."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. A replay must take them at the same points, because the engine decides
-    there."""
+    """The runner took the engine's effects. The engine decides only then, so a replay must take them then, too."""
 
 
 @dataclass(frozen=True, slots=True)

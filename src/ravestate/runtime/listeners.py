@@ -11,7 +11,7 @@ from ravestate.engine.effects import Ended, Spiked
 
 
 class Waiter:
-    """A task that waits for the next spike of a signal. `future` wakes the task if the spike does not come at once."""
+    """A task that waits for the next spike of a signal. If the spike does not come at once, `future` wakes the task."""
 
     __slots__ = ("done", "error", "future", "payload")
 
@@ -23,7 +23,7 @@ class Waiter:
 
 
 class Listeners:
-    """The listeners of one context: functions and waiting tasks, each for one signal.
+    """The listeners of one context. Each is a function or a waiting task, and listens to one signal.
 
     This class fills `watched`, the engine's table of the signals whose spikes it reports.
     """
@@ -41,7 +41,7 @@ class Listeners:
         watched.update(dict.fromkeys(functions, 1))
 
     async def next(self, signal: str, settle: Callable[[], None] = lambda: None) -> Any:
-        """Wait for the next spike of a signal, and return its payload. First call `settle`, which may raise it."""
+        """Wait for a signal's next spike, and return its payload. First call `settle`, which may raise the signal."""
         waiter = Waiter()
         self._waiters.setdefault(signal, []).append(waiter)
         self._watched[signal] = 1
@@ -81,7 +81,7 @@ class Listeners:
                 waiter.future.set_result(None)
 
     def fail(self, error: Callable[[str], BaseException]) -> None:
-        """Wake all waiting tasks with an exception. The function `error` makes it from the name of a task's signal."""
+        """Raise an exception in all waiting tasks. `error` makes the exception from the name of a task's signal."""
         for signal, waiters in self._waiters.items():
             for waiter in waiters:
                 waiter.error = error(signal)
@@ -97,9 +97,9 @@ class Hooks:
     Attributes:
         on_ended: Called with the outcome of each run that has ended.
         on_failed: Called with the name of each rule that fails, and with its exception.
-        on_endless: Called with the name of the last rule that ran, if an instant of virtual time does not end. With this
-            function, the context's time is virtual, and plain functions run one by one, so that threads do not race.
-        listeners: Signal's name → a function that is called with the payload of every spike of the signal.
+        on_endless: Called with the name of the last rule that ran, if an instant of virtual time does not end. If this
+            hook is set, the context's time is virtual, and plain functions run one by one, so that threads do not race.
+        listeners: Name of a signal → a function to call with the payload of every spike of the signal.
     """
 
     on_ended: Callable[[Ended], None] | None = None

@@ -20,16 +20,16 @@ log = logging.getLogger("ravestate")
 
 
 class PlainRules:
-    """Starts and abandons the runs of one context's rules that are plain functions.
+    """Starts and abandons the runs of one context's plain functions.
 
-    When a run's function has ended, this class calls `finish` on the loop with the run, its result and its exception.
+    When a function has ended, this class calls `finish` on the loop, with the run, the result and the exception.
     """
 
     def __init__(
         self, loop: asyncio.AbstractEventLoop, finish: Callable[[RuleContext, Any, BaseException | None], None]
     ) -> None:
         self.runs: dict[RuleContext, Job] = {}
-        """Run whose function has not ended → its job in the pool of threads."""
+        """Run whose function has not ended → the function's job in the thread pool."""
         self._loop = loop
         self._finish = finish
         self._queue = JobQueue()

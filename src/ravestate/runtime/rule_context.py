@@ -1,4 +1,4 @@
-"""The argument of every rule's function: the function's view of the context, and its only way to act (L3, L13)."""
+"""The argument of every rule's function, which reads slots and acts only through this argument (L3, L13)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ V = TypeVar("V")
 
 
 class Host(Protocol):
-    """The part of a running context (`Runner`) that its rule contexts use."""
+    """The part of a running context's `Runner` that rule contexts use."""
 
     settings: Mapping[str, Any]
     clock: Clock
@@ -45,7 +45,7 @@ class RuleContext:
     """The argument of a rule's function. With it, the function reads slots, writes slots and emits signals.
 
     ``ctx[slot]`` is the slot's value when the rule started, or the rule's own last write. ``ctx[slot] = value`` writes
-    the slot. A write takes effect, and raises signals, at once.
+    the slot. A write takes effect and raises signals immediately.
     """
 
     __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
@@ -59,9 +59,9 @@ class RuleContext:
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
         self.cancelled = ""
-        """The reason for which the function was cancelled, or empty. While it cleans up, it may still write."""
+        """The reason for which the function was cancelled, or empty. A cancelled function may still write."""
         self.ended = ""
-        """The reason for which the run is over, or empty. The function may still run: a thread cannot be stopped."""
+        """The reason for which the run is over, or empty. Its function may still be running in a thread."""
 
     @overload
     def __getitem__(self, slot: Collection[V]) -> Items[V]: ...
@@ -111,7 +111,7 @@ class RuleContext:
     @overload
     def payload(self, signal: Signal[Any]) -> Any: ...
     def payload(self, signal: Signal[Any]) -> Any:
-        """Return the payload of a signal that started the rule. If another clause started the rule, return None.
+        """Return the payload of a signal that started the rule; None if the signal did not help to start it.
 
         Raises:
             UndeclaredError: The signal is not part of the rule's condition.
@@ -170,17 +170,17 @@ class RuleContext:
     def drive_clock(self, time: float) -> None:
         """Set the context's clock forward to `time` (seconds since the context's start), as a simulation's clock says.
 
-        From the first call on, only these calls move the clock. So the context's time passes, and halts, with the
-        simulation's time. A time in the past changes nothing.
+        From the first call on, only calls of this method move the clock. So the context's time passes, and halts, with
+        the simulation's time. A time in the past changes nothing.
         """
         self._alive()
         self._host.drive(time)
 
     def stop(self, failure: RavestateError | None = None) -> None:
-        """Ask the context to end: it raises ``rs.shutdown``, waits a few seconds, and cancels the rules that still run.
+        """Ask the context to end: to raise ``rs.shutdown``, wait a few seconds, and cancel the rules that still run.
 
         Args:
-            failure: The error that ends the agent; ``rs.run`` raises it after the end.
+            failure: The error that ends the agent, if any; ``rs.run`` raises it when the agent has ended.
         """
         self._host.stop(failure)
 
@@ -206,7 +206,7 @@ class RuleContext:
 
     @property
     def random(self) -> random.Random:
-        """Random numbers from the context's seed. A rule should use no other source, so that tests can be repeated."""
+        """Random numbers from the context's seed. A rule should use no others, so that its tests are repeatable."""
         return self._host.random
 
     def _alive(self) -> None:
@@ -237,9 +237,9 @@ class RuleContext:
 
 
 class Items(Mapping[str, V], Generic[V]):
-    """A collection in a rule: a mapping of keys to items, with `add` and `remove`.
+    """A rule's view of a collection: a mapping of keys to items, with `add` and `remove`.
 
-    The mapping shows the rule's own changes. An iteration visits the items that were there when it began.
+    The mapping shows the rule's own changes. An iteration visits the keys that existed when it began.
     """
 
     __slots__ = ("_ctx", "_slot")
@@ -271,7 +271,7 @@ class Items(Mapping[str, V], Generic[V]):
         self._ctx._host.receive(Discard(self._slot.name, key, self._ctx.run))  # pyright: ignore[reportPrivateUsage]
 
     def _own(self) -> dict[str, V]:
-        """Return the rule's own copy of the items; the first change makes the copy."""
+        """Return the rule's own copy of the items. The rule's first change makes the copy."""
         ctx = self._ctx
         if self._slot not in ctx.rule.writes:  # pyright: ignore[reportPrivateUsage]
             ctx._refuse("wrote", "writes", self._slot, ctx.rule.writes)  # pyright: ignore[reportPrivateUsage]

@@ -1,4 +1,4 @@
-"""Run an agent until a rule, a user or the system ends it."""
+"""Run an agent until a rule, the user or the operating system ends it."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from ravestate.runtime.context import Context
 log = logging.getLogger("ravestate")
 
 INPUT = "rawio:input"
-"""The name of the slot of the user's words. An agent with this slot is usually meant for conversation."""
+"""The name of the slot for the user's words. An agent with this slot is usually meant for conversation."""
 
 UNABLE = (NotImplementedError, RuntimeError, ValueError)
-"""The errors that `add_signal_handler` raises on platforms that lack it, and outside the main thread."""
+"""The errors that `add_signal_handler` raises outside the main thread, and on operating systems without this method."""
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
@@ -30,8 +30,8 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
 
     The agent runs as one context. If a platform among the modules serves many users, each user gets their own context.
 
-    A warning is logged if the modules use `rawio`, but no platform among them lets a user talk. The arguments are those of
-    `Context`.
+    If the modules use `rawio`, but no platform among them lets a user talk, this function logs a warning. The arguments
+    are those of `Context`.
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -71,7 +71,7 @@ async def run_context(context: Context) -> None:
 
 
 async def run_servers(agent: Agent, servers: Sequence[Callable[[Agent], Coroutine[Any, Any, None]]]) -> None:
-    """Run the servers of an agent until one of them ends or fails, or until SIGINT or SIGTERM."""
+    """Run the servers of an agent until one of them ends or fails, or until SIGINT or SIGTERM comes."""
     stopped = asyncio.Event()
     with asked_by_signals(stopped.set):
         await until_first_ends(stopped.wait(), *(serve(agent) for serve in servers))

@@ -28,17 +28,17 @@ from ravestate.runtime.listeners import Hooks, Listeners
 from ravestate.runtime.timer import Timer
 from ravestate.runtime.waits import Waits
 
-ENDLESS = 200_000  # the number of rounds of effects after which an instant of virtual time counts as endless
-BATCH: Final = 512  # the number of rounds of effects after which the loop gets a turn, so that a busy agent takes input
-TURN: Final = 0.02  # the real seconds after which the loop gets a turn, even after fewer rounds than `BATCH`
+ENDLESS = 200_000  # an instant of virtual time counts as endless after this many rounds of effects
+BATCH: Final = 512  # the loop gets a turn after this many rounds of effects, so that a busy agent still hears input
+TURN: Final = 0.02  # the loop gets a turn after this many real seconds, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""How many waits for a signal may end in a row without a turn of the loop. Then the loop gets a turn
+"""This many waits for a signal may end in a row without a turn of the loop. Then the loop gets a turn
 (`Runner.settle`)."""
 
 ENDED = "the context has ended"
 
-# The compiled build finds a constant at once, and looks an import up each time.
+# The compiled build looks an imported name up each time, but not a constant.
 THREAD: Final = get_ident
 CURRENT: Final = asyncio.current_task
 ENTER: Final = _enter_task
@@ -57,8 +57,8 @@ class Runner:
     """Gives events to an engine, and performs the effects that the engine returns.
 
     `Context` and `RuleContext` (see `rule_context.Host`) call its public methods. The runner asks the `agent` to stop
-    when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the engine takes the
-    event, and with `Taken` before the runner takes effects.
+    when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the engine
+    receives it, and with `Taken` before it takes effects.
     """
 
     def __init__(
@@ -87,8 +87,8 @@ class Runner:
         self._seed = seed
         self._random: random.Random | None = None
         self.functions = Functions(loop, self, is_virtual=self._is_virtual)
-        self._waits: Waits | None = None  # made for the first task that waits
-        self._todo: list[Effect] | None = None  # the effects that are still to be performed, the next one last
+        self._waits: Waits | None = None  # made when the first task waits
+        self._todo: list[Effect] | None = None  # the effects that are still to be performed, in reverse order
         self._due = False  # whether the engine may have effects
         self._scheduled = False  # whether the loop will call `_turn`
         self._settled = 0  # how often `settle` has performed effects since the loop's last turn
@@ -124,7 +124,7 @@ class Runner:
         return self._random
 
     def emit(self, signal: str, payload: Any, run: int | None) -> None:
-        """Raise a signal for a run, or for code outside (None). Any thread may call this."""
+        """Raise a signal for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
             parts.emit(signal, payload, run)
@@ -132,7 +132,7 @@ class Runner:
             self.receive(Emit(signal, payload, run))
 
     def write(self, slot: str, value: Any, run: int | None) -> None:
-        """Write a slot for a run, or for code outside (None). Any thread may call this."""
+        """Write a slot for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
             parts.write(slot, value, run)
@@ -140,7 +140,7 @@ class Runner:
             self.receive(Write(slot, value, run))
 
     def short_way(self) -> Parts | None:
-        """Return the engine's parts if an event may go to them directly; None if it must go to `receive`."""
+        """Return the engine's parts if an event may go directly to them; None if it must go through `receive`."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
@@ -166,12 +166,12 @@ class Runner:
             self.schedule()
 
     def _receive_late(self, event: Event) -> None:
-        """Take an event that another thread has sent, unless the event's run has ended in the meantime."""
+        """Receive an event that another thread has sent, unless the event's run has ended in the meantime."""
         run = getattr(event, "run", None)
         if run is None or run in self.functions.running:
             try:
                 self.receive(event)
-            except Exception:  # no caller could catch this error, but the designer must see it
+            except Exception:  # no caller can catch this error, but the designer must see it
                 log.exception("refused a request from another thread: %s", short(event))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
@@ -205,10 +205,10 @@ class Runner:
             self.pump()
 
     def settle(self) -> None:
-        """Perform now the effects that the loop's next turn would perform, because a task is about to wait for a spike.
+        """Perform the effects of the loop's next turn now, because a task is about to wait for a spike.
 
-        Other tasks get no turn meanwhile. So after `SETTLES` calls the effects wait for the loop's next turn. In virtual
-        time, and inside a rule, they always do.
+        Other tasks get no turn meanwhile. So after `SETTLES` calls, the effects wait for the loop's next turn. In
+        virtual time, and inside a rule, they always wait for it.
         """
         if self._due and self._settled < SETTLES and not (self._pumping or self._is_virtual):
             self._settled += 1
@@ -244,13 +244,13 @@ class Runner:
         self._pumping = True
         turn_ends = perf_counter() + TURN
         around = CURRENT(self.loop)
-        if around is not None:  # rules start outside any task
+        if around is not None:  # no task may be current when a rule starts
             LEAVE(self.loop, around)
         todo = self._todo or []
         try:
             for _ in range(rounds):
                 if (self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted):
-                    break  # the end of these functions or rules schedules the next call
+                    break  # when these functions or rules end, they schedule the next call
                 self._rounds += 1
                 if not todo:
                     if self._journal is not None:
@@ -305,7 +305,7 @@ class Runner:
         log.error("rule %s failed: %s", effect.rule, said(effect.exception), exc_info=trace)
 
     def _break(self, error: Exception) -> None:
-        """End the context with an error: the engine itself has failed, and nothing can work any more."""
+        """End the context with an error: the engine itself has failed, so nothing works any longer."""
         self.fault = EngineError(f"the engine has failed, which is a bug in ravestate: {error!r}")
         self.fault.__cause__ = error
         self.closed = True
@@ -343,10 +343,10 @@ class Runner:
         if self.clock.halted:
             self.clock.go()
             self._timer.clear()
-            self.schedule()  # not at once: the caller may be a task, and rules start outside any task
+            self.schedule()  # not now: the caller may be a task, and no task may be current when a rule starts
 
     def drive(self, time: float) -> None:
-        """Set the clock forward to `time` (seconds), and keep it from moving by itself; see `Clock.drive`."""
+        """Set the clock forward to `time` (seconds). It no longer moves by itself; see `Clock.drive`."""
         self.clock.drive(time)
         self._timer.clear()
         due = self._engine.next_deadline()
@@ -364,7 +364,7 @@ class Runner:
         return self._engine.read(self.policy.slot_of[slot].index)
 
     def trace(self, tracer: Callable[[Record], None] | None) -> None:
-        """Call `tracer` with every record of the trace from now on; None stops the calls."""
+        """Call `tracer` with each new record of the trace; None stops the calls."""
         self._engine.tracer = tracer
 
     def _wake(self, due: float) -> None:
@@ -385,12 +385,12 @@ class Runner:
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:
-        """Ask the context to end. If there are several calls, the first `failure` is raised."""
+        """Ask the context to end. The first `failure` counts."""
         self.fault = self.fault or failure
         self._agent.ask_to_stop()
 
     async def close(self, *, at_once: bool = False) -> None:
-        """Cancel all runs and wait until they have cleaned up; with `at_once`, do not wait. No rule starts any more."""
+        """Cancel all runs; unless `at_once`, wait until they have cleaned up. From now on, no rule starts."""
         await self.functions.cancel_all(ENDED, at_once=at_once)
         self.closed = True
         self.functions.abandon(ENDED)

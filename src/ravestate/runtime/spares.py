@@ -1,4 +1,4 @@
-"""The spare task of a loop (``eager_task.py``): all contexts that run on the loop share it, one at a time."""
+"""The spare task of a loop (``eager_task.py``). The contexts on the loop share it: one at a time uses it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ravestate.runtime.eager_task import EagerTask, are_equal
 
 
 class Spares:
-    """Lends a spare task of one loop. The last context that leaves ends the spare task."""
+    """Lends the spare task of one loop to contexts. When the last context leaves, the spare task ends."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self.timer = StepTimer()
@@ -22,7 +22,7 @@ class Spares:
 
     @staticmethod
     def join(loop: asyncio.AbstractEventLoop) -> Spares:
-        """Return the spares of a loop, for one more context."""
+        """Record that a context has started on a loop, and return the loop's spares."""
         spares = ALL.get(loop)
         if spares is None:
             spares = ALL[loop] = Spares(loop)
@@ -30,7 +30,7 @@ class Spares:
         return spares
 
     def leave(self) -> None:
-        """Note that a context has ended."""
+        """Record that a context has ended."""
         self._users -= 1
         if not self._users:
             ALL.pop(self._loop, None)

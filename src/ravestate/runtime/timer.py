@@ -19,7 +19,7 @@ class Timer:
         self._due = 0.0
 
     def set(self, due: float | None) -> None:
-        """Fire at `due` (seconds), unless another clock drives the clock. Leave a timer that fires earlier: it does no harm."""
+        """Fire at `due` (seconds), unless another clock drives the clock. An earlier timer stays: it does no harm."""
         if due is None or self._clock.driven or (self._handle is not None and self._due <= due):
             return
         self.clear()
@@ -27,7 +27,7 @@ class Timer:
         self._handle = self._loop.call_at(self._clock.on_loop(due), self._wake)
 
     def clear(self) -> None:
-        """Do not fire any more, until the next call of `set`."""
+        """Do not fire until the next call of `set`."""
         if self._handle is not None:
             self._handle.cancel()
             self._handle = None

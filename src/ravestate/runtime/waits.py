@@ -11,7 +11,7 @@ from ravestate.engine.engine import Engine
 
 
 class Waits:
-    """The tasks that wait until one engine reaches a certain state.
+    """The tasks that wait until an engine reaches a certain state.
 
     While `is_busy` returns true, some effects have not been performed yet. A call of `schedule` makes the loop perform
     them, and then call `check`.
@@ -28,7 +28,7 @@ class Waits:
     async def until(self, reached: Callable[[], bool]) -> None:
         """Wait until all effects are performed and `reached` is true.
 
-        Nothing but an effect or the end of a run may make `reached` true.
+        `reached` may become true only because of an effect or the end of a run.
         """
         if not self._ended and (self._is_busy() or not reached()):
             future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -68,15 +68,15 @@ class Waits:
         return all(rule.background for rule in alive)
 
     def alive(self) -> dict[int, Activation]:
-        """Return the activations that run or wait for consent, as a map: number → activation."""
+        """Return the activations that run or wait for consent, by number."""
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
         """Wait until all activations outside `known` have ended, and no rule waits for a minimum age of
         ``rs.shutdown``.
 
-        A background rule among `known` may restart endlessly. Wait for its new run only if that run handles
-        ``rs.shutdown``. Wait for at most `seconds`.
+        A background rule among `known` may restart endlessly. So wait for its new run only if that run handles
+        ``rs.shutdown``. In any case, wait for at most `seconds`.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index

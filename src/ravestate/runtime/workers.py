@@ -1,10 +1,10 @@
-"""Worker threads for rule functions that are plain functions.
+"""Worker threads for rules that are plain functions.
 
 All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons: a
 function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
 
-At its end, the process still waits a while for running functions. A thread may be inside a C++ library, for instance to
-load a model. If the interpreter ended such a thread, the whole process might crash.
+When the process ends, it still waits a while for running functions. A thread may be inside a C++ library, for instance
+to load a model. If the interpreter ended such a thread, the whole process might crash.
 """
 
 from __future__ import annotations
@@ -17,20 +17,21 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
 
-LAST_GRACE = 5.0  # the seconds for which the process waits, at its end, for running functions
+LAST_GRACE = 5.0  # when the process ends, it waits this many seconds for running functions
 
 SHARE = 32
-"""The maximum number of functions of one context that run at once; further functions wait until one of them ends."""
+"""The maximum number of functions of one context that run at a time; further functions wait until one of them ends."""
 
 THREADS = 256  # the maximum number of worker threads in the process; if all are busy, further jobs wait
-IDLE = 30.0  # the seconds after which a worker thread without a job ends
+IDLE = 30.0  # a worker thread ends if it has had no job for this many seconds
 
 
 @dataclass(slots=True, eq=False)
 class Job:
     """A function to call in a worker thread, for the rule `name`; the function must not raise.
 
-    `made` is the time of its submission, and `began` the time when a thread took it (seconds on the monotonic clock).
+    `made` is the time of the job's submission, and `began` the time when a thread took it (seconds on the monotonic
+    clock).
     """
 
     queue: JobQueue
@@ -41,7 +42,7 @@ class Job:
 
 
 class ThreadPool:
-    """The worker threads of the process. The pool makes a thread when all others are busy, and keeps it for a while."""
+    """The worker threads of the process. When all are busy, the pool makes another one, and keeps it for a while."""
 
     def __init__(self) -> None:
         self.reset()
@@ -95,10 +96,10 @@ class ThreadPool:
                     self._jobs.extend(job.queue.done(job))  # this thread is free for the next job
                     if not self.at_work:
                         self.rest.notify_all()
-                del job  # a reference to the job may keep a whole context alive
+                del job  # a reference to the job might keep a whole context alive
 
     def _next(self) -> Job | None:
-        """Wait for a job, and return it; return None if the thread is to end."""
+        """Wait for a job, and return it; return None if the thread must end."""
         with self.change:
             while not self._jobs:
                 in_time = self.contexts > 0 and self.change.wait(IDLE)
@@ -125,7 +126,7 @@ def _wait_for_work() -> None:
 
 
 class JobQueue:
-    """The jobs of one context. At most `SHARE` of them are in the pool at once; the others wait in this queue."""
+    """The jobs of one context. At most `SHARE` of them are in the pool at a time; the others wait in this queue."""
 
     def __init__(self, pool: ThreadPool = POOL) -> None:
         self._pool = pool
@@ -160,11 +161,11 @@ class JobQueue:
                     self._pool.take(following)
 
     def done(self, job: Job) -> list[Job]:
-        """Return the job that gets the place of this job, in a list; the list may be empty.
+        """Give a job's place in the pool to the next job. Return a list with that job, or an empty list.
 
         The caller must hold the lock of the pool's `change`.
         """
-        if job not in self._begun:  # the job was abandoned, and another job has its place already
+        if job not in self._begun:  # the job was abandoned, so another job has its place already
             return []
         self._begun.remove(job)
         following = [self._waiting.popleft()] if self._waiting else []

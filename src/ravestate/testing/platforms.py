@@ -20,13 +20,13 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 PATIENCE = 60.0
-"""The seconds that a check waits for a message."""
+"""A check waits at most this many seconds for a message."""
 
 USERS = ("ada", "bob", "cleo", "dora", "emil")
 
 LAST = "the last message"
-"""The last message of each check. If the agent answers an earlier message twice, the extra answer comes before the
-answer to this one."""
+"""The last message of each check. If the agent answers an earlier message twice, its extra answer comes before its
+answer to this message."""
 
 echo = rs.Module("echo", requires=(rawio,))
 """The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""
@@ -43,7 +43,7 @@ async def repeat(ctx: rs.RuleContext) -> None:
 
 
 class Driver(Protocol):
-    """The users of a platform on which `echo` runs. Each check gets a new driver, so all users are new.
+    """The users of a platform on which `echo` runs. Each check gets a new driver, so that all users are new.
 
     Use a driver as an async context manager: it starts the agent on entry, and ends the agent on exit.
     """
@@ -65,7 +65,7 @@ class Driver(Protocol):
         ...
 
     async def kill(self) -> None:
-        """End the agent without warning, as a crash does. If the agent keeps no files, cut the users' connections."""
+        """End the agent without warning, as a crash does. If it keeps no files, only cut the users' connections."""
         ...
 
     async def restart(self) -> None:
@@ -84,7 +84,7 @@ async def check_answer(driver: Driver) -> None:
 
 
 async def check_order(driver: Driver) -> None:
-    """Check that the messages of a user are answered in order."""
+    """Check that the agent answers the messages of a user in order."""
     texts = [f"message {n}" for n in range(12)]
     async with _limited(driver):
         for text in texts:
@@ -105,7 +105,7 @@ async def check_users(driver: Driver) -> None:
 
 
 async def check_restart(driver: Driver) -> None:
-    """Check that messages from before, during and after a crash are answered once, and in order."""
+    """Check that the agent answers messages from before, during and after a crash once, and in order."""
     texts: dict[str, list[str]] = {user: [] for user in USERS}
 
     async def say_all(round: str) -> None:

@@ -33,17 +33,18 @@ OUTPUT = "rawio:output:changed"
 
 
 class Simulation:
-    """Modules in virtual time: no real waiting, and the same result every time. Use it as a context manager.
+    """Run modules in virtual time: without waiting, and always with the same result. Use it as a context manager.
 
     Args:
         modules, settings, patience, journal: As for `Context`.
-        seed: The seed of random choices; fixed by default, so that a test makes the same choices each time.
+        seed: The seed of random choices. It is fixed by default, so that a test makes the same choices each time.
         trace: Whether to keep a record of every decision.
 
     Attributes:
         context: The simulated context, for everything that has no shortcut in this class.
         said: The values that were written to ``rawio.output``, in order.
-        fired: The names of the rules that ran and did not resign, in the order in which they finished.
+        fired: The names of the rules that fired, in the order in which they finished. A run has not fired if it
+            resigned, or if it failed before its first write.
         failures: The name of each rule that failed, with its exception.
 
     Example:
@@ -89,17 +90,18 @@ class Simulation:
     ) -> Simulation:
         """Return a simulation of the agent in an agent file, as ``ravestate run -f`` reads it.
 
-        The simulation leaves out the built-in platforms (`conio`, `webio`) and their settings; a test uses `say`.
+        The simulation leaves out the built-in platforms (`conio`, `webio`, ...) and their settings. A test calls `say`
+        instead.
 
         Args:
             path: The agent file. Paths of modules in it are relative to its folder.
-            settings: Module's name → key → value. They override the environment and the file.
+            settings: Name of a module → key → value. They override the environment and the file.
             seed: The seed of random choices; by default that of the file, or else 0.
             patience: As for `Context` (seconds); by default that of the file.
             trace: Whether to keep a record of every decision.
 
         Raises:
-            UsageError: The file or something in it is wrong. The message lists all mistakes.
+            UsageError: The file cannot be read or has mistakes. The message lists all mistakes.
         """
         spec = AgentSpec.from_file(Path(path))
         platforms = {name for name, folder in BUILT_IN.items() if folder == "platform"}
@@ -173,7 +175,7 @@ class Simulation:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let `seconds` of virtual time pass. Before and after that, do everything that is due."""
+        """Let `seconds` of virtual time pass. Do everything that is due now, meanwhile, and at the end."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
         loop = self._running()

@@ -26,7 +26,7 @@ class Said:
 
     Attributes:
         speaker: ``user`` or ``agent``.
-        text: The user's words as recognised, or the agent's words as far as the user heard them.
+        text: The user's words, as speech recognition heard them, or those of the agent's words that the user heard.
         start, end: The times at which the sound began and ended (seconds on the recording's time line).
         cut: Whether the user interrupted the utterance.
         filler: Whether the utterance only filled a pause.
@@ -57,11 +57,11 @@ def talk(
     Args:
         recording: The sound of the user's microphone, in any usual format.
         output: The WAV file for the loudspeaker's sound, on the time line of the recording; None for no file.
-        modules: The agent's modules; `voiceio` is added.
-        settings: Module's name → its settings, as for `Context`.
+        modules: The agent's modules, without `voiceio`, which `talk` adds.
+        settings: Name of a module → the module's settings, as for `Context`.
         seed: The seed of random choices.
-        show: A function that gets each utterance as soon as the utterance is over.
-        record: A function that gets each record of the trace.
+        show: A function that receives each utterance as soon as the utterance is over.
+        record: A function that receives each record of the trace.
 
     Raises:
         PlatformError: The recording cannot be read; the output is no WAV file, or cannot be written; or a model or a
@@ -112,7 +112,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
     waiting: list[Said] = []
 
     def show_waiting() -> None:
-        """Note the user's waiting utterances, unless the agent is still speaking."""
+        """Pass the user's waiting utterances to `note`, unless the agent is still speaking."""
         if not any(one.start and not one.over for one in begun):
             for one in waiting:
                 note(one)
@@ -120,7 +120,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
     async def hear_user(ctx: RuleContext) -> None:
-        """Note an utterance of the user."""
+        """Pass an utterance of the user to `note`, as soon as the agent is silent."""
         one = ctx.payload(voiceio.utterance)
         waiting.append(Said("user", one.text, one.start, one.end))
         show_waiting()
@@ -135,7 +135,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
         background=True,
     )
     async def hear_agent(ctx: RuleContext) -> None:
-        """Note the utterances of the agent that are over."""
+        """Pass the agent's utterances that are over to `note`."""
         for one in [one for one in begun if one.over]:
             begun.remove(one)
             if one.heard.strip():
@@ -145,7 +145,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=shutdown)
     async def end(ctx: RuleContext) -> None:
-        """Note the remaining utterances."""
+        """Pass the remaining utterances to `note`."""
         begun.clear()
         show_waiting()
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from ravestate.errors import EngineError
 
-REAL_LIMIT = 30.0  # the maximum number of real seconds for which plain functions may hold up virtual time
+REAL_LIMIT = 30.0  # plain functions may hold up virtual time for at most this many real seconds
 WORKING = 0.1  # plain functions that use at least this share of a processor are computing, and get more time
 WORK_FACTOR = 10  # computing functions get this many times as long, so that a slow machine gives the same result
 
@@ -62,7 +62,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return future
 
     async def shutdown_default_executor(self, *args: Any, **named: Any) -> None:
-        """Wait for the threads of the pool, as any loop does when its runner closes it. Threads end in real time."""
+        """Wait for the threads of the pool, as any loop does before its runner closes it. Threads end in real time."""
         closing = self.create_future()
         self._functions[closing] = "the shutdown of the thread pool"
         try:
@@ -92,7 +92,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return timer
 
     def give_up(self, rule: str) -> None:
-        """Stop the loop, because rules repeat endlessly at one instant. `run_to` then raises an error with the rule."""
+        """Stop the loop, because rules repeat endlessly in one instant. `run_to` then raises an error with the rule."""
         self._endless = rule
         self.stop()
 
