@@ -24,4 +24,4 @@ class Settings(rs.Settings):
 module = rs.Module("conio", requires=(rawio, interloc), settings=Settings)
 
 screen: rs.Slot[Console | None] = module.slot("screen", None)
-"""The console while it is open; None before and after."""
+"""The console; None if it is not open."""

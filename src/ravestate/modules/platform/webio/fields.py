@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules._text import printable
 
 VERSION = 1
-"""The version of the protocol. A new frame or field keeps this number; any other change increases it."""
+"""The version of the protocol. Adding a type of frame or a field does not change it; any other change increases it."""
 
 LONGEST_NAME = 80
 """The maximum number of characters in a visitor's name."""
@@ -19,7 +19,7 @@ LONGEST_TEXT = 10_000
 """The maximum number of characters in one utterance of a visitor."""
 
 LONGEST_SOUND = 32_000
-"""The maximum number of bytes of sound in one frame from a client: 1 s."""
+"""The maximum number of bytes of sound in one frame from a client (1 s)."""
 
 LONGEST_PICTURE = 100_000
 """The maximum number of bytes of a picture."""
@@ -38,14 +38,14 @@ CLOSING_CODES = {
     "silent": 4408,
     "behind": 4409,
 }
-"""Error code → the WebSocket's closing code; any other error closes with the code of ``malformed``."""
+"""The code with which the WebSocket closes after an error. Any other error closes it with the code of ``malformed``."""
 
 
 class ProtocolError(PlatformError, ValueError):
-    """A frame that cannot be understood.
+    """A frame that breaks the protocol.
 
     Attributes:
-        code: One word for programs, e.g. ``malformed``; the message is for people.
+        code: One word for programs, e.g. ``malformed``. The message is for people.
         id: The refused frame's `id`, if that frame is a `Say`.
     """
 
@@ -59,7 +59,7 @@ def heard_text(text: str) -> str:
     """Return the text of a visitor's utterance without control characters.
 
     Raises:
-        ProtocolError: The code is ``too-long`` for too many characters, ``empty`` for a blank text.
+        ProtocolError: The text has too many characters (code ``too-long``) or is blank (code ``empty``).
 
     Example:
         >>> heard_text("\\x1b[31mred\\x1b[0m\\x00")
@@ -74,7 +74,7 @@ def heard_text(text: str) -> str:
 
 
 def name_of(text: str) -> str:
-    """Return a text as one line, without invisible characters or characters that change the writing direction.
+    """Return a text as one line, without invisible characters and without characters that change the writing direction.
 
     Example:
         >>> name_of(" Ada\\u202e\\nLovelace ")
