@@ -83,7 +83,7 @@ left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
 """A person has left. The payload is the visitor's last record."""
 
 named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
-"""A person whom the agent sees has told their name. The payload is their node, which memory now keeps."""
+"""A person whom the agent sees has told their name. The payload is their node, with the name."""
 
 asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Question]", object))
 """The agent's open question whether it may remember a face; None if there is none."""

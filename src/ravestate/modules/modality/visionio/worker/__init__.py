@@ -46,7 +46,7 @@ class Worker:
         self._streams: dict[str, Stream] = {}
 
     def load(self, what: str) -> None:
-        """Load the models for `what`: ``faces`` or ``pose``. The models for poses follow a body, so each stream has its own."""
+        """Load the models for faces, if `what` is ``faces``. Each stream loads its own model for poses."""
         if what == "faces" and self._faces is None:
             from .faces import Faces
 
