@@ -23,7 +23,7 @@ def read_text(file: Path | Traversable, what: str) -> str:
 
     Args:
         file: A path, or a file in a package.
-        what: What messages call the file, for example ``file of types``.
+        what: The name of the file in messages, for example ``file of types``.
 
     Raises:
         DeclarationError: The file is not in UTF-8.

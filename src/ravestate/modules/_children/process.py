@@ -1,7 +1,7 @@
 """Models in separate processes, which all contexts of the main process share.
 
-If a model hangs or crashes, only its own process ends, and the next request starts a new one. In a thread, a model would
-also hold Python's global lock while it loads, and stop every event loop.
+If a model hangs or crashes, only its own process ends, and the next request starts a new one. In a thread, a model
+would also hold Python's global lock while it loads, and stop every event loop.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Backend:
 
 
 class ModelProcess:
-    """The process of one model. All methods block and are thread-safe. The process answers one request after another."""
+    """The process of one model, which answers one request after another. All methods block and are thread-safe."""
 
     def __init__(self, backend: Backend, config: Mapping[str, Any], python: str = sys.executable) -> None:
         """Make the object. The process starts later.

@@ -65,7 +65,7 @@ COUNT = 6 * len(JOINTS) + 7 + TRACKS * (TRACKS - 1) // 2 + 6 + 9
 
 
 def _rotation(path: NDArray[np.float64]) -> float:
-    """Return the signed area that a path in a plane sweeps, relative to its length and size. It is 0 without a rotation."""
+    """Return the signed area that a path in a plane sweeps, relative to its length and size; 0 without a rotation."""
     import numpy as np
 
     centred = path - path.mean(axis=0)

@@ -41,7 +41,8 @@ REMEMBERED = 64
 RUNNERS_UP = 3
 """The maximum number of next most likely names."""
 FAR = 3.0
-"""A next most likely activity may be this many times as far away as the limit. Farther activities look too different."""
+"""A next most likely activity may be this many times as far away as the limit. Farther activities look too
+different."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Normalise a movement, independent of the camera: a skeleton of unit size that faces the viewer, at a fixed frame rate."""
+"""Normalise a movement: a skeleton of unit size that faces the viewer, at a fixed frame rate, whatever the camera."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ JOINTS = (0, 13, 14, 15, 16, 25, 26, 27, 28)
 ARMS = 5
 """The places of the first joints in `JOINTS`, this many, are relative to the shoulders, the others to the hips."""
 WIDTH = 0.72
-"""The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are visible."""
+"""The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are
+visible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,9 +62,9 @@ class Skeleton:
 def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
     """Return the normalised movement of some poses; None if they are too few, or the shoulders are not visible.
 
-    The result does not depend on the camera's distance, side and direction. The origin moves with the body, and the unit
-    is the length of the torso. The function turns the body about the vertical axis until its shoulders are, on average,
-    parallel to the picture.
+    The result does not depend on the camera's distance, side and direction. The origin moves with the body, and the
+    unit is the length of the torso. The function turns the body about the vertical axis until its shoulders are, on
+    average, parallel to the picture.
 
     Args:
         poses: The poses of one body, in the order of their times.

@@ -23,7 +23,8 @@ SHARED: Mapping[str, Feeling] = {
     "joy": "happy",
     "astonishing": "surprised",
 }
-"""The agent's feeling for each class in ``feelings.yaml``, the strongest class first. Other classes raise no feeling."""
+"""The agent's feeling for each class in ``feelings.yaml``, the strongest class first. Other classes raise no
+feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
 """If a text has a sentence of these classes, joy does not count: "I got my results, and I failed"."""

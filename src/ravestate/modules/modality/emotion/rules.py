@@ -41,9 +41,9 @@ def learn(ctx: rs.RuleContext) -> None:
 def be_moved(ctx: rs.RuleContext) -> None:
     """Raise the feeling that fits the user's words, or a spontaneous feeling.
 
-    After words of sorrow, the next few utterances raise neither a cheerful nor a spontaneous feeling. The sentence model
-    takes a few milliseconds, so this rule runs in a thread. Without the model, only sentences that equal an example
-    raise a feeling that fits them.
+    After words of sorrow, the next few utterances raise neither a cheerful nor a spontaneous feeling. The sentence
+    model takes a few milliseconds, so this rule runs in a thread. Without the model, only sentences that equal an
+    example raise a feeling that fits them.
     """
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)

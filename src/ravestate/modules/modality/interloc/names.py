@@ -28,8 +28,8 @@ agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""The users who are present. The platform chooses a key for each user. The item is the user's name, or None while the name
-is unknown. If a platform has recognised the user, the name is a `Recognised`."""
+"""The users who are present. The platform chooses a key for each user. The item is the user's name, or None while the
+name is unknown. If a platform has recognised the user, the name is a `Recognised`."""
 
 recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
 """A platform has recognised a user who was already present. The payload is their entry in `users`."""
@@ -38,4 +38,5 @@ facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """The known facts about the user, by topic, such as ``home`` or ``sister``. A module that learns facts writes them."""
 
 forgotten: rs.Signal[None] = module.signal("forgotten", input=True)
-"""Memory has forgotten the user, so all modules delete their data about this user. `persqa` and the messengers raise it."""
+"""Memory has forgotten the user, so all modules delete their data about this user. `persqa` and the messengers raise
+it."""

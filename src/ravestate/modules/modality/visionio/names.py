@@ -25,8 +25,8 @@ class Settings(rs.Settings):
     """The settings of visionio: the camera, and the limits for recognising faces."""
 
     source: str = "default"
-    """The camera: ``default``, a device (``/dev/video0``), a video file, or a folder of pictures. Empty means no camera. A
-    platform's camera in ``visionio.camera`` takes priority."""
+    """The camera: ``default``, a device (``/dev/video0``), a video file, or a folder of pictures. Empty means no
+    camera. A platform's camera in ``visionio.camera`` takes priority."""
     loop: bool = False
     """Whether a video file or a folder begins again at its end."""
     python: Path | None = None
@@ -89,7 +89,8 @@ asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Q
 """The agent's open question whether it may remember a face; None if there is none."""
 
 agreed: rs.Signal[str] = module.signal("agreed", payload=str)
-"""A visitor allows the agent to remember their face, or asks it to. The payload is their key, empty if nobody is seen."""
+"""A visitor allows the agent to remember their face, or asks it to. The payload is their key, empty if nobody is
+seen."""
 
 refused: rs.Signal[str] = module.signal("refused", payload=str)
 """A visitor does not want the agent to remember their face. The payload is their key."""

@@ -101,7 +101,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """Whose face a track follows: a person in memory, or None for a stranger. The vectors are the evidence."""
+    """The person whose face a track follows, or None for a stranger. The vectors are the evidence for this."""
 
     person: Node | None
     vectors: tuple[Vector, ...] = ()
@@ -113,7 +113,7 @@ def at(face: FaceVec) -> float:
 
 
 def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
-    """Return the `most` vectors of the best quality. Of two nearly equal vectors, keep the better one."""
+    """Return the `most` vectors of the best quality. If two vectors are nearly equal, keep only the better one."""
     kept: list[tuple[float, Vector]] = []
     for quality, vector in sorted(vectors, key=lambda one: -one[0]):
         if all(dist(vector, other) > ALIKE for _, other in kept):
@@ -122,7 +122,7 @@ def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[floa
 
 
 def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: float) -> Decision | None:
-    """Return whose face a track follows, when the last `sure` vectors of good quality agree. Until then, return None.
+    """Decide whose face a track follows, when its last `sure` vectors of good quality agree. Until then, return None.
 
     After `WAIT` seconds without a vector of good quality, the face is a stranger's.
 

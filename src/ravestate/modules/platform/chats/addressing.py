@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from .commands import COMMANDS
 
 COMMAND = re.compile(r"[/!](\w+)(?:@(\w+))?\s*$")
-"""A command: ``/stop``, in a group also ``/stop@robin_bot``. Some messengers reserve ``/``, so ``!stop`` counts, too."""
+"""A command: ``/stop``, in a group also ``/stop@robin_bot``. Some messengers reserve ``/``, so ``!stop`` works, too."""
 
 
 def command_in(text: str) -> str | None:

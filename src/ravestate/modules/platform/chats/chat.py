@@ -37,7 +37,8 @@ GRACE = 0.05
 stores the answer and marks the message as done."""
 
 TURN = 1.0
-"""A message waits at most this many seconds for the answer to the previous message. Then it may interrupt this answer."""
+"""A message waits at most this many seconds for the answer to the previous message. Then it may interrupt this
+answer."""
 
 FAREWELL = 10.0
 """The maximum time for a greeting, for a farewell, or for earlier answers (seconds)."""

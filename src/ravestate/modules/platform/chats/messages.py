@@ -48,7 +48,8 @@ class Incoming:
 
 
 Sent = Literal["text", "picture", "voice", "edit", "reaction"]
-"""The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is none."""
+"""The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is
+none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +118,7 @@ class Carrier(Protocol):
 
         Args:
             message: The message.
-            again: Whether an earlier attempt may have delivered the message. If it has, the carrier must not send it again.
+            again: Whether an earlier attempt may have delivered the message. If it has, do not send it again.
 
         Raises:
             DeliveryError: The message was not sent, or the carrier does not know whether it was sent.

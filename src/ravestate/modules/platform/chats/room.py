@@ -129,7 +129,7 @@ class Room:
             self.log.warning("%s %s", concerned, what)
 
     def receive(self, messages: Iterable[Incoming], position: tuple[str, str] | None = None) -> None:
-        """Store messages from the messenger, and pass them to their chats. The caller may acknowledge them after the call.
+        """Store messages from the messenger, and pass them to their chats. The caller may then acknowledge them.
 
         Args:
             messages: The messages, in order. The room ignores messages that it got before.

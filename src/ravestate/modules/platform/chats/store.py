@@ -1,4 +1,4 @@
-"""The store: a file with incoming messages that are not answered yet, and outgoing messages that are not delivered yet."""
+"""The store: a file with the unanswered incoming messages and the undelivered outgoing messages."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ async def spoken(text: str) -> bytes | None:
 
 
 async def voiced(message: Outgoing) -> Outgoing:
-    """Return a ``voice`` message with its sound, or as text if speech synthesis fails. Return other messages unchanged."""
+    """Return a ``voice`` message with its sound, or as text if synthesis fails. Return other messages unchanged."""
     if message.kind != "voice":
         return message
     note = await spoken(message.text)

@@ -24,7 +24,7 @@ class Pipes:
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
         """Make a console; it reads nothing yet. Pass None for a closed stream.
 
-        Of each line, it reads at most `longest_line` bytes, and ignores the rest.
+        It reads at most `longest_line` bytes of each line, and ignores the rest of the line.
         """
         self._stdin = stdin
         self._stdout = stdout

@@ -80,7 +80,7 @@ class StandIn:
     # ------------------------------------------------------------------------------- the visitor's side
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
-        """Call `watcher` with the fields of `Looks`, now and after each change. Return a function that ends these calls."""
+        """Call `watcher` with the fields of `Looks`, now and after each change. Return a function that ends this."""
         self._watchers.add(watcher)
         watcher(asdict(self.looks))
         return lambda: self._watchers.discard(watcher)

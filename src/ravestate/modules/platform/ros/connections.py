@@ -56,7 +56,7 @@ class Connections:
                 asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
-        """Stop passing messages to a channel. If the topic has no other channel, end the connections with its publishers."""
+        """Stop passing messages to a channel. If no channel of the topic is left, disconnect from its publishers."""
         readers = self._readers[channel.name]
         readers.remove(channel)
         if not readers:

@@ -29,7 +29,8 @@ class _Goal:
     feedback: Callable[[Any], None] | None
     listed: asyncio.Event = field(default_factory=asyncio.Event)
     tracked: bool = False
-    """Whether a status of the server has listed the goal. Feedback alone does not count: an older status may follow it."""
+    """Whether a status of the server has listed the goal. Feedback alone does not count: an older status may follow
+    it."""
 
 
 class GoalTopics:

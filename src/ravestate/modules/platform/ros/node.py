@@ -276,7 +276,7 @@ class Node:
             self._calls.close(call)
 
     async def graph(self, timeout: float = 10.0) -> dict[str, list[dict[str, Any]]]:  # noqa: ASYNC109  # a public name
-        """Return the ``topics``, ``services`` and ``actions`` of the network, each with its name, types and numbers of nodes.
+        """Return the network's ``topics``, ``services`` and ``actions``: their names, types and numbers of nodes.
 
         Raises:
             PlatformError: The bridge does not work.
@@ -397,7 +397,7 @@ class Node:
         self._warn(text, note["level"])
 
     def _warn(self, text: str, level: Literal["info", "warning", "error"] = "warning") -> None:
-        """Log a text, unless it is already in the log. A text of level `info`, or a new link, allows all texts again."""
+        """Log a text, unless it is already in the log. After a text of level `info`, or a new link, texts may repeat."""
         if level == "info":
             self._told.clear()
         if text not in self._told and len(self._told) < TOLD:

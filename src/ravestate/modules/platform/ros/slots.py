@@ -33,7 +33,7 @@ class Binding:
 
     Attributes:
         version: 1 for ROS 1, 2 for ROS 2.
-        kind: What the slot does.
+        kind: The role of the slot.
         name: The name of the topic, service or action, as the designer wrote it.
         type: The name of the type, as the designer wrote it.
         options: The arguments of the `Node` method that opens the topic, service or action.
@@ -64,8 +64,8 @@ class TopicSlot(rs.Slot[Any]):
 class ServiceSlot(TopicSlot):
     """A slot that is bound to a service.
 
-    A write is a request, and raises ``requested``. The response raises ``changed``. A failure raises ``failed`` with the
-    reason as text.
+    A write is a request, and raises ``requested``. The response raises ``changed``. A failure raises ``failed``; the
+    payload is the reason.
     """
 
     __slots__ = ("failed", "requested")
@@ -80,7 +80,7 @@ class ActionSlot(ServiceSlot):
     """A slot that is bound to an action.
 
     A write is a goal, and raises ``requested``. Feedback raises ``feedback``, and the result raises ``changed``. A
-    failure (refused, aborted, cancelled) raises ``failed`` with the reason as text.
+    failure (refused, aborted, cancelled) raises ``failed``; the payload is the reason.
     """
 
     __slots__ = ("feedback",)
@@ -136,7 +136,7 @@ class Declarations:
             name: The slot's name.
             topic: The topic, for example ``/chat``. Relative names and ``~private`` names are allowed.
             type: The type of its messages, for example ``std_msgs/String``.
-            keep: With ``latest``, a newer message replaces a waiting message. With ``all``, the slot gets every message.
+            keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message.
             rate: The maximum number of messages per second. The slot gets the newest message of each interval.
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
             latch: ROS 2: whether to get the last message of a publisher that latches.

@@ -22,7 +22,8 @@ BEFORE = 12
 ONSET = 2
 """This many successive chunks of speech are an onset. A click is shorter."""
 STAY = 0.7
-"""While the user speaks, the threshold of speech is multiplied by this factor, so that soft chunks continue the speech."""
+"""While the user speaks, the threshold of speech is multiplied by this factor, so that soft chunks continue the
+speech."""
 ARTICULATE = 3
 """This many articulate chunks since the onset prove speech, rather than a hum or a cough."""
 LONG = 16
@@ -67,7 +68,8 @@ class Turn:
     pitches: list[float | None] = field(default_factory=list[float | None])
     """The pitch (Hz) of each chunk; None for a chunk without a voice."""
     continued: tuple[int, float, float] | None = None
-    """How the turn last continued after a pause: the first new chunk, its time, and the time at which the pause began."""
+    """How the turn last continued after a pause: the first new chunk, its time, and the time at which the pause
+    began."""
 
     @property
     def sound(self) -> bytes:

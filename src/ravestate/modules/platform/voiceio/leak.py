@@ -22,8 +22,8 @@ LEAST, MOST = 1e-6, 0.25
 CLEAR = 10.0
 """Sound with this many times the expected power (10 dB more) is another voice."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
-"""A chunk multiplies the expected share by `DOWN` if it has less power than expected, and by `UP` if it has more. A chunk
-of another voice multiplies the share by `SLOWLY`."""
+"""A chunk multiplies the expected share by `DOWN` if it has less power than expected, and by `UP` if it has more. A
+chunk of another voice multiplies the share by `SLOWLY`."""
 
 SETTLED = 15
 """The measured strength of the echo counts after this many frames (0.3 s) with sound on both sides."""
@@ -99,7 +99,7 @@ class Leak:
             self.echoes, self._limit = False, 0
 
     def hides(self, near: Samples) -> bool:
-        """Return whether a chunk of the microphone's cleaned sound may come from the loudspeaker. Learn from the chunk."""
+        """Return whether a chunk of the microphone's cleaned sound may come from the loudspeaker. Learn from it."""
         far = max(self._far, default=0.0)
         if far < SILENT or not self.possible:
             return False

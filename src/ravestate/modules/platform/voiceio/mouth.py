@@ -24,8 +24,8 @@ HEARD = 0.5
 FAINT = 0.1
 """Sound at the end of a word counts as a pause if its level is below this share of the word's greatest level."""
 DRIFT = 0.06
-"""The echo's reference is the loudspeaker's sound for the echo canceller. It advances with the microphone's sound. If it
-is more than this many seconds away from the loudspeaker's position, it jumps there."""
+"""The echo's reference is the loudspeaker's sound for the echo canceller. It advances with the microphone's sound. If
+it is more than this many seconds away from the loudspeaker's position, it jumps there."""
 LEAD = 4.0
 """If the loudspeaker's queue has more than this many seconds of sound, the mouth waits before it synthesises more."""
 KEPT = 30.0
@@ -197,7 +197,7 @@ class Mouth:
             await self._released.wait()
 
     async def room(self) -> None:
-        """Wait until little sound is left in the queue. This also works for a line that drops sound without playing it."""
+        """Wait until little sound is left in the queue, even if the line drops sound without playing it."""
         while (left := self.lead - LEAD) > 0.0:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(max(0.05, left)):

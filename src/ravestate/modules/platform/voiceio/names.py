@@ -28,7 +28,8 @@ class Settings(rs.Settings):
     model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
     source: str = "default"
-    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes priority."""
+    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
+    priority."""
     sink: str = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
@@ -45,7 +46,8 @@ class Settings(rs.Settings):
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """A recogniser counts as stuck, and starts again, if it takes longer than this for up to 25 s of sound (seconds)."""
+    """A recogniser counts as stuck, and starts again, if it takes longer than this for up to 25 s of sound
+    (seconds)."""
     captions: Seconds = 1.0
     """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 

@@ -83,7 +83,7 @@ class Conversation:
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
-        """Return the kind of a turn: ``utterance``, ``back_channel`` or ``false_alarm``. Add its words, or the reason."""
+        """Return the kind of a turn (``utterance``, ``back_channel``, ``false_alarm``), with its words or the reason."""
         if not found.text:
             return "false_alarm", "there are no words in the sound"
         if turn.agent_spoke:

@@ -19,7 +19,8 @@ PERIODIC = 0.6
 ENOUGH = 8
 """This many voiced frames are enough to know a voice's pitch."""
 ANOTHER = 1.6
-"""If the ratio of two median pitches is greater than this, they belong to two people. One person's pitch varies less."""
+"""If the ratio of two median pitches is greater than this, they belong to two people. One person's pitch varies
+less."""
 LASTING = 15
 """A change of voice within speech needs this many voiced frames on each side. One person's pitch jumps for a shorter
 time."""

@@ -264,7 +264,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     until=barge_in | utterance | rawio.hush | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak an utterance sentence by sentence. At its end, or when the user interrupts it, note the part that they heard."""
+    """Speak an utterance sentence by sentence. In the end, note the part of it that the user heard."""
     talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
     if talk is None:
         return rs.Resign("the line is closed")

@@ -1,4 +1,4 @@
-"""A WebSocket for any protocol. It limits the size of frames, the wait for the first frame, and the queue of replies."""
+"""A WebSocket for any protocol. It limits the size of frames, the wait for the first one, and the queue of replies."""
 
 from __future__ import annotations
 

@@ -20,7 +20,8 @@ from websockets.exceptions import InvalidState
 TIMEOUT = 10.0  # a client may take this many seconds to send its request, and as many to read the answer
 
 LOWEST_RATE = 8 * 1024
-"""The lowest rate at which a client may send a request (bytes per second). It may be at most `TIMEOUT` seconds behind."""
+"""The lowest rate at which a client may send a request (bytes per second). It may be at most `TIMEOUT` seconds
+behind."""
 
 STALL_TIMEOUT = 20.0  # the client of a WebSocket may leave data unread for this many seconds
 
@@ -126,7 +127,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         self.loop.call_later(TIMEOUT, self._end_late)
 
     def shutdown(self) -> None:
-        """Close the connection when the server stops. uvicorn alone would fail if the client closes it at that moment."""
+        """Close the connection when the server stops. uvicorn itself fails if the client closes it at that moment."""
         with contextlib.suppress(InvalidState):
             super().shutdown()
         self.transport.close()

@@ -28,7 +28,8 @@ CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame (0.2 s)."""
 
 AHEAD = rawio.OUT_RATE
-"""At most about this many unplayed samples (1 s) are in the browser window. `stop` drops them, so there should be few."""
+"""At most about this many unplayed samples (1 s) are in the browser window. `stop` drops them, so there should be
+few."""
 
 BETWEEN = 0.2
 """After a report of the browser window, `played` assumes for this many seconds that the sound keeps playing."""
@@ -149,7 +150,7 @@ class PageLine:
 
     @property
     def played(self) -> float:
-        """How many seconds of sound the loudspeaker has played. Between two reports of the window, this is an estimate."""
+        """How many seconds of sound the loudspeaker has played. Between two reports of the window, it is an estimate."""
         since = 0.0
         if self._moved is not None:
             since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
@@ -181,7 +182,7 @@ class PageLine:
             self._expect(DEAF, self._find_deaf)
 
     def leave(self, window: Window) -> None:
-        """Take the line away from a window, and drop the queued sound. Do nothing if the window does not have the line."""
+        """Take the line away from a window, and drop the queued sound. Ignore a window that does not have the line."""
         if self.window is not window:
             return
         self.window = None

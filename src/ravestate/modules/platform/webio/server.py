@@ -50,7 +50,7 @@ _before: list[tuple[float, tuple[int, int, int]]] = []  # for each running serve
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
-    """Tune the interpreter for quick answers inside the ``with`` block. The last such block to end restores the settings."""
+    """Tune the interpreter for quick answers inside the ``with`` block. The last block to end restores the settings."""
     _before.append(_before[0] if _before else (sys.getswitchinterval(), gc.get_threshold()))
     sys.setswitchinterval(SWITCH)
     gc.set_threshold(*COLLECT)

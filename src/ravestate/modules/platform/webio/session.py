@@ -85,7 +85,8 @@ class Session:
         self.hears = hears
         """Whether the agent can hear and speak."""
         self.line: PageLine | None = None
-        """The line to the visitor's microphone and loudspeaker. None if the microphone has been off for `LINGER` seconds."""
+        """The line to the visitor's microphone and loudspeaker. None if the microphone has been off for `LINGER`
+        seconds."""
         self.sees = sees
         """Whether the agent can see."""
         self.camera: PageCamera | None = None
@@ -238,7 +239,7 @@ class Session:
         self._stay_on_line()
 
     def take_camera(self, window: CameraWindow) -> None:
-        """Note that the camera is on in a window, and put it into ``rawio.camera``. Any other window loses its camera."""
+        """Note that a window's camera is on, and put it into ``rawio.camera``. Any other window loses its camera."""
         if self.camera is not None:
             if self.camera.window is window and not self.camera.closed:
                 return

@@ -49,7 +49,11 @@ class Sessions:
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
-        """Begin a conversation with a visitor. If there are too many, or the agent is switched off, raise a `ProtocolError`."""
+        """Begin a conversation with a visitor.
+
+        Raises:
+            ProtocolError: There are too many conversations, or the agent is being switched off.
+        """
         if len(self._tasks) >= self._limit:
             await self._make_room()
         if self._closed:

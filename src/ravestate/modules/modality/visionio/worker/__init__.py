@@ -10,7 +10,8 @@ An answer has ``fault`` if a camera or a picture has a fault. If there is no new
 ``picture``. A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``.
 
 The bytes of a look are an encoded picture (JPEG, PNG), or raw pixels. For raw pixels, the record has
-``"shape": [height, width]``. It may have ``"encoding"`` (default ``rgb8``) and ``"step"``, the length in bytes of a row.
+``"shape": [height, width]``. It may have ``"encoding"`` (default ``rgb8``) and ``"step"`` (the length of a row in
+bytes).
 """
 
 from __future__ import annotations

@@ -29,8 +29,8 @@ SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 """The kinds of frames.
 
 The agent sends OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE and HANGUP. The bridge sends READY, FEEDBACK, TOLD, NOTE,
-SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which is
-the connection with another node.
+SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which
+is the connection with another node.
 """
 
 

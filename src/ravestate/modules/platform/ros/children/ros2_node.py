@@ -144,7 +144,7 @@ class Ros2Node:
         self._channels[channel].publish(bytes(body))
 
     def call(self, channel, number, body):
-        """Call a service, or send a goal to an action server. Do it in a thread, because the server may not be there yet."""
+        """Call a service, or send a goal to an action server, in a thread. The server may not be there yet."""
         act = self._call
         if self._bindings[channel]["kind"] == "action":
             act = self._act
