@@ -83,7 +83,7 @@ def taught_in(folder: Path, known: Recogniser) -> Iterator[tuple[Path, str]]:
 
 
 def files_of(folder: Path) -> dict[str, list[Path]]:
-    """Return the files of each activity in a folder of taught activities, by its name. Skip damaged files."""
+    """Return the activities in a folder of taught activities: name → files. Skip damaged files."""
     found: dict[str, list[Path]] = {}
     for file in sorted(folder.glob(f"*{SUFFIX}")):
         try:

@@ -19,7 +19,7 @@ from .wishes import wish_of
 POLITE = 3.0
 """The pause between a person's name and the question whether the agent may remember their face (seconds)."""
 ANSWERED = 60.0
-"""An answer to this question counts for this many seconds after it."""
+"""An answer counts only within this many seconds after the question."""
 
 
 @module.rule(

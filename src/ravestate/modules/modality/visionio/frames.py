@@ -55,7 +55,7 @@ class Frames:
         self._waiting: dict[str, tuple[asyncio.AbstractEventLoop, asyncio.Event]] = {}
 
     def put(self, data: bytes | bytearray | memoryview, shape: tuple[int, int] | None = None) -> None:
-        """Accept a new picture, which replaces the newest one. Thread-safe.
+        """Accept a new picture, which replaces the previous one. Thread-safe.
 
         Args:
             data: An encoded picture (JPEG, PNG), or raw RGB pixels.

@@ -21,7 +21,7 @@ MERGE = 0.45
 """Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
 merges them."""
 MARGIN = 0.05
-"""If the second nearest person is not farther away than the nearest one by this distance, the agent recognises
+"""The second nearest person must be this much farther away than the nearest one. Otherwise, the agent recognises
 nobody."""
 
 
@@ -85,7 +85,7 @@ def keep(graph: Graph, person: Node, vectors: Iterable[tuple[float, Vector]], mo
 
     Args:
         graph: The memory.
-        person: The person. If memory lacks their node, it saves the node.
+        person: The person. If their node is not in memory yet, it is saved.
         vectors: Vectors with their qualities. The function leaves out vectors that are almost the same as stored ones.
         most: The maximum number of vectors to keep. The oldest vectors are removed.
 

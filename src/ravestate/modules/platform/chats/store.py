@@ -126,7 +126,7 @@ class Store:
         self._db.execute("DELETE FROM inbox WHERE at < ? AND data IS NULL", (time.time() - SEEN,))
 
     def take(self, message: Incoming) -> Entry | None:
-        """Store a message until it is done. Return None if a message with this key came before."""
+        """Store a message until it is done. Return its entry, or None if a message with this key came before."""
         with self._transaction():
             self._purge()
             data = json.dumps(asdict(message))

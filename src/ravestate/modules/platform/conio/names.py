@@ -1,4 +1,4 @@
-"""The module conio: its settings and its slot."""
+"""The names of `conio`: its settings, its module and its slot."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The built-in bus, which replaces ROS for an agent and the stand-in robot on a machine without ROS.
 
-The bus is a server on a local TCP port. It speaks the frames of a bridge process (``children/pipe.py``), and passes
+The bus is a server on a local TCP port. It uses the frames of a bridge process (``children/pipe.py``), and passes
 messages and calls from one node to the others.
 """
 
@@ -119,7 +119,7 @@ class Bus:
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
-        """Pass on an answer to the caller. On the bus, its call has the number `own`."""
+        """Pass on an answer to the caller of the call that has the number `own` on the bus."""
         call = self._calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)

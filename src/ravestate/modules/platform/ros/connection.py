@@ -49,7 +49,7 @@ class _Connection(abc.ABC):
             self._sock.close()
 
     def _receive(self, size: int) -> bytes | None:
-        """Return at most `size` bytes; None if no data have come. At the end of the connection, they are empty."""
+        """Return at most `size` bytes: none of them if the connection has ended. Return None if no data have come."""
         try:
             return self._sock.recv(size)
         except (BlockingIOError, InterruptedError):

@@ -18,7 +18,7 @@ BLOCK = 0.02
 WAITING = 200
 """At most this many blocks of sound wait for a slow agent. Older blocks are dropped."""
 GONE = 2.0
-"""A device counts as unplugged if it delivers and accepts no sound for this many seconds."""
+"""A device counts as unplugged if it carries no sound for this many seconds."""
 AGAIN = 2.0
 """The time between two attempts to open an unplugged device (seconds)."""
 

@@ -12,7 +12,7 @@ from .likeness import FAR, NEAR, likeness, strength
 from .sound import Samples
 
 MEMORY = 16
-"""The last frames of the loudspeaker's sound may still echo: this many (0.3 s)."""
+"""This many of the last frames of the loudspeaker's sound (0.3 s) may still echo."""
 SILENT = 100.0
 """A frame with less power than this counts as silence."""
 FIRST = 10 ** (-13 / 10)

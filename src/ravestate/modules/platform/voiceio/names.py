@@ -33,7 +33,7 @@ class Settings(rs.Settings):
     sink: str = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
-    """Whether the agent is deaf while it speaks, so that nobody can interrupt it: for a loud loudspeaker."""
+    """Whether the agent is deaf while it speaks. This helps if the loudspeaker is loud, but nobody can interrupt."""
     echo_cancellation: bool = True
     """Whether the agent's own voice is removed from the microphone's sound (libspeexdsp)."""
 
@@ -46,8 +46,8 @@ class Settings(rs.Settings):
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """A recogniser counts as stuck, and starts again, if it takes longer than this for up to 25 s of sound
-    (seconds)."""
+    """The time limit for recognising up to 25 s of sound (seconds). A slower recogniser counts as stuck, and is started
+    again."""
     captions: Seconds = 1.0
     """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 
@@ -57,11 +57,11 @@ class Settings(rs.Settings):
     """The Python interpreter of Piper's environment, by default that of ``make voice``."""
 
     speech: Share = 0.5
-    """The probability from which on a sound counts as speech."""
+    """A sound counts as speech from this probability on."""
     pause: Annotated[float, Field(ge=0.1)] = 0.2
     """This many seconds of silence are a pause, and end a turn whose words and melody are complete."""
     doubtful_pause: Seconds = 1.2
-    """This many seconds of silence end a turn of which it is doubtful whether it is complete."""
+    """This many seconds of silence end a turn that may be incomplete."""
     longest_pause: Seconds = 1.4
     """This many seconds of silence end every turn."""
     complete: Share = 0.5

@@ -45,7 +45,7 @@ class Pair:
 
     @property
     def played(self) -> float:
-        """How many seconds of sound have been played."""
+        """How many seconds of sound the loudspeaker has played."""
         return self.sink.played
 
     async def drained(self) -> None:

@@ -161,7 +161,7 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=another_speaks, reads=conversation, emits=(utterance, false_alarm))
 async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Take the turn of the person who spoke first, because the words of two people are not one sentence."""
+    """Handle the turn of the person who spoke first separately, because the words of two people are not one sentence."""
     talk, turn = ctx[conversation], ctx.payload(another_speaks)
     if talk is None:
         return rs.Resign("the line is closed")

@@ -20,8 +20,8 @@ from websockets.exceptions import InvalidState
 TIMEOUT = 10.0  # a client may take this many seconds to send its request, and as many to read the answer
 
 LOWEST_RATE = 8 * 1024
-"""The lowest rate at which a client may send a request (bytes per second). It may be at most `TIMEOUT` seconds
-behind."""
+"""The lowest rate at which a client may send a request (bytes per second). A client that is more than `TIMEOUT` seconds
+behind is too slow."""
 
 STALL_TIMEOUT = 20.0  # the client of a WebSocket may leave data unread for this many seconds
 

@@ -22,7 +22,7 @@ MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
 """At most this many bytes (5 s) of the visitor's sound wait for the agent. The line drops older sound."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
-"""2 s of silence, which the agent hears when the microphone goes off. They end the visitor's utterance."""
+"""2 s of silence. The agent hears it when the microphone goes off, so that the visitor's utterance ends."""
 
 CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame (0.2 s)."""

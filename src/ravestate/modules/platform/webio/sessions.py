@@ -101,7 +101,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation without a window, if possible one whose visitor never spoke. Prefer the oldest absence."""
+        """End the conversation that has been without a window longest. Prefer visitors who never spoke."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

@@ -1,4 +1,4 @@
-"""The vision worker: the process that takes pictures from a camera, and finds faces and poses in pictures.
+"""The vision worker: the process that reads pictures from a camera, and finds faces and poses in pictures.
 
 It runs in its own environment, and imports nothing from Ravestate. A request is a record and the bytes of a picture:
 

@@ -247,7 +247,7 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal or forget a call. So no data stay if a service never answers."""
+        """Cancel a goal, or forget a call. Otherwise, a call that is never answered would stay in memory."""
         call = self._calls.pop((channel, number), None)
         if call is not None:
             call["cancelled"] = True
