@@ -1,8 +1,8 @@
-"""The built-in modules: platforms, modalities, meta modules and skills. Each loads at its first use.
+"""The built-in modules: platforms, modalities, meta modules and skills. Each is imported when it is first used.
 
 ``from ravestate.modules import rawio`` imports the package of a module. The package holds the `Module` value
-(``rawio.module``) and its signals and slots by name (``rawio.input``). Every argument that takes a `Module` also takes
-this package.
+(``rawio.module``) and the module's signals and slots by name (``rawio.input``). You may pass the package wherever a
+function expects a `Module`.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ BUILT_IN = {
     "persqa": "skill",
     "wildtalk": "skill",
 }
-"""Name of a built-in module → the folder that contains it."""
+"""The folder that contains each built-in module, by the module's name."""
 
 
 def __getattr__(name: str) -> Any:

@@ -14,10 +14,10 @@ _SURROGATES = re.compile(r"[\ud800-\udfff]")
 
 
 def without_controls(text: str) -> str:
-    """Return `text` without control characters. Use it for a piece of a longer text.
+    """Return `text` without control characters. Use this function for a piece of a longer text.
 
-    Line feeds and tabs stay. Lone surrogates, by which Python carries bytes that are not UTF-8, become U+FFFD, so that
-    the result can always be encoded.
+    Line feeds and tabs stay. Lone surrogates, which in Python stand for bytes that are not UTF-8, become U+FFFD. So the
+    result can always be encoded.
 
     Example:
         >>> without_controls("a\\x00b\\udcff")
@@ -27,7 +27,7 @@ def without_controls(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return `text` without terminal escape sequences and control characters. Use it for a whole text.
+    """Return `text` without terminal escape sequences and control characters. Use this function for a whole text.
 
     The function works like `without_controls`. It also removes escape sequences, and turns ``\\r\\n`` and ``\\r`` into
     line feeds.

@@ -1,4 +1,4 @@
-"""Functions that read YAML as nodes with line numbers, for messages. They build no objects, so no code can run."""
+"""Functions that read YAML as nodes, with line numbers for messages. They build no objects, so no code can run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def read_text(file: Path | Traversable, what: str) -> str:
 
     Args:
         file: A path, or a file in a package.
-        what: The words for the file in messages, for example ``file of types``.
+        what: The name of the file in messages, for example ``file of types``.
 
     Raises:
         DeclarationError: The file is not in UTF-8.

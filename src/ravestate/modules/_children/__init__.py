@@ -1,1 +1,1 @@
-"""Processes beside the agent that hold models. Each module names one of its own programs as the backend."""
+"""Separate processes that hold models. A module names one of its own programs as the backend of such a process."""

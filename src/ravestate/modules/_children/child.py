@@ -1,4 +1,4 @@
-"""A process beside the agent, with functions to start it, to end it, and to get the last line of its errors."""
+"""A child process, with functions to start it, to end it, and to get the last line of its error output."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import tempfile
 from collections.abc import Mapping, Sequence
 
 ENDING = 2.0
-"""The maximum time between the closing of a process's pipe and the process's own end (seconds)."""
+"""After its pipe is closed, a process may take this many seconds to end by itself."""
 
 
 class Child:
-    """A running process, in a separate session, so that Ctrl-C does not reach it.
+    """A running child process. It is in a separate session, so that Ctrl-C does not reach it.
 
     Args:
         command: The program and its arguments.
-        piped: Whether standard input and output are pipes. If not, the input is empty, and the output counts as errors.
+        piped: Whether standard input and output are pipes. If not, the input is empty, and the output joins the errors.
         pass_fds: The file descriptors that the process inherits.
-        environment: Variables in addition to those of this process.
+        environment: Environment variables in addition to those of this process.
 
     Raises:
         OSError: The program cannot be started.
@@ -54,23 +54,23 @@ class Child:
 
     @property
     def pid(self) -> int | None:
-        """The process's number, if it runs."""
+        """The process id, if the process runs."""
         return self._process.pid if self._process.poll() is None else None
 
     @property
     def stdin(self) -> int:
-        """The descriptor of the pipe into the process; it never blocks."""
+        """The descriptor of the pipe to the process; it never blocks."""
         assert self._process.stdin is not None, "the process has no pipes"
         return self._process.stdin.fileno()
 
     @property
     def stdout(self) -> int:
-        """The descriptor of the pipe out of the process; it never blocks."""
+        """The descriptor of the pipe from the process; it never blocks."""
         assert self._process.stdout is not None, "the process has no pipes"
         return self._process.stdout.fileno()
 
     def kill(self) -> None:
-        """Kill the process, and leave the rest to `end`."""
+        """Kill the process. Call `end` afterwards."""
         self._process.kill()
 
     def wait(self, seconds: float) -> None:
@@ -79,10 +79,10 @@ class Child:
             self._process.wait(seconds)
 
     def end(self, patience: float = 0.0) -> str:
-        """Make sure that the process is gone. Return the manner of its end, with the last line of its errors.
+        """Make sure that the process is gone. Return how it ended, in words, with the last line of its error output.
 
         Args:
-            patience: The maximum time to wait for the process to end by itself, before it is killed (seconds).
+            patience: Wait this many seconds for the process to end by itself, then kill it.
         """
         self.wait(patience)
         hung = self._process.poll() is None

@@ -1,7 +1,7 @@
-"""Models in processes of their own, which all contexts of the main process share.
+"""Models in separate processes, which all contexts of the main process share.
 
-A model that hangs or crashes ends only its own process, and the next request gets a fresh process. In a thread, a model
-would also hold Python's lock while it loads, and stop every event loop.
+If a model hangs or crashes, only its own process ends, and the next request starts a new one. In a thread, a model
+would also hold Python's global lock while it loads, and stop every event loop.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from ravestate.errors import PlatformError
 from .child import ENDING, Child
 
 LOADING = 120.0
-"""The longest time (seconds) that a model may take to load."""
+"""A model may take this many seconds to load."""
 
 LINGER = 60.0
-"""The seconds for which an unused process stays loaded, if its last user asked for that."""
+"""If the last user of a process asks for it, the process stays loaded for this many seconds."""
 
 SERVER = Path(__file__).with_name("serve.py")
 
@@ -42,11 +42,11 @@ class Backend:
     """A program that runs in a process, and the names that error messages use for it.
 
     Attributes:
-        program: A file, or a folder with ``__init__.py``. Its function ``load`` takes the configuration, and returns the
+        program: A file, or a folder with ``__init__.py``. Its function ``load`` gets the configuration, and returns the
             function that handles a request. The program imports nothing from Ravestate.
         owner: The module that uses the program.
         name: The backend's name in messages.
-        mend: A function that takes the reason of a failed load, and returns advice. The error message ends with the advice.
+        mend: A function that gets the reason of a failed load, and returns advice for the end of the error message.
     """
 
     program: Path
@@ -56,20 +56,20 @@ class Backend:
 
 
 class ModelProcess:
-    """The process of one model. All methods block and are thread-safe; requests are answered one after another."""
+    """The process of one model, which answers one request after another. All methods block and are thread-safe."""
 
     def __init__(self, backend: Backend, config: Mapping[str, Any], python: str = sys.executable) -> None:
-        """Make the object, without starting a process.
+        """Make the object. The process starts later.
 
         Args:
             backend: The program.
             config: Its configuration, as data for JSON.
-            python: The interpreter that has the backend's packages.
+            python: The Python interpreter that has the backend's packages.
         """
         self._backend = backend
         self._title = f"{backend.owner}: {backend.name}"
         self.restarts = 0
-        """The number of processes that replaced a dead or hanging one."""
+        """How many times a new process has replaced a dead or hanging one."""
         self._config = dict(config)
         self._python = python
         self._turn = threading.Lock()
@@ -79,19 +79,19 @@ class ModelProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process's number, if it runs."""
+        """The process id, if the process runs."""
         return self._process.pid if self._process is not None else None
 
     @property
     def busy(self) -> bool:
-        """Whether a request is under way."""
+        """Whether the process is working on a request, or loading."""
         return self._turn.locked()
 
     def start(self) -> None:
         """Load the model, unless it is loaded.
 
         Raises:
-            PlatformError: The model cannot be loaded; the message has the backend's reason.
+            PlatformError: The model cannot be loaded. The message has the backend's reason.
         """
         with self._turn:
             self._start()
@@ -108,13 +108,13 @@ class ModelProcess:
 
         Args:
             header, data: The request.
-            seconds: The longest time from sending the request to its answer. Loading does not count.
-            unwanted: An event that another thread sets if nobody needs the answer any more. If this request then still
-                waits for earlier requests, it is dropped.
+            seconds: The maximum time for the answer. The time for loading the model does not count.
+            unwanted: An event that another thread sets if the answer is no longer needed. If the request is then still
+                waiting for earlier requests, it is dropped.
 
         Raises:
             PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within
-                `seconds`; or the request was dropped. After a crash or time-out, the next request starts a new process.
+                `seconds`. Or the request was dropped. After a crash or time-out, the next request starts a new process.
         """
         with self._turn:
             if unwanted is not None and unwanted.is_set():
@@ -128,10 +128,10 @@ class ModelProcess:
         return answer, sound
 
     def close(self) -> None:
-        """Kill the process. It has nothing to save."""
+        """Kill the process, which has nothing to save."""
         self._closed = True
         if (process := self._process) is not None:
-            process.kill()  # a request that is under way reads the end of its pipe, and fails
+            process.kill()  # an open request then fails, because its pipe ends
         with self._turn:
             self._end()
 
@@ -146,7 +146,7 @@ class ModelProcess:
             self.restarts += 1
             self._end()
         try:
-            # -P: a file beside the program must not take the place of a package with the same name.
+            # -P: a file in the program's folder must not replace a package of the same name.
             self._process = Child([self._python, "-P", str(SERVER), str(self._backend.program)], piped=True)
         except OSError as error:
             raise PlatformError(
@@ -222,13 +222,13 @@ _unshared = itertools.count()
 def take(
     backend: Backend, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True
 ) -> ModelProcess:
-    """Add a user to the process for a backend and a configuration, and return the process. Pair each call with `drop`.
+    """Return the process for a backend and a configuration, and count one more user. Pair each call with `drop`.
 
     The process may not have started yet.
 
     Args:
         backend, config, python: As for `ModelProcess`.
-        shared: Whether all users of the same configuration get the same process; if not, this user gets a fresh one.
+        shared: Whether all users of the same configuration share a process. If not, this user gets a new one.
     """
     with _sharing:
         key = json.dumps(
@@ -250,11 +250,11 @@ def is_shared(process: ModelProcess) -> bool:
 
 
 def drop(process: ModelProcess, *, linger: bool = False) -> None:
-    """Remove one user of `process`. A process without users ends.
+    """Count one user of `process` less. A process without users ends.
 
     Args:
         process: The process.
-        linger: Whether the process ends only after `LINGER` seconds without a user, because one is likely to return.
+        linger: Whether the process ends only after `LINGER` seconds without a user, because a user is likely to return.
     """
     with _sharing:
         key = next((key for key, known in _processes.items() if known is process), None)
@@ -273,10 +273,10 @@ def drop(process: ModelProcess, *, linger: bool = False) -> None:
 
 
 def _end_unused(key: str) -> None:
-    """End a process that nobody has taken again."""
+    """End a process that has had no user for `LINGER` seconds."""
     with _sharing:
         if _timers.get(key) is not threading.current_thread():
-            return  # somebody took it in the last moment
+            return  # a new user has taken the process at the last moment
         del _timers[key], _users[key]
         process = _processes.pop(key)
     process.close()

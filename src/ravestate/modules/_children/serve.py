@@ -1,7 +1,7 @@
-"""The process of one model: it answers requests on standard input, one after another.
+"""The main program of a model's process: it answers requests from standard input, one after another.
 
 `process` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. The program is a
-file, or a folder with ``__init__.py`` and files that it imports (``from . import ...``).
+file, or a folder with ``__init__.py`` and the files that it imports (``from . import ...``).
 
 The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by as many
 bytes as the line's ``size`` says. The process ends when standard input ends, so it also ends when its parent ends.
@@ -22,7 +22,7 @@ def main() -> None:
     """Load the backend, and answer requests until standard input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then closes this process
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # libraries print to the errors, so that standard output has only answers
+    os.dup2(2, 1)  # output of the libraries goes to standard error, so that standard output has only answers
     requests = os.fdopen(os.dup(0), "rb")
     config, _ = _read(requests)
     try:
@@ -44,7 +44,7 @@ def main() -> None:
 
 
 def _program(path: Path) -> Any:
-    """Import a file or a folder, under a name that no package has."""
+    """Import a file or a folder, under a name that no other package has."""
     file, folders = (path / "__init__.py", [str(path)]) if path.is_dir() else (path, None)
     spec = importlib.util.spec_from_file_location("ravestate_backend", file, submodule_search_locations=folders)
     assert spec is not None and spec.loader is not None

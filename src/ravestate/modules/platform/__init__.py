@@ -1,1 +1,1 @@
-"""Platform modules. A platform, such as a console, is a place for an agent: it connects devices to modalities."""
+"""Platform modules. A platform, for example the console, connects an agent with its users or with devices."""

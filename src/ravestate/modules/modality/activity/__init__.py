@@ -1,4 +1,4 @@
-"""Recognise a person's activity, such as waving or rowing, by the movement of their body."""
+"""Recognise a person's activity, for example waving or rowing, by the movement of their body."""
 
 from __future__ import annotations
 

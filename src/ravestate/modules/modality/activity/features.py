@@ -1,4 +1,4 @@
-"""The features of a normalised movement. They do not depend on its tempo, or on the time at which it starts."""
+"""Compute the features of a normalised movement. They do not depend on its tempo, or on when it starts."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 LEFT_WRIST, RIGHT_WRIST = 3, 4
 TRACKS = 12
-"""The number of coordinates whose pairwise correlations are features: wrists, height and depth of the knees, depth of the
-torso, rise."""
+"""The number of coordinates whose pairwise correlations are features. These are the wrists, the height and depth of the
+knees, the depth of the torso, and the rise."""
 
 
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
-    """Return the features. A feature is NaN if the joints that it needs are not visible.
+    """Return the features of a movement. A feature is NaN if the joints that it needs are not visible.
 
     The features are the mean place of each joint, the size of its movement, and the correlations between pairs of
     coordinates. Next come the rotations of the wrists, the distance between them, and their distances from the face.

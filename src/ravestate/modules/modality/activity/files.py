@@ -1,8 +1,8 @@
-"""Movements in files: the landmarks of a body over time, and the folder of taught activities.
+"""Read and write movements: files with the landmarks of a body over time, and the folder of taught activities.
 
 A file of landmarks is a numpy archive (``.npz``) with ``times`` (T,) in seconds and ``points`` (T, 33, 4), see `Pose`.
-An optional ``name`` is the activity. The folder of taught activities has one such file for each demonstration, and no
-pictures.
+The optional ``name`` is that of the activity. The folder of taught activities has one such file for each demonstration,
+and no pictures.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ LONGEST = 100
 
 
 def folder_of(folder: Path | None) -> Path:
-    """Return the folder of taught activities: the folder in the settings, or else one in the user's data folder."""
+    """Return the folder of taught activities: `folder`, or by default one in the user's data folder."""
     return user_folder("data") / "activities" if folder is None else folder.expanduser()
 
 
 def read(file: Path) -> tuple[str, tuple[Pose, ...]]:
-    """Return the name (may be empty) and the poses in a file of landmarks.
+    """Return the activity's name (may be empty) and the poses in a file of landmarks.
 
     Raises:
         PlatformError: The file cannot be read, or is not a file of landmarks.
@@ -52,7 +52,7 @@ def read(file: Path) -> tuple[str, tuple[Pose, ...]]:
 
 
 def write(file: Path, poses: Sequence[Pose], name: str = "") -> None:
-    """Write poses into a file of landmarks, with times from 0 on.
+    """Write poses into a file of landmarks. The times in the file begin at 0.
 
     Raises:
         PlatformError: The file cannot be written.
@@ -71,7 +71,7 @@ def write(file: Path, poses: Sequence[Pose], name: str = "") -> None:
 
 
 def taught_in(folder: Path, known: Recogniser) -> Iterator[tuple[Path, str]]:
-    """Teach a recogniser all demonstrations in a folder. Yield each file that is left out, with the reason."""
+    """Teach a recogniser all demonstrations in a folder. Yield each file that it cannot learn, with the reason."""
     for file in sorted(folder.glob(f"*{SUFFIX}")):
         try:
             name, poses = read(file)
@@ -83,7 +83,7 @@ def taught_in(folder: Path, known: Recogniser) -> Iterator[tuple[Path, str]]:
 
 
 def files_of(folder: Path) -> dict[str, list[Path]]:
-    """Return the name of each activity in a folder of taught activities, with its files. Damaged files are left out."""
+    """Return the activities in a folder of taught activities: name → files. Skip damaged files."""
     found: dict[str, list[Path]] = {}
     for file in sorted(folder.glob(f"*{SUFFIX}")):
         try:

@@ -1,4 +1,4 @@
-"""The poses of the last seconds."""
+"""A film: the poses of the last seconds."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST = 2000
 
 
 class Film:
-    """The poses of one body in the last `LENGTH` seconds, oldest first. A film never changes."""
+    """The poses of one body in the last `LENGTH` seconds, oldest first. Immutable."""
 
     __slots__ = ("poses",)
 
@@ -26,7 +26,7 @@ class Film:
         return f"Film({len(self.poses)} poses, {self.poses[-1].at - self.poses[0].at:.1f} s)"
 
     def with_pose(self, pose: Pose) -> Film:
-        """Return the film with one more pose. A pose that is older than the last pose begins a new film."""
+        """Return the film with one more pose. A pose that is older than the last one begins a new film."""
         if self.poses and pose.at <= self.poses[-1].at:
             return self if pose.at == self.poses[-1].at else Film((pose,))
         first = bisect_left(self.poses, pose.at - LENGTH, key=_time)

@@ -1,4 +1,4 @@
-"""The module activity: its records, settings, signals and slots."""
+"""The names of `activity`: its records, its settings, its module, its signals and slots."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from .recogniser import Recogniser
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """An activity that somebody performed before the camera."""
+    """An activity that somebody performed in front of the camera."""
 
     name: str
-    """The spoken name, such as ``waving`` or ``playing the guitar``."""
+    """The spoken name, for example ``waving`` or ``playing the guitar``."""
     confidence: float
     """0 to 1."""
     start: float
-    """Seconds on the context's clock."""
+    """Seconds on the context's clock, like `end`."""
     end: float
     others: Mapping[str, float] = field(default_factory=dict[str, float])
-    """The next best names, with their confidence."""
+    """The next most likely names, with their confidence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """The name of the movement that the agent has just seen."""
+    """A user's name for the movement that the agent saw between two times."""
 
     name: str
     start: float
-    """Seconds on the context's clock."""
+    """Seconds on the context's clock, like `end`."""
     end: float
 
 
@@ -47,7 +47,7 @@ class Settings(rs.Settings):
     window: Annotated[float, Field(ge=1.0, le=10.0)] = 3.0
     """The length of the movement for one recognition, in seconds."""
     step: Annotated[float, Field(gt=0)] = 0.5
-    """Seconds from one recognition to the next."""
+    """The seconds from one recognition to the next."""
     folder: Path | None = None
     """The folder of taught movements; by default ``activities`` in your data folder."""
 
@@ -55,17 +55,17 @@ class Settings(rs.Settings):
 module = rs.Module("activity", settings=Settings)
 
 posed: rs.Signal[Pose] = module.signal("posed", payload=Pose, input=True)
-"""A camera has seen a body. A platform or `visionio` emits this signal for each frame with a body."""
+"""A camera sees a body. A platform or `visionio` emits this signal for each frame with a body."""
 
 label: rs.Signal[str] = module.signal("label", payload=str, input=True)
 """An external recogniser has named an activity. The name may have the form ``playing_guitar``."""
 
 recognised: rs.Signal[Activity] = module.signal("recognised", payload=Activity, input=True)
-"""Somebody performs an activity that the agent knows. While the activity goes on, the signal comes every `step` seconds.
-For an unknown movement, there is no signal."""
+"""Somebody is performing an activity that the agent knows. Until they stop, the signal is raised every `step` seconds.
+An unknown movement does not raise it."""
 
 taught: rs.Signal[Lesson] = module.signal("taught", payload=Lesson, input=True)
-"""A user has named the movement between two times. The recogniser learns it from the poses of that time."""
+"""A user has named the movement between two times. The recogniser learns it from the poses between these times."""
 
 in_view: rs.Slot[bool] = module.flag("in_view", input=True)
 """Whether the camera sees a body."""
@@ -83,4 +83,4 @@ due: rs.Signal[float] = module.signal("due", payload=float, keep="latest")
 """It is time for a recognition. The payload is the time of the newest pose."""
 
 looked: rs.Signal[None] = module.signal("looked", keep="latest")
-"""A pose has come."""
+"""A new pose has come."""

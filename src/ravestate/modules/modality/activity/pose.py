@@ -20,7 +20,7 @@ class Pose:
     """The landmarks of one body at one time. Two poses are equal only if they are the same object."""
 
     at: float
-    """Seconds, on the context's clock or from the beginning of the video."""
+    """Seconds, on the context's clock or since the beginning of the video."""
     points: NDArray[np.float32]
     """Shape (33, 4): x to the right, y down, z away from the camera, and visibility (0 to 1). All three axes have the
     same unit, for example the height of the picture."""
@@ -35,7 +35,7 @@ def pose_of(points: object, at: float, width: float, height: float) -> Pose:
         width, height: The size of the picture, in pixels.
 
     Raises:
-        PlatformError: These are not such landmarks.
+        PlatformError: The points are not such landmarks.
     """
     import numpy as np
 
@@ -46,7 +46,7 @@ def checked(points: object) -> NDArray[np.float32]:
     """Return landmarks as an array of shape (33, 4).
 
     Raises:
-        PlatformError: These are not such landmarks.
+        PlatformError: The points are not numbers of this shape.
     """
     import numpy as np
 

@@ -2,10 +2,11 @@
 
 Each activity is a Gaussian with its own mean and deviation for each feature. All activities share one correlation of
 features. A movement belongs to the activity that makes it most probable. The movement is unknown if it is too far from
-that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser tries both
-sides of the body.
+that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser tries the
+movement and its mirror image.
 
-A new activity needs few demonstrations, because only its mean is new. It has the deviations of an average activity.
+A new activity needs few demonstrations, because they determine only its mean. Its deviations are those of an average
+activity.
 """
 
 from __future__ import annotations
@@ -26,21 +27,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OWN = 0.9
-"""The share of an activity's own variance in its deviations. The rest is the variance of an average activity."""
+"""The weight of an activity's own variance in its deviations. The variance of an average activity has the rest."""
 RIDGE = 0.05
-"""A variance to add to every feature, and the share by which all correlations shrink."""
+"""This variance is added to every feature, and all correlations shrink by this share."""
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""The head start of a taught activity over the starter set's activities, as a cost (see `_compared`)."""
+"""This is subtracted from the cost of a taught activity, to give it a head start (see `_compared`)."""
 LIMIT = 4.0
-"""The greatest distance from a taught activity: the mean squared deviation of the features."""
+"""A movement up to this distance from a taught activity may belong to it (mean squared deviation of the features)."""
 REMEMBERED = 64
 """The number of inverse matrices to keep. Each set of visible features needs one matrix."""
 RUNNERS_UP = 3
-"""The maximum number of next best names."""
+"""The maximum number of next most likely names."""
 FAR = 3.0
-"""The greatest distance of a next best activity, as a multiple of the limit. Farther activities look too different."""
+"""A next most likely activity may be this many times as far away as the limit. Farther activities look too
+different."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,34 +54,35 @@ class Recognition:
     confidence: float = 0.0
     """0 to 1."""
     others: tuple[tuple[str, float], ...] = ()
-    """The next best names, with their confidence."""
+    """The next most likely names, with their confidence."""
     nearest: str = ""
-    """The most probable activity, even if the movement is too far from this activity."""
+    """The most probable activity, even if the movement is too far from it. Empty for one of the *other* movements."""
     distance: float = float("inf")
-    """The distance from the nearest activity (mean squared deviation of the features), as a multiple of the limit."""
+    """The distance from the most probable activity (mean squared deviation of the features), divided by the limit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Starter:
-    """The activities that the recogniser knows from the beginning."""
+    """The activities that the recogniser knows from the beginning, as Gaussians."""
 
     names: tuple[str, ...]
-    """A name for each Gaussian; empty for a movement that is none of the activities."""
+    """The name of each activity; empty for one of the *other* movements."""
     means: NDArray[Any]
-    """(activities, features): the means of normalised features."""
+    """(activities, features): the means of the normalised features."""
     deviations: NDArray[Any]
+    """(activities, features): the deviations of the normalised features."""
     centre: NDArray[Any]
-    """(features,): the values to subtract from features, to normalise them."""
+    """(features,): to normalise features, subtract these values."""
     size: NDArray[Any]
-    """(features,): the values by which to divide the features after the subtraction."""
+    """(features,): then divide by these values."""
     usual: NDArray[Any]
     """(features,): the deviations of an average activity."""
     correlation: NDArray[Any]
     """(features, features): the correlation of features."""
     limit: float
-    """The greatest distance from a known activity."""
+    """A movement farther than this from an activity does not belong to it."""
     heat: float
-    """The divisor of log likelihoods that calibrates the confidence."""
+    """Log likelihoods are divided by this number, to calibrate the confidence."""
 
     @classmethod
     def load(cls) -> Starter:
@@ -100,8 +103,8 @@ class Starter:
         """Return a starter set with neutral `limit` and `heat`.
 
         Args:
-            examples: Name → features of performances.
-            others: Features of performances of movements that are none of the activities, one group for each movement.
+            examples: The features of the performances of each activity, by the activity's name.
+            others: The features of the performances of each *other* movement.
         """
         np = numpy()
         names = (*examples, *("" for _ in others))
@@ -158,7 +161,7 @@ class Recogniser:
 
         Args:
             name: A new name, or the name of a known activity.
-            poses: The demonstration, of about three seconds.
+            poses: The poses of the demonstration, which lasts about three seconds.
         """
         skeleton = skeleton_of(poses)
         if skeleton is None:
@@ -169,7 +172,7 @@ class Recogniser:
     def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
         """Learn an activity from the features of a demonstration, and the features of its mirror image.
 
-        Demonstrations may use the left or the right hand. The recogniser takes the side that is nearer to the other
+        Demonstrations may use the left or the right hand. The recogniser chooses the side that is nearer to the earlier
         demonstrations.
         """
         np, group = self._np, self._taught.setdefault(name, [])
@@ -185,7 +188,7 @@ class Recogniser:
         """Return the activity in a movement.
 
         Args:
-            poses: The poses of one body, of about three seconds.
+            poses: The poses of one body in about three seconds.
         """
         skeleton = skeleton_of(poses)
         if skeleton is None:
@@ -193,7 +196,7 @@ class Recogniser:
         return self.recognise_features((features_of(skeleton), features_of(skeleton.mirrored())))
 
     def recognise_features(self, sides: Sequence[NDArray[Any]]) -> Recognition:
-        """Return the activity for the features of a movement.
+        """Return the activity in a movement, from its features.
 
         Args:
             sides: The features of a movement, and the features of its mirror image.
@@ -226,7 +229,7 @@ class Recogniser:
         taught = {name: np.array(group) for name, group in self._taught.items()}
         self._names = (*starter.names, *taught)
         means = [_mean(group) for group in taught.values()]
-        # The mean of a few demonstrations is uncertain, so a movement may be further away from it.
+        # The mean of a few demonstrations is uncertain, so a movement may be farther away from it.
         wider = [SPREAD * starter.usual * np.sqrt(1 + 1 / len(group)) for group in taught.values()]
         self._means = np.stack([*starter.means, *means])
         self._deviations = np.stack([*starter.deviations, *wider])

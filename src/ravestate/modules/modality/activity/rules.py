@@ -1,4 +1,4 @@
-"""The rules: following a body, recognising its movement, and learning from users."""
+"""The rules that follow a body, recognise its movement, and learn from users."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .recogniser import Recogniser
 GONE = 2.0
 """After this many seconds without a pose, the agent assumes that nobody is in view."""
 BEGINNING = 0.6
-"""The share of a window that is enough for the first recognition."""
+"""For the first recognition, this share of `window` seconds of movement is enough."""
 
 
 @module.rule(when=rs.startup, writes=(model, known), background=True)
@@ -69,7 +69,7 @@ async def follow(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=looked.min_age(GONE).max_age(None), writes=in_view, detached=True, background=True)
 async def lose_sight(ctx: rs.RuleContext) -> None:
-    """Note that nobody is in view any more."""
+    """Note that nobody is in view any longer."""
     ctx[in_view] = False
 
 
@@ -90,7 +90,7 @@ def recognise(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=label.max_age(None).detached(), emits=recognised, detached=True, background=True)
 async def take_over(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Take over the label of an external recogniser."""
+    """Pass on the label of an external recogniser as a recognised activity."""
     name = clean(ctx.payload(label))
     if not name:
         return rs.Resign("the label is empty")
@@ -112,10 +112,10 @@ def learn(ctx: rs.RuleContext) -> rs.Resign | None:
     if found is None or not name:
         return rs.Resign("there is no recogniser, or no name")
     if not found.teach(name, poses):
-        return rs.Resign(f"the {len(poses)} poses of that time show too little of a body")
+        return rs.Resign(f"the {len(poses)} poses between these times show too little of a body")
     ctx[known] = found.names
     try:
         ctx.log.info("learnt %s: %s", name, keep(folder_of(ctx.settings.folder), name, poses))
     except PlatformError as error:
-        ctx.log.error("%s", error)  # without a file, the agent knows the movement until it ends
+        ctx.log.error("%s", error)  # without a file, the agent forgets the movement when it ends
     return None

@@ -1,4 +1,4 @@
-"""A movement without its camera: a skeleton of unit size that faces the viewer, at a fixed rate of frames."""
+"""Normalise a movement: a skeleton of unit size that faces the viewer, at a fixed frame rate, whatever the camera."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 RATE = 20.0
-"""The frames per second of a normalised movement."""
+"""The number of frames per second of a normalised movement."""
 VISIBLE = 0.5
-"""The minimum visibility of a landmark, below which the landmark counts as invisible."""
+"""A landmark with a lower visibility counts as invisible."""
 PRESENT = 0.5
 """The minimum share of frames in which a joint must be visible."""
 FEWEST = 8
@@ -25,13 +25,15 @@ SHORTEST = 1.0
 
 NOSE, SHOULDERS, HIPS = 0, (11, 12), (23, 24)
 USED = (0, 11, 12, 13, 14, 15, 16, 23, 24, 25, 26, 27, 28)
-"""The landmarks that count."""
+"""The landmarks that are used; the others are ignored."""
 JOINTS = (0, 13, 14, 15, 16, 25, 26, 27, 28)
 """The landmarks of the joints that move: head, elbows, wrists, knees, ankles; the left joint of a pair first."""
 ARMS = 5
-"""The number of joints, at the start of `JOINTS`, relative to the shoulders. The others are relative to the hips."""
+"""The number of joints of the head and the arms, which come first in `JOINTS`. Their places are relative to the
+shoulders, those of the legs to the hips."""
 WIDTH = 0.72
-"""The usual distance between the shoulders, in torso lengths: the scale if the hips are not visible."""
+"""The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are
+visible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,18 +41,18 @@ class Skeleton:
     """A normalised movement of T frames. The torso has length 1; x points to the performer's left, y up, z forward."""
 
     joints: NDArray[np.float64]
-    """(T, 9, 3): `JOINTS`, relative to the middle of the shoulders, or of the hips for the legs."""
+    """(T, 9, 3): the places of `JOINTS`, relative to the middle of the shoulders, or for the legs, of the hips."""
     present: NDArray[np.bool_]
     """(9,): whether a joint is visible for long enough."""
     torso: NDArray[np.float64]
     """(T, 3): from the middle of the hips to the middle of the shoulders."""
     rise: NDArray[np.float64]
-    """(T,): the height of the shoulders' middle in the picture, relative to its mean."""
+    """(T,): the height of the middle of the shoulders in the picture, relative to its mean."""
     has_hips: bool
     """Whether the hips are visible. If they are not, `torso` is meaningless."""
 
     def mirrored(self) -> Skeleton:
-        """Return the movement of the other side: left becomes right."""
+        """Return the mirror image of the movement: left becomes right."""
         swapped = [0, *(i + 1 if i % 2 else i - 1 for i in range(1, len(JOINTS)))]
         flip = [-1.0, 1.0, 1.0]
         return Skeleton(
@@ -61,9 +63,9 @@ class Skeleton:
 def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
     """Return the normalised movement of some poses; None if they are too few, or the shoulders are not visible.
 
-    The result does not depend on the camera's distance, side and direction: the origin moves with the body, and the
-    unit is the torso. The function turns the body about the vertical until its shoulders are, on average, parallel to the
-    picture.
+    The result does not depend on the camera's distance, side and direction. The origin moves with the body, and the
+    unit is the length of the torso. The function turns the body about the vertical axis until its shoulders are, on
+    average, parallel to the picture.
 
     Args:
         poses: The poses of one body, in the order of their times.
@@ -107,9 +109,9 @@ def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
 def _resampled(
     times: NDArray[np.float64], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the places (T, 33, 3) at `RATE`, and the share of the time for which each landmark is visible (33,).
+    """Return the places of the landmarks (T, 33, 3) at `RATE`, and in which share of the frames each is visible (33,).
 
-    While a landmark is invisible, its place moves in a straight line.
+    While a landmark is invisible, its place is interpolated linearly.
     """
     import numpy as np
 

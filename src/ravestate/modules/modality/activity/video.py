@@ -1,4 +1,4 @@
-"""The poses in a video file, found by the vision worker of `visionio`."""
+"""Find the poses in a video file, with the vision worker of `visionio`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .files import SUFFIX, read
 from .pose import Pose, pose_of
 
 RATE = 12.0
-"""The number of pictures to look at in a second of video."""
+"""How many pictures to look at per second of video."""
 
 
 def poses_in(file: Path, python: Path | None = None, progress: Callable[[float], None] = lambda _: None) -> list[Pose]:

@@ -1,4 +1,4 @@
-"""A long movement as windows of a few seconds."""
+"""Split a long movement into windows of a few seconds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def windows(poses: Sequence[Pose], length: float, step: float) -> Iterator[tuple
     Args:
         poses: The poses, in the order of their times.
         length: The length of a window, in seconds.
-        step: Seconds from one window to the next.
+        step: The seconds from the beginning of one window to that of the next.
     """
     if not poses:
         return

@@ -1,4 +1,4 @@
-"""The agent's feelings: shy, surprised, happy, affectionate, sad. They come by chance, or from the user's words."""
+"""The agent's feelings: shy, surprised, happy, affectionate, sad. They are spontaneous, or fit the user's words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Spontaneous feelings: certain words of the user trigger them at random."""
+"""Spontaneous feelings: certain words of the user are occasions that trigger them at random."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def by_chance(sentences: Sequence[str], likely: Mapping[Feeling, float], rng: ra
 
     Args:
         sentences: The user's words, in the normal form.
-        likely: The probability of each feeling on its occasion. The occasions are, in this order: a goodbye, a greeting
-            or thanks, words about the agent, a question. If an utterance has several occasions, the first counts.
-        rng: The source of chance.
+        likely: The probability of each feeling on its occasion. The occasions are, in the order of `OCCASIONS`: a
+            goodbye, a greeting or thanks, words about the agent, a question. Only the first one in an utterance counts.
+        rng: The random number generator.
 
     Example:
         >>> by_chance(["What are you up to today?"], {"shy": 1.0}, random.Random(0))

@@ -1,4 +1,4 @@
-"""The module emotion: its settings, signals and slot."""
+"""The names of `emotion`: its settings, its module, its signals and slots."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Settings(rs.Settings):
 module = rs.Module("emotion", requires=[rawio, interloc], settings=Settings)
 
 shy = module.signal("shy")
-"""The agent is shy: the user pays it a compliment, or talks about it."""
+"""The agent is shy, because the user pays it a compliment or talks about it."""
 
 surprised = module.signal("surprised")
 """The agent is surprised."""
@@ -49,7 +49,7 @@ sad = module.signal("sad")
 """The agent is sad, because the user is sad or has insulted it."""
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
-"""The agent's last feeling; None before the first."""
+"""The agent's last feeling; None before the first one."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances of the user during which their last words of sorrow still count."""
+"""For how many further utterances the user's last words of sorrow still count."""

@@ -1,4 +1,4 @@
-"""A function that recognises the agent's feeling that fits the user's words."""
+"""Find out which feeling of the agent fits the user's words."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ SHARED: Mapping[str, Feeling] = {
     "joy": "happy",
     "astonishing": "surprised",
 }
-"""The agent's feeling for each class of ``feelings.yaml``, the strongest first. Other classes raise no feeling."""
+"""The agent's feeling for each class in ``feelings.yaml``, the strongest class first. Other classes raise no
+feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
-"""Classes of sentences that rule out joy in the same text, as in "I got my results, and I failed"."""
+"""If a text has a sentence of these classes, joy does not count: "I got my results, and I failed"."""
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),

@@ -19,7 +19,7 @@ from .names import Settings, affectionate, felt, happy, module, sad, shy, sorrow
 from .recogniser import recognise, sorrowful
 
 CHEERFUL: frozenset[Feeling] = frozenset({"happy", "surprised"})
-"""Feelings that would hurt a sad user."""
+"""Feelings that would hurt a sad user, so the agent does not show them."""
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
     "shy": shy, "surprised": surprised, "happy": happy, "affectionate": affectionate, "sad": sad,
@@ -41,9 +41,9 @@ def learn(ctx: rs.RuleContext) -> None:
 def be_moved(ctx: rs.RuleContext) -> None:
     """Raise the feeling that fits the user's words, or a spontaneous feeling.
 
-    After words of sorrow, some utterances raise neither a cheerful nor a spontaneous feeling. The encoder takes a few
-    milliseconds, so this rule runs in a thread. Without the encoder, only sentences that equal an example raise a
-    feeling.
+    After words of sorrow, the next few utterances raise neither a cheerful nor a spontaneous feeling. The sentence
+    model takes a few milliseconds, so this rule runs in a thread. Without the model, only sentences that equal an
+    example raise a feeling that fits them.
     """
     settings: Settings = ctx.settings
     text = ctx.payload(rawio.input.changed)

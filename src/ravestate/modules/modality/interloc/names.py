@@ -1,4 +1,4 @@
-"""The module interloc: its slot and its collection."""
+"""The names of `interloc`: its module, its slot, its collections and its signals."""
 
 from __future__ import annotations
 
@@ -28,14 +28,15 @@ agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the agent's life file."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""The users who are present. The platform chooses a key for each user: key → the user's name, or None while the name is
-unknown. The name of a user whom a platform has recognised is a `Recognised`."""
+"""The users who are present. The platform chooses a key for each user. The item is the user's name, or None while the
+name is unknown. If a platform has recognised the user, the name is a `Recognised`."""
 
 recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
 """A platform has recognised a user who was already present. The payload is their entry in `users`."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
-"""Topic, such as ``home`` or ``sister`` → known facts about the user. A module that learns facts writes them."""
+"""The known facts about the user, by topic, such as ``home`` or ``sister``. A module that learns facts writes them."""
 
 forgotten: rs.Signal[None] = module.signal("forgotten", input=True)
-"""Memory has forgotten the user, so all modules delete their data about this user. `persqa` raises the signal."""
+"""Memory has forgotten the user, so all modules delete their data about this user. `persqa` and the messengers raise
+it."""

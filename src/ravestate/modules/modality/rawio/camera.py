@@ -12,7 +12,7 @@ class Face:
     """A face that the agent sees in a picture of the user's camera.
 
     Attributes:
-        box: x, y, width and height, in shares of the picture's size (0 to 1), from the upper left corner.
+        box: x, y, width and height, as shares of the picture's width and height. (0, 0) is the upper left corner.
         name: The person's name; empty if the agent does not know it.
     """
 
@@ -23,11 +23,12 @@ class Face:
 class Camera(Protocol):
     """The camera of a user. The agent asks for each picture, so it gets no more pictures than it can look at.
 
-    A platform with a camera, such as a web page, puts one into `rawio.camera`. A module that sees takes its pictures.
+    A platform whose users have cameras, for example a web page, puts this object into `rawio.camera`. A module that
+    sees asks it for pictures.
     """
 
     async def next(self) -> bytes | None:
-        """Ask for a picture, and wait for it. Return a JPEG; None once the camera is off."""
+        """Ask for a picture, and wait for it. Return a JPEG, or None if the camera is off."""
         ...
 
     def mark(self, faces: Sequence[Face]) -> None:

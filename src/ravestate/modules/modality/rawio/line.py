@@ -1,4 +1,4 @@
-"""Sound in both directions: the line that joins the agent to a user's microphone and loudspeaker."""
+"""Sound in both directions: the line between the agent and a user's microphone and loudspeaker."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OUT_RATE = 24_000
 class Line(Protocol):
     """A microphone and a loudspeaker. All sound is mono PCM: 16 bits, signed, little-endian.
 
-    A platform that carries sound, such as a web page, puts a line into `rawio.sound`. A platform that recognises and
+    A platform that carries sound, for example a web page, puts a line into `rawio.sound`. A module that recognises and
     synthesises speech uses this line.
     """
 
@@ -26,7 +26,7 @@ class Line(Protocol):
 
     @property
     def ended(self) -> bool:
-        """Whether the user's sound has come to its end, as a recording does. Only silence follows."""
+        """Whether the user's sound has ended, because it was a recording. Only silence follows."""
         ...
 
     def blocks(self) -> AsyncIterator[bytes]:
@@ -43,7 +43,7 @@ class Line(Protocol):
 
     @property
     def played(self) -> float:
-        """The seconds of sound that the loudspeaker has played since the line was opened, without pauses."""
+        """How many seconds of sound the loudspeaker has played since the line was opened, without pauses."""
         ...
 
     async def drained(self) -> None:

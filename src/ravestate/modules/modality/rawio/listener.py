@@ -1,4 +1,4 @@
-"""The listener, which is the user's side of a conversation, and the rules that carry the agent's words to it."""
+"""The listener, which is the user's side of a conversation, and the rules that pass the agent's words to it."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ class Listener(Protocol):
     """The user's side of a conversation: it gets the agent's words."""
 
     def utter(self, text: str) -> None:
-        """Take a whole utterance of the agent."""
+        """Show the user a whole utterance of the agent."""
         ...
 
     def grow(self, piece: str) -> None:
-        """Take a piece of an utterance that is still growing."""
+        """Show the user a piece of an utterance that is still growing."""
         ...
 
     def fall_silent(self) -> None:
-        """End a growing utterance that no rule has written as a whole."""
+        """End a growing utterance, although no rule has written it as a whole."""
         ...
 
 
 def rest(text: str, pieces: str) -> str | None:
     """Return the part of an utterance that follows its pieces; None if the pieces belong to another utterance.
 
-    Space at the ends does not count, because the pieces of a model often end in a space that the utterance lacks.
+    Spaces at the ends do not count, because the pieces of a model often end in a space that the utterance lacks.
 
     Args:
         text: The whole utterance, from ``output``.
@@ -47,7 +47,7 @@ def rest(text: str, pieces: str) -> str | None:
 
 
 def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
-    """Declare the rules that carry ``output`` and ``piece`` to the `Listener` in a slot of the module."""
+    """Declare the rules that pass ``output`` and ``piece`` to the `Listener` in a slot of the module."""
 
     @module.rule(when=output.changed.max_age(None).detached(), reads=slot)
     async def show(ctx: rs.RuleContext) -> None:
@@ -63,6 +63,6 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
 
     @module.rule(when=speaking.false.max_age(None).detached(), reads=slot, background=True)
     async def end_piece(ctx: rs.RuleContext) -> None:
-        """End a growing utterance that no rule has written as a whole."""
+        """End a growing utterance, although no rule has written it as a whole."""
         if listener := ctx[slot]:
             listener.fall_silent()

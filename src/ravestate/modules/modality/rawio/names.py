@@ -1,4 +1,4 @@
-"""The module rawio: its slots and signals."""
+"""The names of `rawio`: its module, its slots and signals."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ output = module.slot("output", "", type=str, always=True)
 """The agent's last utterance. Each write is one whole utterance."""
 
 piece = module.signal("piece", payload=str)
-"""A piece of an unfinished utterance of the agent, for platforms that show the utterance as it grows. In the end, the
-rule that produces the pieces writes the whole utterance to `output`."""
+"""A piece of an unfinished utterance of the agent, for platforms that show the utterance while it grows. At the end,
+the rule that produces the pieces writes the whole utterance to `output`."""
 
 speaking = module.flag("speaking")
 """True while the agent is producing an utterance piece by piece."""
@@ -28,7 +28,8 @@ typing = module.signal("typing", input=True, keep="latest")
 """The user is typing. A platform that notices this emits the signal at each key press, or every few seconds."""
 
 reaction: rs.Signal[str] = module.signal("reaction", payload=str, input=True)
-"""The user has reacted to the agent's words with an emoji, as messengers allow."""
+"""The user has reacted to the agent's words with an emoji, on a messenger that allows this. The payload is the
+emoji."""
 
 picture: rs.Slot[Any] = module.slot("picture", None, always=True, input=True)
 """The last picture that the user showed: the bytes of an encoded picture (JPEG, PNG), or a path; None at first."""
@@ -47,4 +48,4 @@ hush: rs.Signal[None] = module.signal("hush", input=True, keep="latest")
 
 heard: rs.Slot[str] = module.slot("heard", "", type=str, always=True, input=True)
 """The part of the agent's last utterance that the user heard. A platform that speaks writes this part for each
-utterance, when the sound ends or is cut."""
+utterance, when the sound ends or is cut off."""

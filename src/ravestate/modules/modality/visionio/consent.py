@@ -1,4 +1,4 @@
-"""The rules of consent. They ask people whether the agent may remember their faces, store faces, and forget them."""
+"""The rules of consent. They ask for permission to remember a face, store it after a yes, and forget it on request."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .wishes import wish_of
 POLITE = 3.0
 """The pause between a person's name and the question whether the agent may remember their face (seconds)."""
 ANSWERED = 60.0
-"""The seconds for which this question waits for an answer."""
+"""An answer counts only within this many seconds after the question."""
 
 
 @module.rule(
@@ -68,7 +68,7 @@ def _open(ctx: rs.RuleContext) -> Question | None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=asking, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Drop the question when the agent says something else, because a later *yes* may answer that instead."""
+    """Drop the question when the agent says something else, because a later *yes* may be the answer to that."""
     question = ctx[asking]
     if question is None or not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
         return rs.Resign("there is no question, or the output has no words")
@@ -83,7 +83,7 @@ async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     emits=(agreed, refused, withdrawn),
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Notice an answer to the question, or a wish that the agent remember or forget a face."""
+    """Notice an answer to the question, or a user's wish that the agent remember or forget their face."""
     text, question = ctx.payload(rawio.input.changed), _open(ctx)
     wish = await asyncio.to_thread(wish_of, text)
     answer = yesno_of(text)
@@ -98,9 +98,9 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 
 REPLIES = (verbaliser.intent, rawio.output, visitors)
-"""The slots that a reply writes. The output is one of them, so that no other rule answers the same words."""
+"""The slots that a reply writes. `rawio.output` is one of them, so that no other rule answers the same words."""
 PRIORITY = 20.0
-"""The weight of the reply to a yes, above small talk. The reply to a no has more weight, and forgetting the most."""
+"""The weight of the reply to a yes, above small talk. The reply to a no has more weight, and forgetting has most."""
 
 
 @module.rule(when=agreed, reads=ontology.memory, writes=REPLIES, detached=True, weight=PRIORITY)
@@ -140,7 +140,7 @@ async def respect(ctx: rs.RuleContext) -> None:
     weight=PRIORITY + 2,
 )
 async def forget(ctx: rs.RuleContext) -> None:
-    """Remove a person's faces from memory. This works without a camera if the only user is a person in memory."""
+    """Remove a person's faces from memory. If the only user is a person in memory, this works without a camera."""
     visitor, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
     person, users = visitor.node if visitor is not None else None, list(ctx[interloc.users].values())
     if person is None and len(users) == 1 and isinstance(users[0], interloc.Recognised):
@@ -175,12 +175,12 @@ async def forget_person(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=left.max_age(None).detached(), reads=ontology.memory, background=True)
 async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a visit, store a new vector of a person who agreed earlier, because faces change."""
+    """After a visit, store a new vector of a person who has agreed earlier, because faces change."""
     settings: Settings = ctx.settings
     visitor, memory = ctx.payload(left), ctx[ontology.memory]
     vectors = visitor.good(max(0.7, settings.quality))[:1]
     if memory is None or not visitor.known or visitor.mistaken or not vectors:
-        return rs.Resign("there is nothing to file")
+        return rs.Resign("there is nothing to store")
 
     def file(graph: ontology.Graph) -> None:
         if people.has_faces(graph, visitor.node):

@@ -1,4 +1,4 @@
-"""The agent's end of the vision worker: it makes the worker open a camera and look at pictures."""
+"""The agent's interface to the vision worker: it makes the worker open a camera and look at pictures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WORKER = Backend(
     lambda reason: f". {MEND}" if "module" in reason else "",
 )
 PATIENCE = 30.0
-"""The longest time (seconds) that a look may take."""
+"""A look may take this many seconds."""
 
 _numbers = itertools.count(1)
 
@@ -41,11 +41,11 @@ class Eye:
 
     def __init__(self, python: Path | None = None) -> None:
         self.ended = False
-        """Whether a video or a folder has come to its end."""
+        """Whether a video or a folder has ended."""
         self.skipped = 0
-        """The number of the camera's pictures that were skipped, because newer pictures had come."""
+        """How many of the camera's pictures were skipped because newer ones had come."""
         self.waited = 0.0
-        """The time for which the last look waited for the camera (seconds)."""
+        """How many seconds the last look waited for the camera."""
         self._process: ModelProcess = process.take(WORKER, {"want": ["faces"]}, eyes_python(python))
         self._stream = str(next(_numbers))
         self._source: tuple[str, bool] | None = None
@@ -57,7 +57,7 @@ class Eye:
         return self._process
 
     async def open(self, source: str, *, loop: bool = False) -> bool:
-        """Open a camera: a device, a video file, or a folder. Return whether the camera is live.
+        """Open a camera: a device, a video file, or a folder. Return whether it is a live camera.
 
         Raises:
             PlatformError: The camera cannot be opened, or the worker cannot be started.
@@ -106,7 +106,7 @@ class Eye:
         self._pid = None
 
     def close(self) -> None:
-        """Close the camera. The worker ends with its last user."""
+        """Close the camera. If no other stream uses the worker, it ends."""
         if self._process.busy:  # a look of this or another stream is running, and the loop must not wait for its end
             threading.Thread(target=self._close, name="visionio-close", daemon=True).start()
         else:

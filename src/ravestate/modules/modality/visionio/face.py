@@ -1,4 +1,4 @@
-"""The records of the agent's sight: faces, poses, and looks at pictures."""
+"""The records of what the agent sees: faces, poses, and looks at pictures."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class FaceVec:
     Attributes:
         vector: The newest vector of this track.
         box: x, y, width and height (pixels).
-        track: The number of the track: the same face from picture to picture.
+        track: The number of the track, which follows the same face from picture to picture.
         person: The person in memory whose stored face is close enough; None if no person is close enough.
-        distance: The Euclidean distance to that person's nearest stored vector; None without a person.
-        quality: The visibility of the face in the picture that `vector` comes from (0 to 1).
-        fresh: Whether the vector comes from this picture, and not from an earlier picture.
-        time: The time of the picture (seconds on the context's clock); None for now.
+        distance: The Euclidean distance to that person's nearest stored vector; None if `person` is None.
+        quality: The visibility of the face in the picture from which `vector` comes (0 to 1).
+        fresh: Whether `vector` comes from this picture, and not from an earlier one.
+        time: The time of the picture (seconds on the context's clock); None means now.
     """
 
     vector: Vector
@@ -47,7 +47,7 @@ class Pose:
     """A body in a picture.
 
     Attributes:
-        landmarks: 33 points, each x, y, z and visibility, in shares of the picture's size; None without a body.
+        landmarks: 33 points, each x, y, z and visibility, as shares of the picture's size. None if there is no body.
         time: The time of the picture (seconds on the context's clock).
     """
 
@@ -67,7 +67,7 @@ class Look:
         size: The picture's width and height (pixels).
         tracks: The numbers of the faces in the picture.
         dark: Whether the picture is black.
-        dropped: The number of pictures so far that were skipped, because newer pictures had come.
+        dropped: How many pictures so far were skipped because newer ones had come.
     """
 
     time: float

@@ -1,4 +1,4 @@
-"""The camera of a platform, which holds the platform's newest picture."""
+"""The camera of a platform. It keeps only the newest picture."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Frame:
     Attributes:
         data: An encoded picture (JPEG, PNG), or raw pixels, row after row.
         shape: The height and the width of raw pixels; None for an encoded picture.
-        encoding: The kind of raw pixels, by ROS's names: one of `ENCODINGS`.
-        step: The bytes of a row of raw pixels; 0 if no bytes follow the last pixel of a row.
+        encoding: The kind of raw pixels, one of `ENCODINGS` (the names of ROS).
+        step: The length in bytes of a row of raw pixels, including padding; 0 if rows have no padding.
     """
 
     data: bytes
@@ -34,7 +34,7 @@ class Frame:
 
 
 class Frames:
-    """The pictures of a platform's camera, such as a web page or a robot. It keeps only the newest picture.
+    """The camera of a platform, for example of a web page or a robot. It keeps only the newest picture.
 
     Example:
         ::
@@ -47,15 +47,15 @@ class Frames:
 
     def __init__(self) -> None:
         self.dropped = 0
-        """The number of pictures that were dropped, because newer pictures had come."""
+        """How many pictures were dropped because newer ones had come."""
         self.closed = False
-        """Whether no more pictures come."""
+        """Whether the camera is closed, so that no more pictures come."""
         self._newest: Frame | None = None
         self._lock = threading.Lock()
         self._waiting: dict[str, tuple[asyncio.AbstractEventLoop, asyncio.Event]] = {}
 
     def put(self, data: bytes | bytearray | memoryview, shape: tuple[int, int] | None = None) -> None:
-        """Take a picture. Thread-safe.
+        """Accept a new picture, which replaces the previous one. Thread-safe.
 
         Args:
             data: An encoded picture (JPEG, PNG), or raw RGB pixels.
@@ -64,7 +64,10 @@ class Frames:
         self._put(Frame(bytes(data), shape))
 
     def put_message(self, message: Any) -> None:
-        """Take a picture of ROS: a message with the fields of ``sensor_msgs/Image`` or ``CompressedImage``. Thread-safe.
+        """Accept a new picture from ROS. Thread-safe.
+
+        Args:
+            message: A message with the fields of ``sensor_msgs/Image`` or ``CompressedImage``.
 
         Raises:
             PlatformError: The message's encoding is not in `ENCODINGS`.
@@ -89,13 +92,13 @@ class Frames:
             self._wake()
 
     def close(self) -> None:
-        """Note that no more pictures come. All people whom the agent sees then leave. Thread-safe."""
+        """Close the camera: no more pictures come. The agent then treats all visible people as gone. Thread-safe."""
         with self._lock:
             self.closed = True
             self._wake()
 
     async def next(self) -> Frame | None:
-        """Wait for a new picture, and take it. Return None once the camera is closed."""
+        """Wait for a new picture, and return it. Return None if the camera is closed."""
         while True:
             with self._lock:
                 frame, self._newest = self._newest, None
@@ -107,7 +110,7 @@ class Frames:
             await event.wait()
 
     async def taken(self) -> None:
-        """Wait until the newest picture has been taken, so that it is time for another picture."""
+        """Wait until `next` has returned the newest picture, so that the caller can `put` another one."""
         while True:
             with self._lock:
                 if self._newest is None or self.closed:

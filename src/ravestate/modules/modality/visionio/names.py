@@ -1,4 +1,4 @@
-"""The module visionio: its settings, signals and slots."""
+"""The names of `visionio`: its settings, its module, its signals and slots."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ class Settings(rs.Settings):
     """The settings of visionio: the camera, and the limits for recognising faces."""
 
     source: str = "default"
-    """The camera: ``default``, a device (``/dev/video0``), a video file, a folder of pictures; empty for none. A platform's
-    camera in ``visionio.camera`` takes priority."""
+    """The camera: ``default``, a device (``/dev/video0``), a video file, or a folder of pictures. Empty means no
+    camera. A platform's camera in ``visionio.camera`` takes priority."""
     loop: bool = False
     """Whether a video file or a folder begins again at its end."""
     python: Path | None = None
     """The Python interpreter with the packages of the eyes, by default that of ``make eyes`` or this interpreter."""
     fps: Annotated[float, Field(gt=0, le=60)] = 10.0
-    """The maximum number of pictures that the agent looks at in a second."""
+    """The agent looks at no more than this many pictures per second."""
     load: Annotated[float, Field(gt=0, le=1)] = 0.6
-    """The maximum share of the time for looking. On a slow machine, the agent looks at fewer pictures."""
+    """The share of the time that looking may take. So on a slow machine, the agent looks at fewer pictures."""
 
     threshold: Annotated[float, Field(gt=0, le=2)] = 0.55
     """The maximum Euclidean distance of two vectors of the same person."""
     sure: Annotated[int, Field(ge=1, le=20)] = 3
-    """The number of vectors in a row that must agree before the agent decides whom it sees."""
+    """The agent decides whom it sees when this many vectors in a row agree."""
     quality: Share = 0.3
     """The minimum visibility of a face (0 to 1) for its vector to count."""
     gone_after: Seconds = 4.0
-    """The seconds without a person's face after which the person counts as gone."""
+    """A person counts as gone if the agent has not seen their face for this many seconds."""
     history: Annotated[int, Field(ge=10)] = 100
     """The number of faces that ``visionio.history`` keeps."""
     most: Annotated[int, Field(ge=1)] = 8
@@ -59,37 +59,38 @@ facevec: rs.Signal[FaceVec] = module.signal("facevec", payload=FaceVec, input=Tr
 """A face in a picture, with its vector. The signal is raised for each face in each picture."""
 
 sighted: rs.Signal[Sighting] = module.signal("sighted", payload=Sighting, limit=100)
-"""There is a new picture. The agent does not know yet to whom the faces belong."""
+"""The faces in a new picture. The agent does not know yet to whom they belong."""
 
 looked: rs.Signal[Look] = module.signal("looked", payload=Look, input=True, keep="latest")
 """The agent has looked at a picture, with or without faces."""
 
 pose: rs.Signal[Pose] = module.signal("pose", payload=Pose, input=True, limit=1000)
-"""The body in a picture. The signal is raised for each picture, if a rule of the agent listens to it."""
+"""The body in a picture. The signal is raised for each picture if a rule of the agent listens to it."""
 
 camera: rs.Slot[Frames | None] = module.slot("camera", None, type=cast("type[Frames]", object), input=True)
-"""The camera into which a platform, such as a web page or a robot, puts pictures; None without a camera."""
+"""The camera into which a platform puts pictures, for example a web page or a robot; None if there is none."""
 
 history: rs.Slot[tuple[FaceVec, ...]] = module.slot("history", ())
 """A ring buffer of the last faces with new vectors, oldest first."""
 
 visitors: rs.Collection[Visitor] = module.collection("visitors")
-"""The people whom the agent sees: a key of `interloc.users` → the person's node, tracks and vectors."""
+"""The people whom the agent sees, by their keys in `interloc.users`."""
 
 met: rs.Slot[frozenset[str]] = module.slot("met", frozenset())
-"""The keys of users from a platform whose faces the agent has seen in this conversation."""
+"""The keys of the platform's users whose faces the agent has seen in this conversation."""
 
 left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
 """A person has left. The payload is the visitor's last record."""
 
 named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
-"""A person whom the agent sees has told their name. The payload is their node, which memory now keeps."""
+"""A person whom the agent sees has told their name. The payload is their node, with the name."""
 
 asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Question]", object))
-"""The question whether the agent may remember a face, until there is an answer."""
+"""The agent's open question whether it may remember a face; None if there is none."""
 
 agreed: rs.Signal[str] = module.signal("agreed", payload=str)
-"""A visitor agrees that the agent remembers their face. The payload is their key."""
+"""A visitor allows the agent to remember their face, or asks it to. The payload is their key, empty if nobody is
+seen."""
 
 refused: rs.Signal[str] = module.signal("refused", payload=str)
 """A visitor does not want the agent to remember their face. The payload is their key."""

@@ -1,4 +1,4 @@
-"""Faces in memory: functions that store, find and forget faces in the graph. Only people who agreed have faces."""
+"""Functions that store, find and forget faces in memory. Memory has faces only of people who agreed."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ RELATION = "has_face"
 """The relation from a person to their faces."""
 NUMBERS = 128
 MERGE = 0.45
-"""The distance up to which two faces surely belong to one person. If two people have the same name and such faces,
-memory merges them."""
+"""Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
+merges them."""
 MARGIN = 0.05
-"""How much farther the second nearest person must be than the nearest person. Otherwise, the agent recognises
+"""The second nearest person must be this much farther away than the nearest one. Otherwise, the agent recognises
 nobody."""
 
 
@@ -34,7 +34,10 @@ class Nearest:
 
 
 def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest | None:
-    """Return the person with the nearest vector. Return None beyond `threshold`, or if two people are about as near."""
+    """Return the person with the nearest vector.
+
+    Return None if nobody is within `threshold`, or if two people are about equally near.
+    """
     faces = stored(graph)
     ranked = sorted((dist(vector, known), number) for number, (_, known) in enumerate(faces))
     if not ranked or ranked[0][0] > threshold:
@@ -78,11 +81,11 @@ def has_faces(graph: Graph, person: Node) -> bool:
 
 
 def keep(graph: Graph, person: Node, vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[Node, int]:
-    """Store a person's vectors in memory, and merge other people of the same name and face into this person.
+    """Store a person's vectors in memory. Merge other people with the same name and face into this person.
 
     Args:
         graph: The memory.
-        person: The person. If memory lacks their node, it saves the node.
+        person: The person. If their node is not in memory yet, it is saved.
         vectors: Vectors with their qualities. The function leaves out vectors that are almost the same as stored ones.
         most: The maximum number of vectors to keep. The oldest vectors are removed.
 
@@ -123,7 +126,7 @@ def doubles(graph: Graph, person: Node, vectors: Sequence[Vector]) -> list[Node]
 
 
 def forget_faces(graph: Graph, person: Node) -> int:
-    """Remove a person's faces from memory; return the number of faces. The file keeps none of their bytes."""
+    """Remove a person's faces from memory. Return how many there were. None of their bytes stay in the file."""
     faces = faces_of(graph, person) if graph.get(person.id) is not None else []
     for face in faces:
         graph.forget(face)
@@ -131,7 +134,7 @@ def forget_faces(graph: Graph, person: Node) -> int:
 
 
 def take_away(graph: Graph, person: Node, vectors: Sequence[Vector]) -> int:
-    """Remove a person's faces that surely belong to somebody else; return the number of these faces.
+    """Remove those of a person's faces that surely belong to somebody else. Return how many there were.
 
     Args:
         graph: The memory.

@@ -1,4 +1,4 @@
-"""Functions that find the vision worker's interpreter, and this machine's camera."""
+"""Functions that find the Python interpreter for the vision worker, and this machine's camera."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NEEDED = ("dlib", "cv2", "face_recognition_models")
 
 
 def eyes_python(given: Path | None = None) -> str:
-    """Return the interpreter for the vision worker: the given interpreter, that of ``make eyes``, or this one.
+    """Return the interpreter for the vision worker: `given`, the one of ``make eyes``, or this one.
 
     Raises:
         PlatformError: No interpreter has the packages; the message says how to get them.

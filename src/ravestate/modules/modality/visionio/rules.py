@@ -1,4 +1,4 @@
-"""The rules that look at pictures and follow faces. They report people who come and leave to other modules."""
+"""The rules that look at pictures and follow faces. They tell other modules who comes and who leaves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .tracks import Sighting, Tracks
 from .visitors import Decision, Visitor, at, decide, gone, of_track, whose
 
 KEY = "visionio-"
-"""People whom no platform has added have keys in ``interloc.users`` that begin with this text."""
+"""The keys in ``interloc.users`` begin with this text for people whom no platform has added."""
 
 
 # ------------------------------------------------------------------------------------ looking
@@ -51,9 +51,9 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     frames = ctx[camera]
     if frames is None and _is_served(ctx):
-        return rs.Resign("a platform with many users brings their cameras in visionio.camera")
+        return rs.Resign("the user's platform has no camera in visionio.camera now")
     if frames is not None and ctx.payload(camera.changed) is None:
-        return rs.Resign("a camera came at once, and another run of this rule looks at it")
+        return rs.Resign("the new camera has a run of its own")
     view = Watch(settings, frames, ctx.log)
     tracks = Tracks(settings.sure)
     want = ["faces", "pose"] if _is_heard(ctx, pose) or _is_heard(ctx, activity.recognised) else ["faces"]
@@ -103,7 +103,7 @@ def _is_heard(ctx: rs.RuleContext, signal: rs.Signal[Any]) -> bool:
     background=True,
 )
 async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look through the camera of the user's platform. Ask for the next picture when the last picture is taken."""
+    """Pass on pictures from the user's own camera. Ask for the next picture when the agent has fetched the last one."""
     user = ctx.payload(rawio.camera.changed)
     if user is None:
         return rs.Resign("the user has turned their camera off")
@@ -114,7 +114,7 @@ async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
             await frames.taken()
         user.refuse("the agent cannot see at the moment")
     finally:
-        frames.close()  # so that all people whom the agent sees leave
+        frames.close()  # so that all visible people count as gone
     return None
 
 
@@ -145,7 +145,7 @@ async def mark_faces(ctx: rs.RuleContext) -> rs.Resign | None:
     when=sighted.max_age(None),
     reads=ontology.memory,
     emits=(facevec, looked),
-    detached=True,  # each face is a separate cause, else `track` would take only one face of a picture
+    detached=True,  # each face is a separate cause; otherwise, `track` would run for only one face of a picture
     background=True,
 )
 async def feed(ctx: rs.RuleContext) -> None:
@@ -186,7 +186,7 @@ async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None
     background=True,
 )
 async def track(ctx: rs.RuleContext) -> None:
-    """Keep a history of faces with new vectors. Once enough vectors agree, note the person who has come."""
+    """Keep a history of faces with new vectors. When enough vectors agree, note the person who has come."""
     settings: Settings = ctx.settings
     face = ctx.payload(facevec)
     if face.time is None:
@@ -211,7 +211,7 @@ async def track(ctx: rs.RuleContext) -> None:
 
 
 def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
-    """Return the visitor of a track after new vectors; None if the track now belongs to somebody else."""
+    """Return the visitor of a track in the light of new vectors. None if the track now belongs to somebody else."""
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == visitor.node.id or person.id in visitor.mistaken:
@@ -220,7 +220,7 @@ def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision
         return _recognised(ctx, visitor, person)
     else:
         alike = False
-    # Memory may know this face under another name than the visitor's.
+    # Even if memory knows this face under another name, it may be the visitor's.
     if alike or any(visitor.resembles(vector, settings.threshold) for vector in decision.vectors):
         return visitor
     ctx[visitors].add(visitor.key, replace(visitor, tracks=visitor.tracks - {face.track}))
@@ -260,7 +260,7 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
 
 
 async def _is_new_face(ctx: rs.RuleContext, key: str, node: ontology.Node) -> bool:
-    """Return whether a user who has told their name shows their face for the first time, so that memory has none."""
+    """Return whether a user with a name shows their face for the first time, and memory has no face of them."""
     memory = ctx[ontology.memory]
     if key in ctx[met] or memory is None:
         return False
@@ -272,7 +272,7 @@ async def _is_new_face(ctx: rs.RuleContext, key: str, node: ontology.Node) -> bo
 
 
 def _recognised(ctx: rs.RuleContext, visitor: Visitor, person: ontology.Node) -> Visitor:
-    """Return a visitor as a person in memory, and report the person to the other modules."""
+    """Return the visitor with the node of a recognised person, and report the person to the other modules."""
     visitor = replace(visitor, node=person, known=True, faces=True)
     if visitor.item is not None and not visitor.moving:
         ctx[interloc.users].add(visitor.key, visitor.item)
@@ -287,7 +287,7 @@ def _recognised(ctx: rs.RuleContext, visitor: Visitor, person: ontology.Node) ->
     background=True,
 )
 async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Add a platform's user again as another person, after the other modules have finished with the previous person."""
+    """Add a platform's user again, as another person, when the other modules have finished with the previous person."""
     key = ctx.payload(interloc.users.removed).key
     visitor = ctx[visitors].get(key)
     if visitor is None or not visitor.moving:
@@ -362,7 +362,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 async def _take_away(ctx: rs.RuleContext, visitor: Visitor) -> None:
-    """Remove a visitor's face from the person with whom the agent confused them, so that it does not happen again."""
+    """Remove a visitor's face from the person with whom the agent confused them. This prevents the same mistake."""
     memory, vectors = ctx[ontology.memory], [vector for _, vector in visitor.vectors]
     if memory is None:
         return

@@ -1,4 +1,4 @@
-"""Tracks. A track follows a face from picture to picture, and knows whether the face needs a new vector. Pure."""
+"""Tracks. A track follows a face from picture to picture, and knows when the face needs a new vector. Pure."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from ravestate.modules.meta.ontology import Node
 from .face import Box, Look, Vector
 
 LOST = 1.5
-"""The seconds after which a face that is not found again gets a new track."""
+"""If a face is not found for this many seconds, its track ends."""
 REFRESH = 3.0
-"""The seconds after which a known face gets a new vector, because two people may have changed places."""
+"""A known face gets a new vector after this many seconds, because two people may have changed places."""
 TRIES = 10
-"""The number of vectors after which a badly visible face gets only one vector each second."""
+"""After this many vectors, a badly visible face gets only one new vector per second."""
 THOROUGH = 1.0
-"""The seconds between two thorough searches of the picture, which find small faces."""
+"""The seconds between two thorough searches of a picture, which find small faces."""
 
 
 @dataclass(slots=True)
@@ -51,7 +51,7 @@ class Track:
         return f"Track({self.number}, box={self.box}, quality={self.quality})"
 
     def fresh(self, now: float, sure: int) -> bool:
-        """Return whether the face needs no new vector now."""
+        """Return whether the newest vector is fresh enough, so that the face needs no new one now."""
         wait = REFRESH if self.agreed >= sure else 1.0 if self.tries >= TRIES else 0.0
         return now - self.encoded < wait
 
@@ -74,7 +74,7 @@ class Sighting:
 
     Attributes:
         look: The picture's time and size.
-        faces: The track of each face, and whether the track's vector is from this picture.
+        faces: The track of each face, and whether the track's vector comes from this picture.
     """
 
     look: Look
@@ -98,7 +98,7 @@ class Tracks:
     _thorough: float = float("-inf")
 
     def request(self, now: float) -> dict[str, Any]:
-        """Return the tracks for the vision worker's next look. Faces that were lost for too long get new tracks."""
+        """Return the tracks for the vision worker's next look. End the tracks of faces that were lost for too long."""
         self._lose(now)
         known = [
             {"track": one.number, "box": list(one.box), "fresh": one.fresh(now, self.sure)}
@@ -107,7 +107,7 @@ class Tracks:
         return {"known": known, "thorough": int(now - self._thorough >= THOROUGH)}
 
     def update(self, faces: Iterable[Mapping[str, Any]], now: float) -> list[tuple[Track, bool]]:
-        """Take the faces of a picture. Return the track of each face, and whether the track has a new vector."""
+        """Find or make the tracks for the faces of a picture. Return each track, and whether it has a new vector."""
         if now - self._thorough >= THOROUGH:
             self._thorough = now
         found: list[tuple[Track, bool]] = []

@@ -1,4 +1,4 @@
-"""The people in front of the camera. The functions derive from faces who comes and who leaves. Pure."""
+"""The people in front of the camera. Functions find out from their faces who comes and who leaves. Pure."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ravestate.modules.modality.interloc import Recognised
 from .face import FaceVec, Vector
 
 WAIT = 2.5
-"""The seconds after which a badly visible face counts as a stranger's face."""
+"""A face that has been badly visible for this many seconds counts as a stranger's face."""
 KEPT = 8
 """The number of vectors to keep from a visit."""
 ALIKE = 0.15
-"""The distance below which a second vector adds nothing new."""
+"""A second vector at most this far from the first one adds nothing new."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +25,15 @@ class Visitor:
 
     Attributes:
         key: Their key in ``interloc.users``.
-        node: Their node: a known person's node, or a transient node, which memory does not have.
-        known: Whether memory has the node.
-        since, seen: The times at which they came, and were seen last (seconds on the context's clock).
+        node: Their node in memory. A stranger has a transient node, which is not in memory.
+        known: Whether the agent knows who they are.
+        since, seen: When they came, and when they were last seen (seconds on the context's clock).
         tracks: The numbers of their tracks.
         vectors: Their best vectors of this visit, each with its quality, best first.
         linked: Whether they are a user whom a platform has added.
-        faces: Whether memory has their face, or the agent has asked them. Otherwise the agent may ask.
-        mistaken: The ids of other people in memory. The agent must not mistake this visitor for them.
-        moving: Whether they take the place of a platform's user. The agent removes that user for a moment.
+        faces: Whether memory has their face, or the agent has asked them. If not, the agent may ask.
+        mistaken: The ids of people in memory whom they have turned out not to be.
+        moving: Whether they are taking the place of a platform's user. The agent removes that user for a moment.
     """
 
     key: str
@@ -59,11 +59,11 @@ class Visitor:
 
     @property
     def item(self) -> Recognised | None:
-        """Their item in ``interloc.users``."""
+        """Their item in ``interloc.users``; None if the agent does not know who they are."""
         return Recognised(self.node["name"], self.node) if self.known and self.name else None
 
     def met(self, face: FaceVec, *, least: float, threshold: float) -> Visitor:
-        """Return the visitor after one more sight of their face.
+        """Return the visitor after the agent has seen their face once more.
 
         Args:
             face: Their face.
@@ -90,8 +90,8 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said the question. The agent's next words make the question obsolete, because a later
-            *yes* may answer these words.
+        said: Whether the agent has said the question. If it then says something else, the question is dropped, because
+            a later *yes* may be the answer to that.
     """
 
     key: str
@@ -101,7 +101,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The owner of a track's face (a person in memory, or None for a stranger), and the vectors that show this."""
+    """The person whose face a track follows, or None for a stranger. The vectors are the evidence for this."""
 
     person: Node | None
     vectors: tuple[Vector, ...] = ()
@@ -113,7 +113,7 @@ def at(face: FaceVec) -> float:
 
 
 def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[float, Vector], ...]:
-    """Return the vectors of the best quality. If two vectors are nearly equal, keep the better vector."""
+    """Return the `most` vectors of the best quality. If two vectors are nearly equal, keep only the better one."""
     kept: list[tuple[float, Vector]] = []
     for quality, vector in sorted(vectors, key=lambda one: -one[0]):
         if all(dist(vector, other) > ALIKE for _, other in kept):
@@ -122,7 +122,9 @@ def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[floa
 
 
 def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: float) -> Decision | None:
-    """Return the owner of a track's face, once the last `sure` vectors of good quality agree. Until then, return None.
+    """Decide whose face a track follows, when its last `sure` vectors of good quality agree. Until then, return None.
+
+    After `WAIT` seconds without a vector of good quality, the face is a stranger's.
 
     Args:
         history: The last faces, oldest first, with `face` at the end.
@@ -143,7 +145,7 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
 def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
     """Return the visitor to whom a new track belongs; None if somebody new has come.
 
-    A person whose face was lost for a moment gets a new track. Memory or the vectors show that they are the same visitor.
+    A face that was lost for a moment gets a new track. Memory or the vectors show that it is the same visitor's.
     """
     for visitor in visitors.values():
         if decision.person is not None and visitor.node.id == decision.person.id:
@@ -154,12 +156,12 @@ def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, th
 
 
 def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
-    """Return the visitor who has a track."""
+    """Return the visitor to whom a track belongs; None if there is none."""
     return next((visitor for visitor in visitors.values() if track in visitor.tracks), None)
 
 
 def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
-    """Return the visitor to whom the agent talks: the one with the largest face. If the agent sees nobody, return None."""
+    """Return the visitor to whom the agent is talking: the one with the largest face. None if the agent sees nobody."""
     sizes = {face.track: face.box[2] * face.box[3] for face in history}
     return max(
         visitors.values(),

@@ -17,9 +17,9 @@ from .places import default_camera
 AGAIN = 5.0
 """The seconds between two attempts to open a lost camera."""
 MADE_UP = 0.5
-"""If looks are late by at most this many seconds, later looks catch up. They skip a greater delay."""
+"""Later looks catch up on a delay of at most this many seconds. They do not catch up on the rest of a longer delay."""
 FAULTS = 5
-"""The number of failures in a row after which the agent gives up a video, a folder or a worker."""
+"""After this many failures in a row, the agent gives up, unless the camera is a device."""
 
 Sleep = Callable[[float], Awaitable[None]]
 
@@ -29,8 +29,8 @@ class Watch:
 
     Args:
         settings: The settings of visionio.
-        frames: The platform's camera; None to open the camera of the settings.
-        log: The log of faults; it gets each fault once.
+        frames: The platform's camera; None to open the camera in the settings.
+        log: The logger for faults. A repeated fault is logged only once.
     """
 
     def __init__(self, settings: Settings, frames: Frames | None, log: logging.Logger) -> None:
@@ -47,18 +47,18 @@ class Watch:
 
     @property
     def blind(self) -> bool:
-        """Whether the last look saw nothing, because the camera fails or is silent."""
+        """Whether the agent sees nothing, because looks fail or the platform's camera sends no pictures."""
         return self._silent or self._faults > 0
 
     @property
     def skipped(self) -> int:
-        """The number of pictures that were skipped, because newer pictures had come."""
+        """How many pictures were skipped because newer ones had come."""
         if self._frames is not None:
             return self._frames.dropped
         return self._eye.skipped if self._eye is not None else 0
 
     async def begin(self) -> bool:
-        """Start the worker and open the camera. Return whether there is a camera. The log names missing parts."""
+        """Start the worker and open the camera. Return whether this worked. If not, the log names the missing part."""
         settings = self._settings
         source = settings.source
         if self._frames is None and source == "default":
@@ -82,10 +82,11 @@ class Watch:
         return True
 
     async def next(self) -> Frame | bool | None:
-        """Wait for a picture of the platform's camera, or return True for a camera of the worker.
+        """Wait for the next picture of the platform's camera. The worker's own cameras need no wait.
 
         Returns:
-            False if the platform's camera is silent for `gone_after` seconds; None after the last picture.
+            The picture of the platform's camera, or True for a camera of the worker. False if the platform's camera has
+            sent no picture for `gone_after` seconds. None after the last picture.
         """
         if self._frames is not None:
             self._silent = False
@@ -125,8 +126,8 @@ class Watch:
     async def rest(self, began: float, now: float, sleep: Sleep) -> bool:
         """Wait until the next look is due. Return whether there is a next look.
 
-        A look is due one period after the last look was due. So a slow look, such as a thorough look, does not lower
-        the rate. The agent never exceeds the share of the time in the setting `load`.
+        A look is due one period after the last look was due. So a slow look, for example a thorough one, does not lower
+        the rate. But the share of the time for looking never exceeds the setting `load`.
 
         Args:
             began: The time at which this look began (seconds).

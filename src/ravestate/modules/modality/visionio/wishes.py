@@ -1,4 +1,4 @@
-"""The user's wish that the agent remember or forget their face."""
+"""Recognise the user's wish that the agent remember or forget their face."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ABOUT = re.compile(r"\b(?:faces?|looks?)\b", re.IGNORECASE)
 
 
 def wish_of(text: str) -> Literal["forget", "remember", ""]:
-    """Return the wish in an utterance that the agent forget or remember the user's face. Without a wish, return "".
+    """Return whether an utterance asks the agent to ``forget`` or to ``remember`` the user's face, or neither ("").
 
     Without the sentence model, only sentences that equal an example count.
 

@@ -1,4 +1,4 @@
-"""The words in a message that are for the agent, after its name or a mention, and the command."""
+"""Find out whether a message is for the agent, and extract its words or its command."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from .commands import COMMANDS
 
 COMMAND = re.compile(r"[/!](\w+)(?:@(\w+))?\s*$")
-"""A command: ``/stop``, in a group also ``/stop@robin_bot``. Some messengers reserve ``/``, so ``!`` counts, too."""
+"""A command: ``/stop``, in a group also ``/stop@robin_bot``. Some messengers reserve ``/``, so ``!stop`` works, too."""
 
 
 def command_in(text: str) -> str | None:
@@ -25,7 +25,7 @@ def addressed(
 
     Args:
         text: The message.
-        handles: The agent's handles on the messenger, such as ``@robin_bot``. The result leaves them out.
+        handles: The agent's handles on the messenger, for example ``@robin_bot``. The result leaves them out.
         names: The agent's names. In a group, a message with one of them is for the agent.
         group: Whether several people may be in the chat.
         called: Whether the message is for the agent for another reason, e.g. because it replies to the agent.

@@ -1,4 +1,4 @@
-"""Attempts at something that may fail for a while, such as a login."""
+"""Count the failures of an operation that may fail for a while, for example a login, and wait after each failure."""
 
 from __future__ import annotations
 
@@ -7,23 +7,24 @@ import logging
 import random
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
-"""The shortest and the longest wait between two attempts (seconds). Each wait is twice the wait before it."""
+"""The first and the longest wait between two attempts (seconds). Each wait is about twice as long as the previous
+one."""
 
 TOLD = 3
-"""The number of failures in a row before the log gets a warning."""
+"""After this many failures in a row, the next failure is logged as a warning."""
 
 
 def back_off(attempt: int) -> float:
-    """Return the seconds to wait after the attempt with the number `attempt`, counted from 0, with a random part."""
+    """Return how many seconds to wait after attempt number `attempt` (from 0). The result has a random part."""
     return min(LONGEST_WAIT, FIRST_WAIT * 2 ** min(attempt, 16)) * random.uniform(0.75, 1.0)
 
 
 class Attempts:
-    """Counts the failures of an action in a row, and waits after each failure: each time twice as long.
+    """Counts the failures of an operation in a row, and waits after each failure: each time about twice as long.
 
     Args:
         log: The logger of the platform.
-        what: The failure, for the log, such as ``no updates``.
+        what: The log's words for the failure, for example ``no updates``.
     """
 
     def __init__(self, log: logging.Logger, what: str) -> None:

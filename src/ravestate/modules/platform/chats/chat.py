@@ -33,21 +33,22 @@ if TYPE_CHECKING:
     from .room import Room
 
 GRACE = 0.05
-"""The seconds for which an answer waits for the agent to finish. Then one transaction stores the answer and marks the
-message as done."""
+"""An answer waits at most this many seconds for the agent to finish. If the agent finishes in time, one transaction
+stores the answer and marks the message as done."""
 
 TURN = 1.0
-"""A message waits at most this many seconds for the previous message's answer, and then may interrupt this answer."""
+"""A message waits at most this many seconds for the answer to the previous message. Then it may interrupt this
+answer."""
 
 FAREWELL = 10.0
-"""The maximum number of seconds for a greeting, and for a farewell."""
+"""The maximum time for a greeting, for a farewell, or for earlier answers (seconds)."""
 
 
 class Chat:
-    """A conversation that rests after a silence, and goes on with the next message.
+    """A conversation that rests after a silence, and continues with the next message.
 
-    The chat hears its messages in order. A message is done once no rule can write an answer to the message any more.
-    One transaction stores the answers, and marks the message as done. So if the process dies, no message is lost or
+    The agent hears the messages in order. A message is done when no rule can write an answer to it any longer. One
+    transaction stores the answers, and marks the message as done. So if the process dies, no message is lost or
     answered twice.
     """
 
@@ -57,7 +58,7 @@ class Chat:
         self.context: Context | None = None
         """The context of the conversation; None while the chat rests."""
         self.last_active = 0.0
-        """The time of the last message, on the clock of the event loop."""
+        """When the agent heard the last message (time of the event loop)."""
         self._room = room
         self._waiting: deque[Entry] = deque()  # messages that the agent has not heard
         self._hearing: Entry | None = None  # the message that the agent is about to hear
@@ -81,13 +82,13 @@ class Chat:
 
     @property
     def leaving(self) -> bool:
-        """Whether the conversation ends."""
+        """Whether the conversation is ending or has ended."""
         return self._state != "open"
 
     # ------------------------------------------------------------------------------------ from the messenger
 
     def take(self, entry: Entry) -> None:
-        """Take a message that the store has already kept."""
+        """Queue a message that is already in the store."""
         self._waiting.append(entry)
         self._news.set()
 
@@ -132,7 +133,7 @@ class Chat:
                 self._mute = True  # the agent does not say goodbye when a chat rests
 
     async def _answered(self, seconds: float) -> bool:
-        """Wait up to `seconds` for the agent's answers to all that it has heard. Return whether it has answered all."""
+        """Wait up to `seconds` until the agent has answered all that it has heard. Return whether it has."""
         if self._following is not None:
             await asyncio.wait((self._following,), timeout=seconds)
         return self._following is None
@@ -171,7 +172,7 @@ class Chat:
                     return
 
     async def _next(self) -> Entry:
-        """Return the oldest waiting message, with the text of the user's last edit."""
+        """Take the oldest waiting message from the queue. Return it with the text of the user's last edit."""
         entry = self._hearing = self._waiting.popleft()
         edits: list[Entry] = []
         if entry.message.kind in ("text", "edit"):
@@ -284,7 +285,7 @@ class Chat:
     # ------------------------------------------------------------------------------------ from the agent
 
     def utter(self, text: str) -> None:
-        """Take a whole utterance of the agent."""
+        """Send a whole utterance of the agent to the chat."""
         self._draft.text = ""
         self._speak(printable(text).strip(), self._cause())
 
@@ -335,11 +336,11 @@ class Chat:
             self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._flush_said)
 
     def grow(self, piece: str) -> None:
-        """Take a piece of a growing utterance. The utterance becomes a message once it is whole."""
+        """Add a piece to the growing utterance. The utterance becomes a message when it is complete."""
         self._draft.grow(piece)
 
     def fall_silent(self) -> None:
-        """End a growing utterance that no rule has written as a whole."""
+        """Send the growing utterance as it is, if no rule has written it as a whole."""
         if self._draft.text:
             self.utter(self._draft.text)
 
@@ -372,7 +373,7 @@ class Chat:
         try:
             self._commit()
         except sqlite3.Error as error:
-            self._room.log.warning("answers are not kept yet: %s", error)
+            self._room.log.warning("answers are not stored yet: %s", error)
             self._flush = asyncio.get_running_loop().call_later(back_off(attempt), self._flush_said, attempt + 1)
 
     def _commit(self, done: Sequence[Entry] = ()) -> None:

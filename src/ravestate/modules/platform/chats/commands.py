@@ -1,4 +1,4 @@
-"""The commands that users of a messenger may give, beside talking to the agent."""
+"""The commands that users of a messenger may give, besides talking to the agent."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ COMMANDS = {
     "stop": "end the conversation",
     "forget": "delete everything that I know about you",
 }
-"""Name of a command → its description in the messenger's menu."""
+"""The commands by name, with their descriptions in the messenger's menu."""
 
 FORGOTTEN = "I have forgotten you, and everything that you told me."
 NOT_FORGOTTEN = "I could not delete what I know about you. Please try again later."

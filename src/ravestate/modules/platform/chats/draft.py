@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from .room import Room
 
 SLOW = 0.5
-"""The seconds of work after which the chat shows that the agent is writing."""
+"""The chat shows that the agent is writing after the agent has worked for this many seconds."""
 
 SHOWN = 4.0
-"""The seconds after which a chat shows again that the agent is writing. Messengers show it for five seconds."""
+"""The sign that the agent is writing is repeated after this many seconds. Messengers show it for five seconds."""
 
 GROWTH = 1.0
-"""The minimum number of seconds between two updates of a growing answer. Messengers allow about one a second."""
+"""The minimum time between two updates of a growing answer (seconds). Messengers allow about one update a second."""
 
 
 class Draft:

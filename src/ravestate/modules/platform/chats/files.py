@@ -8,7 +8,7 @@ from .attempts import back_off
 from .messages import Carrier, DeliveryError
 
 FETCHES = 4
-"""The number of attempts to fetch a file."""
+"""The maximum number of attempts to fetch a file."""
 
 
 async def fetched(carrier: Carrier, file: str) -> bytes:

@@ -14,7 +14,7 @@ async def agent_left(context: Context, user: Coroutine[Any, Any, object]) -> boo
     """Wait until a coroutine that follows the user returns, or until the agent stops its context.
 
     Returns:
-        Whether the agent has stopped its context. The coroutine is then cancelled.
+        Whether the agent has stopped its context. If so, the coroutine is cancelled.
 
     Raises:
         RavestateError: The agent has stopped because of this error.

@@ -1,4 +1,4 @@
-"""The library of a messenger, which loads at the first use of the messenger."""
+"""A function that loads the library of a messenger when it is first used."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """A person on a messenger, with their id and their name on it; the name may be None."""
+    """A person on a messenger, with their id and their name there; None if they have no name."""
 
     id: str
     name: str | None = None
@@ -25,13 +25,13 @@ class Incoming:
     """A message from a messenger to the agent.
 
     Attributes:
-        key: The id of the event on the messenger; a message with a known key is ignored.
+        key: The id of the event on the messenger. The room ignores a message with a known key.
         chat: The id of the chat.
         id: The id of the message; for an ``edit`` or a ``reaction``, the id of the message that it concerns.
         person: The person who sent the message.
         kind: The kind of the message.
-        text: The words, the caption of a picture, or the emoji of a reaction. For a command, its name, without a slash.
-        file: The reference to a picture or a voice note, for `Carrier.fetch`.
+        text: The words, the caption of a picture, the emoji of a reaction, or a command's name without a slash.
+        file: The reference with which `Carrier.fetch` gets a picture or a voice note.
         group: Whether several people may be in the chat.
         aliases: Other names of the sender and of the chat, for the setting `allow`.
     """
@@ -48,7 +48,8 @@ class Incoming:
 
 
 Sent = Literal["text", "picture", "voice", "edit", "reaction"]
-"""The kinds of outgoing messages. A ``voice`` message reaches a carrier with its sound; without speech, as ``text``."""
+"""The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is
+none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +61,7 @@ class Outgoing:
         chat: The id of the chat.
         kind: The kind of the message.
         text: The words, the caption of a picture, or the emoji of a reaction.
-        to: The id of the message to edit or to react to. For other kinds, the id of the message to reply to; or empty.
+        to: The id of the message to edit, to react to or to reply to; empty if there is none.
         data: The bytes of a picture, or of a voice note (Ogg with Opus).
         trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
     """
@@ -82,7 +83,7 @@ class DeliveryError(PlatformError):
         wait: The seconds to wait before the next attempt, if the messenger has set a time; 0 otherwise.
         unsure: Whether the message may have arrived nevertheless, for example after a time-out.
         final: Whether every further attempt would fail, too.
-        gone: Whether the chat is closed to the agent: it was blocked, or has left the group.
+        gone: Whether the chat is closed to the agent: the user has blocked it, or it is no longer in the group.
         moved: The chat's new id, if it has one.
     """
 
@@ -117,7 +118,7 @@ class Carrier(Protocol):
 
         Args:
             message: The message.
-            again: Whether an earlier attempt may have arrived. Then the carrier must not send the message twice.
+            again: Whether an earlier attempt may have delivered the message. If it has, do not send it again.
 
         Raises:
             DeliveryError: The message was not sent, or the carrier does not know whether it was sent.
@@ -125,7 +126,7 @@ class Carrier(Protocol):
         ...
 
     def trace(self, chat: str) -> str:
-        """Return a text by which a later `send` can find the message, if this attempt ends without an answer."""
+        """Return a text that helps a later `send` to find the message, if this attempt ends without an answer."""
         ...
 
     async def fetch(self, file: str) -> bytes:
@@ -140,10 +141,10 @@ class Carrier(Protocol):
             words: The answer so far, or an empty text. A carrier may show the words if this leaves no message behind.
 
         Raises:
-            DeliveryError: The chat does not show it.
+            DeliveryError: The request has failed.
         """
         ...
 
     def can_react(self, emoji: str) -> bool:
-        """Return whether a message in a chat can get this emoji as a reaction."""
+        """Return whether the messenger accepts this emoji as a reaction to a message."""
         ...

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 MEMORY = "ontology:memory"
 PATIENCE = 30.0
-"""The maximum number of seconds to wait for memory, before the conversation begins without memory."""
+"""The maximum number of seconds to wait for memory. After that, the conversation begins without it."""
 
 
 async def welcome(context: Context, platform: str, person: Person, log: logging.Logger) -> None:
-    """Add a person to the users who are present, under the name by which memory knows their account."""
+    """Add a person to the present users, with the name that memory has for their account."""
     name: str | None = person.name
     try:
         async with asyncio.timeout(PATIENCE):
@@ -101,7 +101,7 @@ async def _memory(context: Context) -> Memory | None:
 
 
 def _known(graph: Graph, account: str, name: str | None) -> Node:
-    """Return the person with an account; a new person if memory knows nobody with this account."""
+    """Return the person who has an account. If memory knows nobody with this account, save a new person."""
     from ravestate.modules.meta.ontology import Node
 
     known = graph.find("Account", {"name": account})

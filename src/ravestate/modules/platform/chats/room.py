@@ -27,13 +27,14 @@ T = TypeVar("T")
 E = TypeVar("E")
 
 LAST_WORDS = 5.0
-"""The maximum number of seconds for last answers and deliveries when the agent ends. The next start does the rest."""
+"""When the agent ends, it may take this many seconds for its last answers and, again, for their delivery. The next
+process does the rest."""
 
 
 class Room:
     """All chats of an agent on a messenger: ``async with Room(agent, ...) as room``, then `receive` each message.
 
-    On entry, the room takes the messages that the last process left unanswered.
+    On entry, the chats get the messages that the last process left unanswered.
 
     Args:
         agent: The agent, which makes a context for each chat.
@@ -57,7 +58,7 @@ class Room:
         self.slot: Any = agent.policy.slots[f"{name}:chat"]
         self.command: Any = agent.policy.signals[f"{name}:command"]
         self.called: set[str] = set()
-        """The names by which the agent knows itself. In a group, a message with one of them is for the agent."""
+        """The agent's names (``interloc.agent``). In a group, a message with one of them is for the agent."""
         plain = re.sub(r"[^\w.-]", "_", account)
         self.store = Store(settings.path or user_folder("data") / "chats" / f"{name}-{plain}.sqlite")
         self.log = logging.getLogger(f"ravestate.{name}")
@@ -95,19 +96,19 @@ class Room:
             self.store.close()
 
     def read(self, events: Iterable[E], read: Callable[[E], Incoming | None]) -> list[Incoming]:
-        """Return the messages in events of the messenger, without those of people who are not in `allow`.
+        """Return the messages in the messenger's events, without those of people who are not in `allow`.
 
         Args:
             events: The events.
-            read: A function that returns the message in an event; None if the event does not concern the agent. If the
-                function fails, the room ignores the event, because anybody may send an event of any shape.
+            read: A function that returns the message in an event; None if the event does not concern the agent. If it
+                raises an exception, the room ignores the event, because anybody may send an event of any shape.
         """
         found: list[Incoming] = []
         for event in events:
             try:
                 message = read(event)
             except Exception:  # anybody may send an event of any shape
-                self.log.exception("an event cannot be read, and is left out")
+                self.log.exception("an event cannot be read, and is ignored")
                 continue
             if message is not None and (message.kind == "left" or self.admits(message)):
                 found.append(message)
@@ -128,7 +129,7 @@ class Room:
             self.log.warning("%s %s", concerned, what)
 
     def receive(self, messages: Iterable[Incoming], position: tuple[str, str] | None = None) -> None:
-        """Take messages from the messenger. After the call they are stored, so the caller may acknowledge them.
+        """Store messages from the messenger, and pass them to their chats. The caller may then acknowledge them.
 
         Args:
             messages: The messages, in order. The room ignores messages that it got before.
@@ -149,7 +150,7 @@ class Room:
         return entry
 
     def _give(self, entry: Entry) -> None:
-        """Give a message to its chat. After the end of a chat, the next message begins a new one."""
+        """Give a message to its chat. If the chat has ended or not begun, begin a new one."""
         id = entry.message.chat
         if entry.message.kind == "left":
             self._close(id)
@@ -182,7 +183,7 @@ class Room:
                 del self._chats[chat.id]
 
     def make_room(self) -> None:
-        """If there are too many chats, put idle chats to rest: the chats with the longest silence first."""
+        """If too many chats are awake, put idle ones to rest: the chats with the longest silence first."""
         if len(self._tasks) > self._limit:
             staying = [chat for chat in self._tasks if not chat.leaving]
             idle = sorted((chat for chat in staying if not chat.busy), key=lambda chat: chat.last_active)

@@ -1,4 +1,4 @@
-"""Functions that keep secrets out of the log, because libraries log addresses that contain a token."""
+"""Functions that keep secrets out of the log. Some libraries log addresses that contain a token."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HIDDEN = "[secret]"
 
 
 class Censor:
-    """Replaces secret texts in all log records that any logger makes, tracebacks included, while there are secrets."""
+    """Replaces secret texts in the records of all loggers, including tracebacks, as long as there are secrets."""
 
     def __init__(self) -> None:
         self._secrets: Counter[str] = Counter()
@@ -27,7 +27,7 @@ class Censor:
         self._secrets.update(secrets)
 
     def remove(self, secrets: Iterable[str]) -> None:
-        """Stop hiding texts, unless another caller hides them, too. After the last text, remove the censor."""
+        """Stop hiding texts, unless another caller hides them, too. If no texts are left, remove the censor."""
         self._secrets -= Counter(secrets)
         if not self._secrets:
             logging.setLogRecordFactory(self._make)
@@ -50,12 +50,12 @@ class Censor:
 
 
 censor = Censor()
-"""The censor of this process: several platforms may have secrets at a time."""
+"""The censor of this process. Several platforms may have secrets at the same time."""
 
 
 @contextlib.contextmanager
 def secret(*texts: str) -> Generator[None]:
-    """Replace secret texts in all log records that any logger makes in the body, tracebacks included."""
+    """Inside the ``with`` block, replace secret texts in the records of all loggers, including tracebacks."""
     hidden = [text for text in texts if len(text) >= 8]
     if not hidden:
         yield

@@ -13,17 +13,17 @@ from .store import Item, Store
 from .voice import voiced
 
 IN_FLIGHT = 8
-"""The maximum number of attempts at a time. A crash leaves at most this many messages that may have arrived or not."""
+"""The maximum number of attempts at a time. After a crash, the delivery of at most this many messages is uncertain."""
 
 SHOWN = 2.0
-"""The maximum number of seconds for which a message waits for a request that shows its draft."""
+"""A message waits at most this many seconds for the end of a request that shows its draft."""
 
 BURST = 0.15
 """After a pause, the turns of this many seconds may come at once. At 25 turns per second, the first second has 28."""
 
 
 class Pace:
-    """A limit on a rate: ``await pace.turn()`` waits until the next turn, `rate` turns per second at most."""
+    """A rate limit: ``await pace.turn()`` waits for the next turn. There are at most `rate` turns per second."""
 
     def __init__(self, rate: float) -> None:
         self._gap = 1.0 / rate
@@ -37,7 +37,7 @@ class Pace:
             await asyncio.sleep(self._next - now)
 
     def spare(self) -> bool:
-        """Take a turn if no wait is needed; return whether there was a turn."""
+        """Take a turn if it needs no wait. Return whether it was taken."""
         now = asyncio.get_running_loop().time()
         if self._next + self._gap > now:
             return False
@@ -76,16 +76,18 @@ class Sender:
         """The pace of all requests that count towards the messenger's limit."""
 
     async def show_work(self, chat: str, words: str) -> None:
-        """Show in a chat that the agent is writing. Even after a cancellation, the next message waits for the request.
+        """Show in a chat that the agent is writing.
+
+        The next message waits until this request has ended, even if the caller is cancelled.
 
         Raises:
-            DeliveryError: The chat does not show it.
+            DeliveryError: The request has failed.
         """
 
         def shown(task: asyncio.Task[None]) -> None:
             del self._showing[chat]
             if not task.cancelled():
-                task.exception()  # retrieve the exception even if nobody waits for the task any more
+                task.exception()  # retrieve the exception, even if no task waits for it any longer
 
         if chat not in self._showing:
             task = self._showing[chat] = asyncio.create_task(self._carrier.show_work(chat, words))
@@ -103,7 +105,7 @@ class Sender:
         except Exception:  # a fault in one chat must not end the others
             self._log.exception("the messages to chat %s are not sent", chat)
         finally:
-            del self._tasks[chat]  # at once, so that a message that comes now is not overlooked
+            del self._tasks[chat]  # without a pause after `_drain`, so that `wake` overlooks no new message
 
     async def close(self, grace: float) -> None:
         """Deliver messages for up to `grace` seconds; the rest stays in the store."""
@@ -137,7 +139,7 @@ class Sender:
                 await attempts.fail(error, error.wait)
 
     def _is_elsewhere(self, chat: str, error: DeliveryError) -> bool:
-        """Report a chat that is closed or has another id; return whether there was such a report."""
+        """If the error says that the chat is closed or has a new id, report this. Return whether it does."""
         if error.gone:
             self._on_gone(chat)
         elif error.moved:
@@ -145,7 +147,7 @@ class Sender:
         return error.gone or bool(error.moved)
 
     def _give_up(self, item: Item, error: DeliveryError) -> None:
-        """Drop a message that was refused. If it is a voice note, its words become a text."""
+        """Drop a message that was refused. If it is a voice note, send its words as a text instead."""
         if item.message.kind == "voice":
             self._log.info("a voice note was refused, and is sent as text: %s", error)
             self._store.write_out(item)
@@ -154,10 +156,10 @@ class Sender:
             self._store.drop(item)
 
     async def _attempt(self, item: Item) -> DeliveryError | None:
-        """Try to deliver an item once; return the error of a failure."""
+        """Try to deliver an item once. Return the error if the attempt fails."""
         async with self._attempts:
             await self.pace.turn()
-            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft after the message would stay
+            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft that comes later would stay
                 await asyncio.wait((showing,), timeout=SHOWN)
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:

@@ -10,14 +10,14 @@ import ravestate as rs
 
 
 class ChatSettings(rs.Settings):
-    """The settings of a platform with many chats: the people whom the agent answers, and the limits of the chats."""
+    """The settings of a platform with many chats: which people the agent answers, and when a chat rests."""
 
     allow: tuple[int | str, ...] = ()
     """The people whom the agent answers: their ids or names, or ids of groups. If empty, it answers everybody."""
     rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
-    """The seconds of silence after which a chat is put to rest."""
+    """A chat rests after this many seconds of silence."""
     chats: int = pydantic.Field(1000, ge=1)
-    """The maximum number of chats that do not rest. There may be more while all of them are busy."""
+    """The maximum number of chats that are awake at a time. Only busy chats may exceed it."""
     path: Path | None = None
     """The file with unanswered and undelivered messages. By default, each account has one in the user's data folder."""
 

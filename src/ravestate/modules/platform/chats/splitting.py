@@ -9,7 +9,7 @@ ENDS = (re.compile(r"\n\n"), re.compile(r"\n"), re.compile(r"(?<=[.!?…]) "), r
 
 
 def split(text: str, longest: int) -> list[str]:
-    """Return a text in parts of `longest` characters at most, split between paragraphs, sentences or words.
+    """Split a text into parts of at most `longest` characters, if possible between paragraphs, sentences or words.
 
     Example:
         >>> split("One two. Three four.", 12)

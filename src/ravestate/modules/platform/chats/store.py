@@ -1,4 +1,4 @@
-"""The store: messages that came and are not answered yet, and messages that are not delivered yet, in a file."""
+"""The store: a file with the unanswered incoming messages and the undelivered outgoing messages."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from ravestate.errors import PlatformError
 from .messages import Incoming, Outgoing, Person
 
 SEEN = 3 * 24 * 3600.0
-"""The seconds for which the store remembers the keys of messages. Messengers repeat a message for a day at most."""
+"""How many seconds the store remembers the keys of messages. Messengers repeat a message for at most a day."""
 
 TRIES = 3
-"""The number of crashes during one message after which the store gives up the message, which may cause the crashes."""
+"""The store drops a message after this many crashes during it, because the message may cause them."""
 
 PARTING = ("stop", "forget")
 """The commands after which the agent treats the person as new in the chat."""
@@ -49,7 +49,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """An outgoing message with its number in the store; `begun` is true if an attempt may have delivered it."""
+    """An outgoing message with its number in the store. `begun` is True if an attempt may have delivered it."""
 
     n: int
     message: Outgoing
@@ -58,20 +58,20 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A message that the agent wants to send, and the number of the message that caused it, or None."""
+    """A message that the agent wants to send, and the number of the incoming message that it answers, or None."""
 
     message: Outgoing
     cause: int | None = None
 
 
 class Store:
-    """Messages in a SQLite file. One process at a time may open a file.
+    """Messages in a SQLite file. Only one process at a time may open the file.
 
-    Each operation is one transaction, and survives the death of the process. The operations take some 0.1 ms, so they run
-    on the event loop. After a power failure the last transactions may be missing.
+    Each operation is one transaction. If the process dies, no finished transaction is lost. After a power failure, the
+    last transactions may be missing. An operation takes about 0.1 ms, so it runs on the event loop.
 
     Args:
-        path: The file. The store makes it, and its folder, and only the user may read it.
+        path: The file. The store makes the file and its folder if they are missing. Only the user may read the file.
 
     Raises:
         PlatformError: The file cannot be used: another process has it open, or it is not a store.
@@ -114,7 +114,7 @@ class Store:
             raise
 
     batch = _transaction
-    """Make the operations in the body of a ``with`` one transaction."""
+    """A context manager that makes the operations inside its ``with`` block one transaction."""
 
     def _all(self, query: str, *values: object) -> list[Any]:
         return self._db.execute(query, values).fetchall()
@@ -126,7 +126,7 @@ class Store:
         self._db.execute("DELETE FROM inbox WHERE at < ? AND data IS NULL", (time.time() - SEEN,))
 
     def take(self, message: Incoming) -> Entry | None:
-        """Keep a message until it is done. Return None if a message with this key came before."""
+        """Store a message until it is done. Return its entry, or None if a message with this key came before."""
         with self._transaction():
             self._purge()
             data = json.dumps(asdict(message))
@@ -137,7 +137,7 @@ class Store:
             return Entry(cursor.lastrowid or 0, message) if cursor.rowcount else None
 
     def pending(self) -> list[Entry]:
-        """Return the messages that are not done, in order. Give up messages that the agent has heard too often."""
+        """Return the messages that are not done, in order. Drop messages that the agent has heard `TRIES` times."""
         with self._transaction():
             self._db.execute("UPDATE inbox SET data = NULL WHERE tries >= ?", (TRIES,))
             return [
@@ -146,7 +146,7 @@ class Store:
             ]
 
     def hear(self, entry: Entry, edits: Sequence[Entry] = ()) -> Entry:
-        """Note that the agent hears a message; return the message with the text of its last edit."""
+        """Note that the agent hears a message. Return the message with the text of its last edit."""
         if edits:
             entry = replace(entry, message=replace(entry.message, text=edits[-1].message.text))
         with self._transaction():
@@ -159,7 +159,7 @@ class Store:
         return entry
 
     def unhear(self, entries: Iterable[Entry]) -> None:
-        """Undo the count of `hear` for messages, because the process ends normally instead of crashing."""
+        """Take back the attempt that `hear` has counted for messages, because the process ends without a crash."""
         with self._transaction():
             for entry in entries:
                 self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
@@ -179,7 +179,7 @@ class Store:
     # ------------------------------------------------------------------------------------ messages to deliver
 
     def commit(self, answers: Iterable[Answer], done: Sequence[Entry] = ()) -> None:
-        """Queue answers, and mark incoming messages as done: all or nothing."""
+        """Queue answers, and mark incoming messages as done, in one transaction."""
         with self._transaction():
             for answer in answers:
                 self._db.execute(
@@ -199,15 +199,15 @@ class Store:
                 self._db.execute(change, (message.chat, message.person.id))
 
     def recorded(self, cause: int) -> list[Outgoing]:
-        """Return the answers to a message that is not done, whether delivered or not."""
+        """Return the answers to a message that is not done, whether or not they are delivered."""
         return [_outgoing(*row) for row in self._all("SELECT message, data, chat FROM outbox WHERE cause = ?", cause)]
 
     def chats_to_send(self) -> list[str]:
-        """Return the chats with messages that are not delivered."""
+        """Return the ids of the chats with undelivered messages."""
         return [chat for (chat,) in self._all("SELECT DISTINCT chat FROM outbox WHERE state != 'sent' ORDER BY n")]
 
     def next(self, chat: str) -> Item | None:
-        """Return the chat's oldest message that is not delivered."""
+        """Return the chat's oldest undelivered message; None if there is none."""
         query = "SELECT n, message, data, state FROM outbox WHERE chat = ? AND state != 'sent' ORDER BY n LIMIT 1"
         for n, message, data, state in self._all(query, chat):
             return Item(n, _outgoing(message, data, chat), state == "begun")
@@ -218,7 +218,7 @@ class Store:
         return bool(self._all("SELECT 1 FROM outbox WHERE n = ?", item.n))
 
     def begin(self, item: Item, trace: str) -> Item:
-        """Note that an attempt to deliver begins, with the carrier's trace; return the item with the trace."""
+        """Note that an attempt to deliver an item begins. Return the item with the carrier's trace."""
         message = replace(item.message, trace=trace)
         with self._transaction():
             self._db.execute("UPDATE outbox SET state = 'begun', message = ? WHERE n = ?", (_json(message), item.n))
@@ -236,7 +236,7 @@ class Store:
             self._db.execute("UPDATE outbox SET state = 'queued', message = ? WHERE n = ?", (_json(message), item.n))
 
     def sent(self, item: Item, id: str) -> None:
-        """Note that a message is delivered, and its id on the messenger."""
+        """Note that a message has been delivered, and has this id on the messenger."""
         with self._transaction():
             row = self._all("SELECT i.n, i.data FROM inbox i JOIN outbox o ON o.cause = i.n WHERE o.n = ?", item.n)
             for cause, _ in row:
@@ -248,7 +248,7 @@ class Store:
                 self.drop(item)
 
     def drop(self, item: Item) -> None:
-        """Give up a message."""
+        """Delete an outgoing message."""
         with self._transaction():
             self._db.execute("DELETE FROM outbox WHERE n = ?", (item.n,))
 
@@ -273,12 +273,12 @@ class Store:
                 self._db.execute(f"UPDATE OR IGNORE {table} SET chat = ? WHERE chat = ?", (to, chat))
 
     def note(self, name: str, value: str) -> None:
-        """Keep a text under a name, e.g. the position in the messenger's stream of events."""
+        """Store a text under a name, e.g. the position in the messenger's stream of events."""
         with self._transaction():
             self._db.execute("INSERT OR REPLACE INTO notes VALUES (?, ?)", (name, value))
 
     def noted(self, name: str) -> str | None:
-        """Return the text under a name."""
+        """Return the text under a name; None if there is none."""
         return next((value for (value,) in self._all("SELECT value FROM notes WHERE name = ?", name)), None)
 
 

@@ -1,4 +1,4 @@
-"""Voice notes: recordings as words, and words as recordings, if `voiceio` is installed."""
+"""Turn voice notes into words, and words into voice notes, if `voiceio` is installed."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ravestate.errors import PlatformError
 from .messages import Outgoing
 
 VOICE = "ravestate.modules.platform.voiceio"
-"""The module with the functions. It loads with the first voice note."""
+"""The module that recognises and synthesises speech. It loads with the first voice note."""
 
 
 async def words_in(note: bytes) -> str:
-    """Return the words in a voice note: a file with sound, such as Ogg with Opus.
+    """Return the words in a voice note. The note is the content of a sound file, for example Ogg with Opus.
 
     Raises:
         PlatformError: Speech recognition is not installed, or the note is damaged.
@@ -25,7 +25,7 @@ async def words_in(note: bytes) -> str:
 
 
 async def spoken(text: str) -> bytes | None:
-    """Return a text as a voice note: an Ogg file with Opus. Return None if it cannot be spoken."""
+    """Return a text as a voice note (Ogg with Opus), or None if speech synthesis fails."""
     try:
         return await asyncio.to_thread(lambda: bytes(_voiceio().synthesise(text)))
     except PlatformError:
@@ -33,7 +33,7 @@ async def spoken(text: str) -> bytes | None:
 
 
 async def voiced(message: Outgoing) -> Outgoing:
-    """Return a ``voice`` message with its sound, or as text if it cannot be spoken. Return other messages unchanged."""
+    """Return a ``voice`` message with its sound, or as text if synthesis fails. Return other messages unchanged."""
     if message.kind != "voice":
         return message
     note = await spoken(message.text)

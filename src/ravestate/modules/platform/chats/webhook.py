@@ -24,7 +24,7 @@ from ravestate.errors import PlatformError
 log = logging.getLogger("ravestate.chats")
 
 LARGEST = 1024 * 1024
-"""The maximum number of bytes of a request."""
+"""The maximum size of a request in bytes."""
 
 
 async def listen(
@@ -35,7 +35,7 @@ async def listen(
     take: Callable[[Any], None],
     announce: Callable[[], Awaitable[object]],
 ) -> None:
-    """Take the requests of a messenger until cancelled. The server acknowledges a request once `take` has returned.
+    """Receive the requests of a messenger until cancelled. The server acknowledges a request after `take` has returned.
 
     Args:
         url: The public address. The server uses only its path.
@@ -43,7 +43,7 @@ async def listen(
         header: The name of the header by which the messenger shows the secret.
         secret: The secret. The server refuses a request without it.
         take: A function to call with the parsed JSON of each request.
-        announce: A function to call once the server listens.
+        announce: A function to call as soon as the server listens.
 
     Raises:
         PlatformError: The port is in use.

@@ -38,7 +38,7 @@ class Screen(Protocol):
         """Print a text of whole lines. Raise OSError if the output is gone."""
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line: at once on a terminal, and elsewhere once the line is complete."""
+        """Print a piece of a line: at once on a terminal, but elsewhere only when the line is complete."""
 
     def end(self) -> None:
         """End the line of pieces that `stream` has begun, if there is one."""
@@ -48,10 +48,10 @@ class Console:
     """An async iterator of the lines that the user types; meanwhile, `utter` and `grow` print texts.
 
     If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
-    If not, the console reads and writes plain lines. Control characters, and bytes that are not text, are removed in
-    both directions, so neither a user nor a language model can move the cursor.
+    If not, the console reads and writes plain lines. It removes control characters in both directions, so neither a
+    user nor a language model can move the cursor.
 
-    Call everything on one event loop. Writing never fails: if the output is gone, the iteration ends.
+    Call all methods on one event loop. Writing never fails: if the output is gone, the iteration ends.
 
     Example:
         ```python
@@ -74,9 +74,9 @@ class Console:
         """Make a console; it reads and writes nothing yet.
 
         Args:
-            screen: The input and output. The default depends on the streams: a terminal or pipes.
+            screen: The input and output. By default, a `Terminal` or `Pipes`, depending on the streams.
             prompt: The text before the line that the user types.
-            history: The file that keeps typed lines; with None, they are kept for this session only.
+            history: The file that keeps typed lines. If None, they are kept for this session only.
             on_key: A function to call when the user presses a key; only a terminal notices keys.
             stdin, stdout: The streams to use instead of standard input and output.
 
@@ -87,13 +87,16 @@ class Console:
         self._streamed = ""
         self._line_is_open = False
         self.ending: Ending | None = None
-        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C), closed (output is gone); None before."""
+        """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C) or closed (output is gone).
+
+        None if it has not ended.
+        """
         self.failure: PlatformError | None = None
-        """The error after which nothing can be written, e.g. a full disk; None if the output was merely closed."""
+        """The error that made the output unusable, e.g. a full disk. None if the output works, or was merely closed."""
 
     @property
     def interactive(self) -> bool:
-        """Whether a person types the lines. If not, all lines and the end may arrive at once."""
+        """Whether a person types the lines. If not, all lines and the end of input may arrive at once."""
         return self._screen.interactive
 
     async def __aenter__(self) -> Console:
@@ -135,7 +138,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def grow(self, piece: str) -> None:
-        """Print `piece` after the earlier pieces of its text. Anywhere but on a terminal, print whole lines only."""
+        """Print `piece` after the earlier pieces of its text. If the output is no terminal, print only whole lines."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece
@@ -143,7 +146,7 @@ class Console:
             self._safely(lambda: self._screen.stream(piece))
 
     def fall_silent(self) -> None:
-        """End the text whose pieces were printed; if there is none, do nothing."""
+        """End the line of the pieces printed so far; if there are none, do nothing."""
         self._streamed = ""
         self._end_line()
 
@@ -164,7 +167,7 @@ class Console:
 
 
 def prepare() -> None:
-    """If the console is a terminal, load its library. Call this in a thread: it would block the event loop."""
+    """If the console is a terminal, load its library. Call this in a thread, because it blocks."""
     if is_terminal(sys.stdin, sys.stdout):
         with contextlib.suppress(ImportError):  # the console reports the missing package
             importlib.import_module(".terminal", __package__)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ravestate.folders import user_folder
 
-LARGEST = 1_000_000  # the size in bytes after which a new log file begins; one old file is kept
+LARGEST = 1_000_000  # when the log file reaches this size in bytes, a new one begins; one old file is kept
 
 
 def log_file() -> Path:
@@ -22,11 +22,11 @@ def log_file() -> Path:
 
 @contextlib.contextmanager
 def log_to_file(file: Path) -> Generator[None]:
-    """Write the log to a file within the ``with`` block, if the chat and the log would share a terminal.
+    """Inside the ``with`` block, write the log to a file if the chat and the log would share a terminal.
 
     After the block, the log goes where it went before. If the file got warnings or errors, a line on standard error
-    names the file. If standard output or standard error is redirected, or the file cannot be written, the log stays as
-    it is.
+    names the file. If standard output or standard error is redirected, or the file cannot be written, the log is not
+    moved.
     """
     if not all(stream is not None and stream.isatty() for stream in (sys.stdout, sys.stderr)):
         yield

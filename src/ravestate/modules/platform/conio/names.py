@@ -1,4 +1,4 @@
-"""The module conio: its settings and its slot."""
+"""The names of `conio`: its settings, its module and its slot."""
 
 from __future__ import annotations
 
@@ -24,4 +24,4 @@ class Settings(rs.Settings):
 module = rs.Module("conio", requires=(rawio, interloc), settings=Settings)
 
 screen: rs.Slot[Console | None] = module.slot("screen", None)
-"""The console while it is open; None before and after."""
+"""The console; None if it is not open."""

@@ -13,10 +13,10 @@ _BLOCK = 1 << 16
 
 
 class Pipes:
-    """Reads lines in its own thread, one at a time and only on request; writes and flushes line by line.
+    """Reads lines in its own thread, one at a time and only on request. Writes and flushes line by line.
 
-    The streams may be pipes or files. The thread ends when its input ends or when this object is closed. A thread that
-    waits for a line does not keep the process from ending.
+    The streams may be pipes or files. The thread ends when its input ends or when this object is closed. While it waits
+    for a line, it does not keep the process from ending.
     """
 
     interactive = False
@@ -24,7 +24,7 @@ class Pipes:
     def __init__(self, stdin: TextIO | None, stdout: TextIO | None, *, longest_line: int = 1 << 20) -> None:
         """Make a console; it reads nothing yet. Pass None for a closed stream.
 
-        It reads at most `longest_line` bytes of a line, and leaves out the rest.
+        It reads at most `longest_line` bytes of each line, and ignores the rest of the line.
         """
         self._stdin = stdin
         self._stdout = stdout
@@ -66,7 +66,7 @@ class Pipes:
         self._write(text + "\n")
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line: at once on a terminal; elsewhere, a piece waits for the end of its line."""
+        """Print a piece of a line: at once on a terminal, but elsewhere only when the line is complete."""
         self._unwritten += piece
         if self._watched:
             ready, self._unwritten = self._unwritten, ""

@@ -49,7 +49,7 @@ async def serve(ctx: rs.RuleContext) -> None:
             Console, screen=plain, prompt=ctx.settings.prompt, history=history, on_key=tell
         )
     except PlatformError as error:
-        ctx.stop(error)  # without this, the agent would keep running, and nobody could talk to it
+        ctx.stop(error)  # otherwise the agent would keep running, although nobody can talk to it
         return
     async with contextlib.AsyncExitStack() as stack:
         stack.enter_context(log_to_file(log_file()))

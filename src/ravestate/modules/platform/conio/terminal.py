@@ -26,9 +26,9 @@ from ravestate.modules._text import without_controls
 
 LONGEST = 10_000
 """A line of this many characters ignores further keys, because the undo history may store the whole line for each key.
-Pasted text is always accepted whole."""
+A pasted text is always accepted whole."""
 
-_OPEN = "…"  # the mark behind a streamed line that the user has interrupted by entering a line
+_OPEN = "…"  # the mark at the end of a streamed line that the user has interrupted by entering a line
 
 
 class Terminal:
@@ -51,8 +51,8 @@ class Terminal:
     ) -> None:
         """Make a console; it reads and writes nothing yet.
 
-        The file `history` keeps typed lines; if it cannot be written, they are kept for this session only. Each key that
-        changes the line calls `on_key`, unless the line is empty afterwards.
+        The file `history` keeps typed lines. If it cannot be written, they are kept for this session only. `on_key` is
+        called after each key that changes the line, unless the line is then empty.
         """
         self._prompt = prompt
         self._streamed = ""
@@ -73,7 +73,7 @@ class Terminal:
         self._context = contextvars.copy_context()
         stderr = sys.stderr
         self._patch.enter_context(patch_stdout(raw=True))  # any other print goes above the prompt as well
-        if not stderr.isatty():  # a redirected stream does not disturb the prompt
+        if not stderr.isatty():  # standard error is redirected, so it does not disturb the prompt
             self._patch.enter_context(contextlib.redirect_stderr(stderr))
         return self
 
@@ -105,7 +105,7 @@ class Terminal:
 
     def stream(self, piece: str) -> None:
         """Print a piece of a line, as `Screen.stream` describes."""
-        if self._left_open:  # keep the pieces: the last one will show whether the user's line interrupted the text
+        if self._left_open:  # keep the pieces; the last one will show whether the user's line interrupted the text
             self._late += piece
             return
         *lines, self._streamed = (self._streamed + piece).split("\n")
@@ -121,7 +121,7 @@ class Terminal:
         """End the line of pieces, as `Screen.end` describes."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # pieces that end in the mark belong to an interrupted text: drop them
+        if late and not late.endswith(_OPEN):  # the mark at the end means that the text was interrupted: drop it
             line += late
         if line:
             self.show(line)
@@ -163,7 +163,7 @@ class Terminal:
 
 
 def _full_row(text: str, width: int) -> tuple[str, str]:
-    """Split a text that is too long for one row. Return its first row (less than `width` columns), and the rest."""
+    """Split a text that is too long for one row. Return its first row (less than `width` columns) and the rest."""
     used = end = 0
     for end, character in enumerate(text):  # noqa: B007  # used after the loop
         used += get_cwidth(character)

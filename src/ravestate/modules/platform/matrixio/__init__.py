@@ -1,4 +1,4 @@
-"""Matrix: each room of an account is a conversation of its own with the agent."""
+"""Matrix: each room of an account is a separate conversation with the agent."""
 
 from __future__ import annotations
 

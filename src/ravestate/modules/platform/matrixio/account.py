@@ -1,4 +1,4 @@
-"""The account: it logs in, joins the rooms that it is invited to, and gives their messages to `Room`."""
+"""The account: it logs in, joins the rooms to which it is invited, and passes their messages to `Room`."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-POLL = 30_000  # the milliseconds for which the server holds a request for events, if there are none
-ANSWER = 20.0  # the seconds to wait for an answer to a request
-PAGE = 100  # the number of events of a room in one answer
+POLL = 30_000  # if there are no events, the server holds a request for this many milliseconds
+ANSWER = 20.0  # the maximum number of seconds to wait for the answer to a request
+PAGE = 100  # the maximum number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
-JOINS = 12  # the number of refusals after which the agent stops trying to join a room: about six minutes
+JOINS = 12  # the agent stops trying to join a room after this many refusals: about six minutes
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -61,7 +61,7 @@ async def run(agent: Agent, settings: Settings) -> None:
 
 
 def _key_folder(settings: Settings) -> str:
-    """Return the folder for the keys of encrypted rooms; an empty text without the extra ``matrix-encrypted``."""
+    """Return the folder for the keys of encrypted rooms; an empty text if ``matrix-encrypted`` is not installed."""
     if not ENCRYPTION_ENABLED:
         return ""
     folder = (settings.path.parent if settings.path else user_folder("data") / "chats") / "matrix-keys"
@@ -70,7 +70,7 @@ def _key_folder(settings: Settings) -> str:
 
 
 async def _log_in(client: AsyncClient, settings: Settings) -> None:
-    """Log in. Wait until the server answers."""
+    """Log in; if the server does not answer, try again until it does."""
     attempts = Attempts(log, f"{settings.homeserver} does not answer")
     while True:
         try:
@@ -97,14 +97,14 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
 
 
 class Inlet:
-    """Takes events from the server, and gives them to a room of chats."""
+    """Gets events from the server, and passes their messages to `room`: all chats of the account."""
 
     def __init__(self, client: AsyncClient, room: Room, settings: Settings) -> None:
         self._client, self._room, self._settings = client, room, settings
         self._joining: dict[str, asyncio.Task[None]] = {}
 
     async def run(self) -> None:
-        """Take events until cancelled."""
+        """Get events until cancelled."""
         for room in json.loads(self._room.store.noted("invited") or "[]"):
             self._accept(room)
         try:
@@ -119,7 +119,7 @@ class Inlet:
             try:
                 await self._exchange_keys()
                 since = self._room.store.noted("since")
-                async with asyncio.timeout(POLL / 1000 + ANSWER):  # nio itself waits for ever for the first answer
+                async with asyncio.timeout(POLL / 1000 + ANSWER):  # nio would wait forever for the first answer
                     answer: Any = await self._client.sync(
                         timeout=0 if first else POLL, sync_filter=FILTER, since=since, full_state=first
                     )
@@ -149,7 +149,7 @@ class Inlet:
             await client.keys_claim(client.get_users_for_key_claiming())
 
     async def _take(self, answer: SyncResponse, since: str | None) -> None:
-        """Take the events of an answer, and note the position after them in the same transaction."""
+        """Store the messages in an answer's events. In the same transaction, note the position after these events."""
         messages: list[Incoming] = []
         rooms: Any = answer.rooms  # nio's types are not complete
         for id, info in rooms.join.items():
@@ -167,10 +167,10 @@ class Inlet:
         self._room.receive(messages, ("since", answer.next_batch))
 
     async def _missed(self, room: str, start: str | None, end: str) -> list[Event]:
-        """Return the events that the server left out of an answer, because there were too many.
+        """Return the events that the server left out of an answer because there were too many.
 
         Raises:
-            OSError: The server does not send them now. Keep the position, so that the same answer comes again.
+            OSError: The server does not send them now. The caller must keep its position, so that it asks again.
         """
         found: list[Event] = []
         while start:
@@ -191,7 +191,7 @@ class Inlet:
         return isinstance(event, RoomMemberEvent) and event.state_key == me and event.membership == "invite"
 
     def _read(self, room: MatrixRoom, events: Sequence[Event]) -> list[Incoming]:
-        """Return the messages in a room's events, without messages from before the agent's invitation."""
+        """Return the messages in a room's events. Leave out the events before the agent's invitation."""
         me = self._client.user_id
         names = {room.user_name(me) or "", *self._room.called}
         invited = max((at for at, event in enumerate(events) if self._is_invitation(event)), default=0)

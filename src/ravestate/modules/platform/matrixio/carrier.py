@@ -18,11 +18,11 @@ from ravestate.modules.platform.chats import DeliveryError, Outgoing, is_emoji
 GONE = ("M_FORBIDDEN", "M_NOT_FOUND")
 FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
 LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
-"""The failures after which a request may have reached the server."""
+"""The failures of the connection. In most cases, the request may have reached the server nevertheless."""
 
 FILE = 60.0  # the maximum number of seconds to transfer a file
 JPEG = b"\xff\xd8"  # the first bytes of a JPEG file
-WRITING = 5000  # the milliseconds for which a room shows that the agent is writing
+WRITING = 5000  # a room shows for this many milliseconds that the agent is writing
 
 
 class MatrixCarrier:
@@ -99,11 +99,11 @@ class MatrixCarrier:
 
 
 def _checked(answer: Any) -> Any:
-    """Return an answer, or raise the `DeliveryError` that it stands for."""
+    """Return an answer. If it reports a failure, raise a `DeliveryError` instead."""
     if not isinstance(answer, ErrorResponse):
         if (status := answer.transport_response.status) < 400:
             return answer
-        raise DeliveryError(f"the server has failed (status {status})", unsure=True)  # nio takes this answer for a file
+        raise DeliveryError(f"the server has failed (status {status})", unsure=True)  # nio mistakes this for a file
     code = str(answer.status_code)
     if code == "M_LIMIT_EXCEEDED":
         raise DeliveryError(str(answer), wait=(answer.retry_after_ms or 5000) / 1000)

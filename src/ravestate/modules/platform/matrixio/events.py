@@ -1,4 +1,4 @@
-"""Events: the messages in a Matrix room, as `Room` takes them."""
+"""Translate the events of a Matrix room into messages for `Room`."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from ravestate.modules.platform.chats.addressing import mentions
 from ravestate.modules.platform.chats.messages import Said
 
 SPOKEN = ("m.text", "m.emote")
-"""The types of messages with words for the agent. Other bots write notices, which the agent must not answer."""
+"""The types of text messages that the agent reads. Other bots write notices, which the agent must not answer."""
 
 QUOTE = re.compile(r"\A(?:> .*\n)+\n?")
-"""The quotation of another message before a reply, as older clients write it."""
+"""The quotation of another message at the beginning of a reply, as older clients write it."""
 
 
 def incoming(event: Event, room: MatrixRoom, me: str, names: Iterable[str]) -> Incoming | None:

@@ -1,4 +1,4 @@
-"""Serving an agent on Matrix, from its login to its end."""
+"""Serve an agent on Matrix, from its login to its end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A connection to a robot: its topics and services, over one node."""
+"""A connection to a robot: one node for all its topics and services."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from .robot import Axis, Port, Robot
 QUALITY = quality(None, depth=10, latch=False)
 LATCHED = quality("latched", depth=1, latch=True)
 STEP = 0.1
-"""Seconds between two commands to an axis that takes a speed. Without further commands, a base stops by itself."""
+"""The seconds between two commands to an axis with speed commands. Without further commands, a robot's base stops."""
 NEAR = 0.03
-"""The distance to the target (radians) below which an axis that takes a speed has arrived."""
+"""An axis with speed commands has arrived if it is at most this far from its target (radians)."""
 NOD = ((0.0, -0.18), (0.25, 0.1), (0.25, -0.12), (0.25, 0.0))
-"""A nod: the seconds to wait, and then the pitch to add."""
+"""A nod: a sequence of waits (seconds), each followed by the angle to add to the pitch (radians)."""
 SHAKE = ((0.0, 0.25), (0.3, -0.25), (0.3, 0.2), (0.3, 0.0))
-"""A shake of the head: the seconds to wait, and then the yaw to add."""
+"""A shake of the head: a sequence of waits (seconds), each followed by the angle to add to the yaw (radians)."""
 
 
 class Connection:
     """A connected robot.
 
     Args:
-        robot: The data file's content.
+        robot: The robot, from its data file.
         node: The node; this class does not close it.
         sleep: A function that waits for some seconds on the context's clock.
         now: A function that returns the time on the context's clock (seconds).
-        speech_timeout: The maximum number of seconds for which the robot may speak an utterance.
+        speech_timeout: The robot may speak an utterance for this many seconds.
     """
 
     def __init__(
@@ -47,23 +47,23 @@ class Connection:
         self.robot = robot
         self.node = node
         self.turn = asyncio.Lock()
-        """The lock that each utterance holds while the robot speaks it, so that only one is spoken at a time."""
+        """The lock that an utterance holds while the robot speaks it, so that only one is spoken at a time."""
         self._sleep = sleep
         self._now = now
         self._speech_timeout = speech_timeout
         self._pose = Pose()
         self._angles: dict[str, float] = {}
-        """Axis that takes a speed → its present angle."""
+        """The present angles of the axes with speed commands."""
         self._targets: dict[str, float] = {}
-        """Axis that turns → the angle at which it shall stop."""
+        """The angles at which the turning axes shall stop."""
         self._ports: dict[str, Channel] = {}
         self._opened = asyncio.Event()
 
     async def open(self) -> None:
-        """Open the topics and services. The robot's acts wait until they are open.
+        """Open the topics and services. Until they are open, commands to the robot wait.
 
         Raises:
-            PlatformError: A type is unknown or does not have the field, or ROS is not installed here.
+            PlatformError: A type is unknown or lacks the field that the data file names, or ROS is not installed here.
         """
         robot = self.robot
         await self.node.prepare()
@@ -73,7 +73,7 @@ class Connection:
             if port is not None:
                 self._ports[name] = self._open(port, self._speech_timeout if name == "speak" else 5.0)
         for axis, port in robot.head.items():
-            # A robot that connects late gets the newest pose, but it must not get an old speed.
+            # A robot that connects late gets the newest angle, but it must not get an old speed.
             self._ports[axis] = self._open(port, 5.0, LATCHED if port.speed is None else QUALITY)
         self._opened.set()
 
@@ -81,14 +81,14 @@ class Connection:
         """Call `take` with each message of a topic, if the robot has the topic.
 
         Raises:
-            PlatformError: The type is unknown, or does not have the field.
+            PlatformError: The type is unknown, or lacks the field that the data file names.
         """
         if port is not None:
             port.check(self.node.types)
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
-        """Speak a text. Return when the robot has spoken, if the robot reports this.
+        """Let the robot speak a text. Return when it has spoken, or at once if it does not report this.
 
         Raises:
             PlatformError: The robot does not answer.
@@ -130,7 +130,7 @@ class Connection:
             await self._turn(name, axis, axis.speed)
 
     async def _turn(self, name: str, axis: Axis, speed: float) -> None:
-        """Turn an axis that takes a speed, until it is at its target. The target may change meanwhile."""
+        """Turn an axis with speed commands until it is at its target. The target may change meanwhile."""
         at = self._angles.get(name, 0.0)
         moved = False
         try:

@@ -35,7 +35,7 @@ class Settings(rs.Settings):
     bus: str = "127.0.0.1:7411"
     """The address of the stand-in's bus."""
     feeling: float = pydantic.Field(5.0, ge=0, allow_inf_nan=False)
-    """The seconds for which the face shows a feeling."""
+    """The face shows a feeling for this many seconds."""
     look_around: float = pydantic.Field(8.0, gt=0, allow_inf_nan=False)
     """The mean number of seconds between two glances of an idle robot."""
     speech_timeout: float = pydantic.Field(60.0, gt=0, allow_inf_nan=False)
@@ -45,16 +45,16 @@ class Settings(rs.Settings):
 module = rs.Module("roboyio", requires=(rawio, interloc, ros1, ros2), settings=Settings, serve=serve)
 
 here = module.flag("here", input=True)
-"""Whether the robot belongs to this context although a platform with many users runs beside it."""
+"""Whether this is the robot's own context, in an agent that also has a platform with many users."""
 
 body: rs.Slot[Connection | None] = module.slot("body", None)
-"""The connection to the robot; None without a connection, as in virtual time."""
+"""The connection to the robot; None if there is none, for example in virtual time."""
 
 words: rs.Slot[str] = module.slot("words", "", type=str, always=True, input=True)
 """The last words that the robot understood."""
 
 direction: rs.Slot[float | None] = module.slot("direction", None, input=True)
-"""The direction of the speaker (radians, positive to the left); None before anybody has spoken."""
+"""The direction of the speaker (radians, positive to the left); None if nobody has spoken yet."""
 
 expression: rs.Slot[str] = module.slot("expression", "neutral", type=str)
 """The face: ``neutral``, ``happy``, ``shy``, ``surprised``, ``affectionate``, ``sad`` or ``thinking``."""
@@ -66,4 +66,4 @@ gesture: rs.Slot[str] = module.slot("gesture", "", type=str, always=True)
 """The last gesture: ``nod``, ``shake`` or ``wave``. A write makes the robot perform it."""
 
 speaking = module.flag("speaking")
-"""Whether the robot speaks."""
+"""Whether the robot is speaking."""

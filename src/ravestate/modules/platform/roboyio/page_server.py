@@ -1,4 +1,4 @@
-"""The stand-in robot's page: it shows the robot's looks, and takes a visitor's words."""
+"""The stand-in robot's page: it shows the robot, and lets a visitor talk to it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class PageServer:
         port: The port on the loopback interface; 0 takes a free one.
 
     Raises:
-        PlatformError: The port is taken.
+        PlatformError: The port is in use.
     """
 
     def __init__(self, robot: StandIn, port: int = 8421) -> None:
@@ -48,7 +48,7 @@ class PageServer:
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._listener.bind(("127.0.0.1", self._port))
-            self._listener.listen()  # a visitor who comes too early then waits for the server
+            self._listener.listen()  # from now on, a visitor who comes too early waits for the server
         except OSError as error:
             self._listener.close()
             raise PlatformError(
@@ -76,7 +76,7 @@ class PageServer:
         return f"http://127.0.0.1:{self._listener.getsockname()[1]}/"
 
     async def _talk(self, websocket: WebSocket) -> None:
-        """Show a visitor the robot's looks, and pass on the visitor's words."""
+        """Show the robot to a visitor, and pass on the visitor's words."""
         if not _is_own_page(websocket):
             await websocket.close(1008)
             return
@@ -88,7 +88,7 @@ class PageServer:
         async def show() -> None:
             while True:
                 looks = await news.get()
-                while not news.empty():  # a slow page gets only the newest looks
+                while not news.empty():  # a slow page gets only the newest state
                     looks = news.get_nowait()
                 await websocket.send_json(looks)
 
@@ -104,7 +104,7 @@ class PageServer:
             self._sockets.discard(websocket)
 
     def _hear(self, said: str) -> None:
-        with contextlib.suppress(ValueError, TypeError, AttributeError):  # our page sends no such frame: ignore it
+        with contextlib.suppress(ValueError, TypeError, AttributeError):  # ignore malformed frames: they are not ours
             told: Any = json.loads(said)
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))

@@ -18,7 +18,7 @@ ROBOTS = Path(__file__).with_name("robots")
 
 
 class Port(pydantic.BaseModel):
-    """A topic or a service of the robot, and the field of its messages that has the value."""
+    """A topic or a service of the robot, and the field of its messages that holds the value."""
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
@@ -38,7 +38,7 @@ class Port(pydantic.BaseModel):
         return self
 
     def check(self, types: Types) -> None:
-        """Load the type.
+        """Load the type, and check that it has the field.
 
         Raises:
             PlatformError: The type is unknown, or does not have the field.
@@ -56,7 +56,7 @@ class Port(pydantic.BaseModel):
         return value
 
     def unpack(self, message: Any) -> Any:
-        """Return the field of a message."""
+        """Return the value of the field in a message."""
         for name in self.field.split("."):
             message = getattr(message, name)
         return message
@@ -68,7 +68,7 @@ class Direction(Port):
     unit: Literal["radians", "degrees"] = "radians"
 
     def radians(self, message: Any) -> float:
-        """Return the direction: radians to the left of straight ahead, between -pi and pi."""
+        """Return the direction in a message (radians from -pi to pi; 0: straight ahead, positive: left)."""
         value = float(self.unpack(message))
         angle = math.radians(value) if self.unit == "degrees" else value
         return math.atan2(math.sin(angle), math.cos(angle))
@@ -82,7 +82,7 @@ class Axis(Port):
     high: float
     """The highest angle (radians)."""
     speed: float | None = pydantic.Field(None, gt=0)
-    """The speed of a turn (radians a second), if the field is a speed. None if the field is the angle."""
+    """How fast the axis turns (radians per second), if the field holds a speed. None if the field holds an angle."""
 
     def limited(self, angle: float) -> float:
         """Return the nearest angle within the range of the axis."""
@@ -93,19 +93,19 @@ class Faces(Port):
     """The expressions of the face."""
 
     faces: dict[str, str]
-    """Ravestate's name of an expression → the robot's name."""
+    """The robot's names of the expressions, by Ravestate's names."""
 
 
 class Gestures(Port):
     """The gestures of the robot."""
 
     gestures: dict[str, str]
-    """Ravestate's name of a gesture → the robot's name."""
+    """The robot's names of the gestures, by Ravestate's names."""
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of a robot, and the topic or service that it is bound to."""
+    """A part of a robot, and the topic or service to which it is bound."""
 
     name: str
     binding: Binding
@@ -118,7 +118,7 @@ class Robot(pydantic.BaseModel):
 
     name: str
     definitions: Path | None = None
-    """A folder beside the data file, with the definitions of the robot's messages."""
+    """The folder with the definitions of the robot's messages. The path is relative to the data file."""
     hear: Port | None = None
     direction: Direction | None = None
     people: Port | None = None
@@ -148,7 +148,7 @@ def load_robot(name: str) -> Robot:
         name: ``roboy``, ``turtlebot``, or the path of a file of your own.
 
     Raises:
-        DeclarationError: The file does not exist, or has a fault. The message names the line to write.
+        DeclarationError: The file does not exist, or has a fault.
     """
     path = Path(name).expanduser()
     if path.suffix not in (".yaml", ".yml"):

@@ -1,4 +1,4 @@
-"""The rules of a robot: hearing, speaking, the face, the gaze, and gestures."""
+"""The rules of a robot: they hear, speak, and move the face and the head."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .names import Pose, Settings, body, direction, expression, gaze, gesture, h
 from .robot import load_robot
 
 THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
-"""The gaze of a robot that thinks."""
+"""The gaze of a thinking robot."""
 _connected: WeakSet[Node] = WeakSet()
-"""The nodes that have a robot. If two runs of `connect` begin at once, neither sees the slots that the other writes."""
+"""The nodes that have a robot. The slot `body` does not suffice: two runs of `connect` may begin at the same time."""
 THINKS_AFTER = 0.6
-"""Seconds of work after which a robot shows that it thinks."""
+"""A robot shows that it thinks after it has worked for this many seconds."""
 
 
 @module.rule(
@@ -32,11 +32,11 @@ THINKS_AFTER = 0.6
     | ros2.node.changed.max_age(None).detached(),
     reads=(here, ros1.node, ros2.node),
     writes=(body, words, direction, interloc.users),
-    detached=True,  # each thing that the robot senses is a separate cause
+    detached=True,  # each message of a sensor is a separate cause
     background=True,
 )
 async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Connect to the robot, and take the messages of its sensors."""
+    """Connect to the robot, and pass on the messages of its sensors."""
     settings: Settings = ctx.settings
     if getattr(asyncio.get_running_loop(), "is_virtual", False):
         return rs.Resign("time is virtual: a test writes the slots")
@@ -88,7 +88,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _not_now(ctx: rs.RuleContext) -> str | None:
-    """Return the reason for which this run of `connect` must not connect; None if it may connect."""
+    """Return why this run of `connect` must not connect; None if it may connect."""
     link: str = ctx.settings.link
     others = [each.name for each in ctx.policy.modules if each.serve is not None and each is not module]
     if others and not ctx[here]:
@@ -108,7 +108,7 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
 
 
 def _nowhere() -> Place:
-    """Raise an error: a node on the bus must not look for a bridge's program."""
+    """Raise an error, because a node on the bus must not look for a bridge's program."""
     raise PlatformError("the bus has no program")
 
 
@@ -178,7 +178,7 @@ async def turn_to_sound(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def think(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up and away while an answer takes long; look back when it comes."""
+    """Look up and away while an answer takes long. Look back when the answer comes."""
     if ctx[speaking]:
         return rs.Resign("the robot speaks")
     ctx[gaze] = THOUGHTFUL
@@ -245,7 +245,7 @@ async def send_gesture(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 async def _careful(ctx: rs.RuleContext, act: Any) -> None:
-    """Await an act of the robot; log a failure."""
+    """Await a command to the robot, and log a failure."""
     try:
         await act
     except PlatformError as error:
@@ -271,7 +271,7 @@ def add_feelings(ctx: rs.RuleContext) -> None:
         background=True,
     )
     async def feel(ctx: rs.RuleContext) -> None:
-        """Show a feeling for a while, with a nod if the feeling is happy."""
+        """Show a feeling for a while. Nod if the feeling is ``happy``."""
         feeling = ctx.payload(emotion.felt.changed) or "neutral"
         ctx[expression] = feeling
         if feeling == "happy":

@@ -1,4 +1,4 @@
-"""Serving a robot beside platforms with many users: the robot has one context of its own."""
+"""Serve a robot in an agent with many users: the robot has one context of its own."""
 
 from __future__ import annotations
 

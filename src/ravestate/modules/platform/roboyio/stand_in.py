@@ -1,4 +1,4 @@
-"""The stand-in robot: a node that offers the topics and services of a robot's data file, and shows their effects."""
+"""The stand-in robot: a node that offers the topics and services in a robot's data file, and shows their effects."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .robot import Axis, Port, Robot
 
 QUALITY = quality(None, depth=100, latch=False)
 RATE = 14.0
-"""The number of characters that the stand-in speaks in a second."""
+"""The stand-in speaks this many characters per second."""
 SHORTEST = 0.8
-"""The minimum number of seconds for an utterance."""
+"""An utterance takes at least this many seconds."""
 TICK = 0.05
-"""Seconds between two steps of a robot that turns."""
+"""The seconds between two steps of a turning axis."""
 
 
 @dataclass(slots=True)
@@ -29,8 +29,8 @@ class Looks:
         face: Ravestate's name of the expression.
         yaw, pitch, roll: The head's angles (radians).
         text: The words in the speech bubble; empty if there are none.
-        seconds: The time that speaking these words takes.
-        gesture: The last gesture, with a number, so that a repeated gesture is a change.
+        seconds: How many seconds it takes to speak these words.
+        gesture: The last gesture and a running number, so that a repeated gesture is a change.
         people: The names of the people whom the robot sees.
     """
 
@@ -46,11 +46,11 @@ class Looks:
 
 
 class StandIn:
-    """A robot on a page.
+    """A robot that exists only on a page.
 
     Args:
-        robot: The robot's data file.
-        node: A node of its own; this class does not close it.
+        robot: The robot, from its data file.
+        node: A node that only the stand-in uses. This class does not close it.
         sleep: A function that waits for some seconds; a test may pass a faster function.
 
     Raises:
@@ -80,13 +80,13 @@ class StandIn:
     # ------------------------------------------------------------------------------- the visitor's side
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
-        """Call `watcher` with the looks now and after each change. Return a function that ends these calls."""
+        """Call `watcher` with the fields of `Looks`, now and after each change. Return a function that ends this."""
         self._watchers.add(watcher)
         watcher(asdict(self.looks))
         return lambda: self._watchers.discard(watcher)
 
     def hear(self, text: str, direction: float = 0.0) -> None:
-        """Let the robot hear a visitor, who stands in a direction (radians, positive: to the robot's left)."""
+        """Let the robot hear a visitor from a direction (radians, positive: to the robot's left)."""
         if "direction" in self._senses:
             port, channel = self._senses["direction"]
             degrees = getattr(port, "unit", "radians") == "degrees"
@@ -103,7 +103,7 @@ class StandIn:
             channel.publish(port.pack(", ".join(names)))
 
     async def close(self) -> None:
-        """End the robot's acts."""
+        """Cancel the robot's unfinished commands."""
         for task in self._tasks:
             task.cancel()
 
@@ -150,7 +150,7 @@ class StandIn:
         self._show(gesture=(name, self.looks.gesture[1] + 1))
 
     def _turner(self, name: str, axis: Axis) -> Callable[[float], Any]:
-        """Return the function that takes the values of an axis: angles, or speeds."""
+        """Return the function that handles the commands to an axis: angles or speeds."""
         now = asyncio.get_running_loop().time
         speed, since, turns = 0.0, 0.0, False
 

@@ -1,4 +1,4 @@
-"""The common part of `ros1`, `ros2` and `roboyio`: nodes, and slots that are topics, services and actions."""
+"""The common part of `ros1`, `ros2` and `roboyio`: nodes, and slots that are bound to topics, services and actions."""
 
 from __future__ import annotations
 

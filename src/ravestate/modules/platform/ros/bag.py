@@ -28,10 +28,10 @@ class Simulated(Protocol):
 def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
     """Play a recorded bag into a simulated agent. Each message goes to the slots of its topic, at its time.
 
-    Time is virtual, so a bag of an hour takes seconds, and leads to the same decisions each time.
+    Time is virtual, so a bag of one hour takes seconds, and leads to the same decisions each time.
 
     Args:
-        sim: The simulation. The bag's first message comes at the simulation's present time.
+        sim: The simulation. The beginning of the bag is the simulation's present time.
         bag: A ``.bag`` file of ROS 1, or a folder or file of ROS 2.
         types: The types of the bag's messages, if the bag does not contain their definitions.
 

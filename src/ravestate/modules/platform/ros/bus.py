@@ -1,6 +1,6 @@
-"""The built-in bus: it takes the place of ROS for an agent and the stand-in robot on a machine without ROS.
+"""The built-in bus, which replaces ROS for an agent and the stand-in robot on a machine without ROS.
 
-The bus is a server on a local TCP port. It speaks the frames of a bridge process (``children/pipe.py``), and passes
+The bus is a server on a local TCP port. It uses the frames of a bridge process (``children/pipe.py``), and passes
 messages and calls from one node to the others.
 """
 
@@ -22,23 +22,23 @@ from .frames import Frames, Handle, Kind
 from .node import MakeLink
 
 AGAIN = 0.5
-"""Seconds between two attempts to reach the bus."""
+"""The seconds between two attempts to reach the bus."""
 
 
 class Bus:
-    """A bus. ``async with Bus(port) as bus`` serves the bus on the running loop.
+    """The server of the bus. ``async with Bus(port) as bus`` runs it on the current event loop.
 
     Args:
-        port: The TCP port on the loopback interface; 0 takes a free one.
-        host: The interface's address.
+        port: The TCP port; 0 takes a free one.
+        host: The address to listen on.
 
     Raises:
-        PlatformError: The port is taken.
+        PlatformError: The port is in use.
     """
 
     def __init__(self, port: int = 7411, host: str = "127.0.0.1") -> None:
         self.address = f"{host}:{port}"
-        """The address for nodes."""
+        """The address to which nodes connect."""
         self._host, self._port = host, port
         self._nodes: set[_BusNode] = set()
         self._calls: dict[int, _Call] = {}
@@ -85,7 +85,7 @@ class Bus:
                 call.caller.frames.tell(Kind.FAULT, "the node of the service is gone", call.channel, call.number)
 
     def find(self, kind: str, name: str) -> list[tuple[_BusNode, int, dict[str, Any]]]:
-        """Return node, channel and binding of all channels of a kind and name."""
+        """Return the node, number and binding of each channel that has this kind and name."""
         return [
             (node, channel, binding)
             for node in self._nodes
@@ -119,7 +119,7 @@ class Bus:
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
-        """Pass on the answer to the call with the number `own` on the bus to its caller."""
+        """Pass on an answer to the caller of the call that has the number `own` on the bus."""
         call = self._calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)
@@ -135,7 +135,7 @@ class Bus:
         }
 
     def graph(self, asker: _BusNode) -> dict[str, Any]:
-        """Return the topics and services that other nodes publish, subscribe to and serve."""
+        """Return all topics and services, with the numbers of publishers, subscribers and servers besides `asker`."""
         topics: dict[str, dict[str, Any]] = {}
         services: dict[str, dict[str, Any]] = {}
         for node in self._nodes:
@@ -157,7 +157,7 @@ class Bus:
 
 @dataclass(frozen=True, slots=True)
 class _Call:
-    """A call under way: the caller's node, channel and number, and the node that must answer."""
+    """An open call: the caller's node, channel and number, and the node that must answer."""
 
     caller: _BusNode
     channel: int
@@ -214,7 +214,7 @@ class _BusNode:
 
 
 class BusLink:
-    """A node's connection to the bus. If the bus goes away and comes back, the link connects again."""
+    """A node's connection to the bus. If the bus stops and starts again, the link connects again."""
 
     pid = None
 
@@ -237,7 +237,7 @@ class BusLink:
 
     @property
     def frames(self) -> Frames | None:
-        """The pipe to the bus, once the pipe is ready for work."""
+        """The pipe to the bus; None if it is not ready."""
         return self._frames if self._works else None
 
     def start(self) -> None:
@@ -301,5 +301,5 @@ class BusLink:
 
 
 def bus_link(address: str) -> MakeLink:
-    """Return a function that makes links to the bus at an address."""
+    """Return a function that connects a node to the bus at an address."""
     return lambda config, handle, ready, lost: BusLink(address, config, handle, ready, lost)

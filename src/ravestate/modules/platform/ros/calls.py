@@ -1,4 +1,4 @@
-"""The calls of a node that wait for an answer: services, actions, and questions about the network."""
+"""The open calls of a node: to services, to actions, and questions about the network."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class Call:
 
 
 class Calls:
-    """The open calls, by number.
+    """The open calls of a node, by number.
 
     Args:
-        title: The name of the node in errors, such as ``ros1``.
+        title: The name of the node in errors, for example ``ros1``.
         types: The types of the answers.
     """
 
@@ -41,7 +41,7 @@ class Calls:
         self._open: dict[int, Call] = {}
 
     def open(self, channel: Channel, feedback: Callable[[Any], None] | None = None) -> Call:
-        """Return a new call. Its caller closes it."""
+        """Return a new call. Whether it succeeds or not, pass it to `close` at the end."""
         call = Call(next(self._numbers), asyncio.get_running_loop().create_future(), channel, feedback)
         self._open[call.number] = call
         return call
@@ -62,7 +62,7 @@ class Calls:
                 self._fail(call, fault)
 
     def answer(self, kind: Kind, number: int, body: memoryview) -> None:
-        """Take a frame that answers a call: a result, feedback, a fault, or the description of the network."""
+        """Handle a frame that answers a call: a result, feedback, a fault, or the description of the network."""
         call = self._open.get(number)
         if call is None or call.future.done():
             return

@@ -19,11 +19,14 @@ class Channel:
 
     Attributes:
         number: The channel's number on the link.
-        binding: The description that the bridge gets.
+        binding: The description of the channel for the bridge.
         type: The full name of the type.
-        fault: The reason for which the bridge could not make the channel; empty if it could.
-        pending: The newest message that has come during the pause after another message.
-        timer: The end of that pause.
+        take: The function that gets each message of a subscription.
+        serve: The function that answers the requests to a service.
+        pause: The minimum time between two messages for `take` (seconds).
+        fault: Why the bridge could not make the channel; empty if it could.
+        pending: The newest message that has come during the pause.
+        timer: The timer that ends the pause; None if there is no pause.
         owed: Whether the bridge waits for an acknowledgement.
     """
 
@@ -50,7 +53,7 @@ class Channel:
         return self.binding.get("latch", False)
 
     def publish(self, value: Any) -> None:
-        """Publish a message: a message, a mapping of its fields, or the value of its only field.
+        """Publish a value: a message, a mapping of its fields, or the value of its only field.
 
         Raises:
             PlatformError: The value does not fit the type, or the bridge could not make the channel.
@@ -65,7 +68,7 @@ class Channel:
         If the caller is cancelled, the goal is cancelled.
 
         Raises:
-            PlatformError: The value does not fit, nobody answers within the time-out, or the other end refuses.
+            PlatformError: The value does not fit the type, no answer comes in time, or the server refuses the call.
         """
         return await self.node.call(self, value, feedback)
 
@@ -75,11 +78,11 @@ class Channel:
         self.node.drop(self)
 
     def offer(self, body: memoryview, *, newest: bool = True, owed: bool = False) -> None:
-        """Take a message of the topic, unless a newer message replaces it.
+        """Pass a message of the topic to `take`, now or after the pause, unless a newer message replaces it.
 
         Args:
             body: The message.
-            newest: Whether no newer message has come over the same connection.
+            newest: Whether it is the newest message that has come over its connection.
             owed: Whether the bridge waits for an acknowledgement before it sends the next message.
         """
         if not self.binding["latest"]:

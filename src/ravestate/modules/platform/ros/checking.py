@@ -1,4 +1,4 @@
-"""Check the slots of an agent: whether other nodes use their topics, whether the types match, and how to fix faults."""
+"""Check the slots of an agent: do other nodes use their topics, and do the types match? Say how to fix faults."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""Kind of a slot → the graph's name for the other end that the slot needs."""
+"""For each kind of slot, the graph's name for the other end that the slot needs."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8
-"""The number of looks at the network, because other nodes show up one by one."""
+"""Give up after this many looks at the network. Other nodes show up one by one."""
 PAUSE = 0.4
-"""Seconds between two looks."""
+"""The seconds between two looks."""
 
 
 class Bound(Protocol):
-    """A thing that is bound to the network: a slot, or a part of a robot."""
+    """An object that is bound to the network: a slot, or a part of a robot."""
 
     @property
     def name(self) -> str: ...
@@ -38,9 +38,9 @@ class Line:
     """One line of a check.
 
     Attributes:
-        good: Whether all is well.
-        what: The slot or part.
-        text: The binding and the other end; after a fault, the remedy.
+        good: Whether the slot or part is without faults.
+        what: The name of the slot or part.
+        text: The binding, and the other end or a fault with its remedy.
     """
 
     good: bool
@@ -66,7 +66,7 @@ async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
 
 
 def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
-    """Return the line about a slot: whether the network has its other end."""
+    """Return the line about a slot: whether the network has the other end that the slot needs."""
     binding = slot.binding
     name = node.absolute(binding.name)
     bound = f"{binding.kind} of {name} ({binding.type})"
@@ -92,7 +92,7 @@ def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) 
 
 
 def counted(count: int, nouns: str) -> str:
-    """Return a number of things in words, such as ``1 publisher`` for 1 and ``publishers``."""
+    """Return a number with its noun, such as ``1 publisher`` for 1 and ``publishers``."""
     return f"{count} {nouns.removesuffix('s') if count == 1 else nouns}"
 
 

@@ -12,13 +12,13 @@ from .outbox import Outbox
 
 LENGTH = struct.Struct("<I")
 BLOCK = 1 << 12
-"""The number of bytes to read at once, or more if a message lacks more. A larger buffer takes longer to make."""
+"""The number of bytes to read at once, unless a message lacks more. A larger buffer takes longer to allocate."""
 TURN = 1 << 20
-"""The number of bytes after which the loop gets a turn."""
+"""After reading this many bytes, give the loop a turn."""
 MESSAGES = 1000
-"""The number of messages after which the loop gets a turn."""
+"""After reading this many messages, give the loop a turn."""
 LONGEST = 1 << 28
-"""The maximum length of a message (bytes). A greater length means that the data are not a message."""
+"""The maximum length of a message in bytes. A greater length means that the data are not a message."""
 
 
 class _Connection(abc.ABC):
@@ -49,7 +49,7 @@ class _Connection(abc.ABC):
             self._sock.close()
 
     def _receive(self, size: int) -> bytes | None:
-        """Return at most `size` bytes: empty at the end of the connection, and None if nothing has come."""
+        """Return at most `size` bytes: none of them if the connection has ended. Return None if no data have come."""
         try:
             return self._sock.recv(size)
         except (BlockingIOError, InterruptedError):
@@ -69,7 +69,7 @@ class ToSubscriber(_Connection):
     Args:
         sock: The connected socket; this object closes it.
         lost: A function to call once on the loop when the subscriber has closed the connection.
-        depth: The maximum number of messages that wait for the subscriber. A further message replaces the oldest.
+        depth: The maximum number of messages that wait for the subscriber. A further message replaces an old one.
     """
 
     def __init__(self, sock: socket.socket, lost: Callable[[], None], depth: int) -> None:
@@ -102,8 +102,8 @@ class FromPublisher(_Connection):
 
     Args:
         sock: The connected socket; this object closes it.
-        take: A function to call on the loop with each message, and whether it is the newest that has come.
-        lost: A function to call once on the loop when the publisher closes the connection, or sends nonsense.
+        take: A function to call on the loop with each message, and with whether it is the newest one so far.
+        lost: A function to call once on the loop when the publisher closes the connection, or sends invalid data.
         warn: A function to call with a sentence about data that are not a message.
         first: The bytes that were already read.
     """
@@ -123,7 +123,7 @@ class FromPublisher(_Connection):
         self._lacks = BLOCK
 
     def read(self) -> None:
-        """Read all that has come, and only then take the complete messages, because only then the newest is known."""
+        """Read all data that have come. Only then pass on the complete messages, because the last one is the newest."""
         bodies = list[memoryview]()
         goes_on, room = self._split(bodies), TURN
         while goes_on and room > 0 and len(bodies) < MESSAGES:
@@ -143,7 +143,7 @@ class FromPublisher(_Connection):
             self._end()
 
     def _split(self, bodies: list[memoryview]) -> bool:
-        """Move the complete messages into a list; return whether the rest may be the start of a message."""
+        """Move the complete messages into a list. Return whether the rest may be the beginning of a message."""
         rest, start = self._rest, 0
         self._lacks = BLOCK
         while len(rest) - start >= LENGTH.size:

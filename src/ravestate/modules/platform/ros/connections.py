@@ -14,7 +14,7 @@ from .connection import FromPublisher, ToSubscriber
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node. If it latches, `last` is its last message, and `late` has channels that need it."""
+    """A publisher of another node. If it latches, `last` is its last message, for the new channels in `late`."""
 
     topic: str
     type: str
@@ -24,7 +24,7 @@ class Publisher:
     late: list[Channel] = field(default_factory=list[Channel])
 
     def suits(self, channel: Channel) -> bool:
-        """Return whether the publisher has the type that a channel reads. If not, the bridge tells the designer."""
+        """Return whether the publisher has the type that a channel reads. If not, the bridge reports it."""
         binding = channel.binding
         return binding["type"] == self.type and self.md5 in (binding["md5"], "*")
 
@@ -43,12 +43,12 @@ class Connections:
         self._all: dict[int, FromPublisher | ToSubscriber] = {}
         self._publishers: dict[int, Publisher] = {}
         self._subscribers: dict[str, dict[int, ToSubscriber]] = {}
-        """Topic → the connections with its subscribers."""
+        """The connections with the subscribers of each topic."""
         self._readers: dict[str, list[Channel]] = {}
-        """Topic → the channels that subscribe to it."""
+        """The channels that subscribe to each topic."""
 
     def add(self, channel: Channel) -> None:
-        """Give a channel the messages of its topic, beginning with the messages that publishers have latched."""
+        """Let a channel get the messages of its topic, beginning with the messages that publishers have latched."""
         self._readers.setdefault(channel.name, []).append(channel)
         for publisher in self._publishers.values():
             if publisher.last is not None and publisher.topic == channel.name and publisher.suits(channel):
@@ -56,7 +56,7 @@ class Connections:
                 asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
-        """Give a channel no more messages. When a topic has no channel left, the topic's connections end."""
+        """Stop passing messages to a channel. If no channel of the topic is left, disconnect from its publishers."""
         readers = self._readers[channel.name]
         readers.remove(channel)
         if not readers:
@@ -75,7 +75,7 @@ class Connections:
         return True
 
     def to_subscriber(self, number: int, sock: socket.socket, topic: str, depth: int) -> ToSubscriber:
-        """Take over a connection with a subscriber; at most `depth` messages wait for it."""
+        """Take over a connection with a subscriber. At most `depth` messages wait for the subscriber."""
         connection = ToSubscriber(sock, partial(self._lost, number), depth)
         self._all[number] = self._subscribers.setdefault(topic, {})[number] = connection
         return connection
@@ -120,7 +120,7 @@ class Connections:
         if channel in self._readers[channel.name]:  # the channel has not been closed meanwhile
             try:
                 channel.offer(body, newest=newest)
-            except Exception as error:  # other channels, and later messages, must go on
+            except Exception as error:  # other channels must still get this message, and later ones
                 text = f"{channel.name}: a message failed"
                 asyncio.get_running_loop().call_exception_handler({"message": text, "exception": error})
 

@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 ENDINGS = {"msg": ".msg", "srv": ".srv", "action": ".action"}
 
 PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""Kind of a definition → the messages that it consists of, in the order of the file."""
+"""The messages of which each kind of definition consists, in the order of the file."""
 
 COMMON = {
     "std_srvs/srv/Empty": "---",
@@ -25,7 +25,7 @@ def full_name(name: str, kind: str = "msg") -> str:
 
     Args:
         name: A name with one or two slashes.
-        kind: ``msg``, ``srv`` or ``action``; the middle of the full name.
+        kind: The middle of the full name: ``msg``, ``srv`` or ``action``.
 
     Raises:
         PlatformError: The name does not look like the name of a type.
@@ -93,7 +93,7 @@ GOAL_TOPICS = {
     "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Result result",
     "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Feedback feedback",
 }
-"""The messages of an action's topics in ROS 1: end of a message's name → the message's text."""
+"""The messages of an action's topics in ROS 1. Key: the end of the message's name; value: the message's text."""
 
 
 def part_names(name: str, version: int) -> list[str]:

@@ -25,11 +25,11 @@ SHARED = 1
 PASSED = 2
 """The flag of a frame that comes with a socket; see `Frames.passed`."""
 LARGE = 1 << 16
-"""The minimum number of bytes of a body that travels in shared memory."""
+"""A body of at least this many bytes travels in shared memory."""
 BLOCK = 1 << 16
-"""The number of bytes to read at once. A larger buffer would take longer to make than a short message to read."""
+"""The number of bytes to read at once. A larger buffer would take longer to allocate than a short message to read."""
 TURN = 64
-"""The maximum number of frames to handle before other tasks get a turn."""
+"""After handling this many frames, give other tasks a turn."""
 
 
 class Kind(IntEnum):
@@ -103,7 +103,7 @@ class Frames:
         await self._out.flush()
 
     def passed(self) -> socket.socket:
-        """Return the socket that came with the frame in `handle`."""
+        """Return the socket that came with a frame. Call this in `handle`."""
         return socket.socket(fileno=self._fds.popleft())
 
     def close(self) -> None:
@@ -158,12 +158,12 @@ class Frames:
                     else memoryview(bytes(memoryview(rest)[start : start + size]))
                 )
             except LookupError:
-                self._end()  # the other end does not speak this protocol
+                self._end()  # the other end does not use this protocol
                 break
             start += inline
             try:
                 self._handle(what, channel, number, body)
-            except Exception as error:  # a fault in one frame must not lose the next frames
+            except Exception as error:  # a fault in one frame must not affect the next frames
                 self._loop.call_exception_handler({"message": f"a frame ({what.name}) failed", "exception": error})
         else:
             if not self._closed:
@@ -184,7 +184,7 @@ class Frames:
 
 
 def _mapped(fd: int, size: int) -> memoryview:
-    """Return the bytes in shared memory. They live as long as somebody holds a view of them."""
+    """Return a view of the bytes in shared memory. The memory is freed with the last view of it."""
     try:
         return memoryview(mmap.mmap(fd, size, access=mmap.ACCESS_READ))
     finally:

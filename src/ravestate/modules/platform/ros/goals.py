@@ -1,4 +1,4 @@
-"""Actions of ROS 1. An action is five topics (the protocol of actionlib), so it needs no package and no bridge."""
+"""Actions of ROS 1. An action consists of five topics (the protocol of actionlib), so it needs no package."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from .node import Node
 
 AGAIN = 0.2
-"""The seconds after which a goal that the server has not listed is sent again. A server ignores repeated goals."""
+"""If the server has not listed a goal after this many seconds, send the goal again. Servers ignore repeated goals."""
 SUCCEEDED = 3
 ENDS = {2: "cancelled", 8: "cancelled", 4: "aborted", 5: "refused", 9: "lost"}
-"""The states of a goal without a result, as in actionlib_msgs/GoalStatus."""
+"""The final states of a goal that has no result, as in actionlib_msgs/GoalStatus."""
 
 
 @dataclass(eq=False, slots=True)
@@ -29,7 +29,8 @@ class _Goal:
     feedback: Callable[[Any], None] | None
     listed: asyncio.Event = field(default_factory=asyncio.Event)
     tracked: bool = False
-    """Whether a status of the server has listed the goal. An old status may still follow the first feedback."""
+    """Whether a status of the server has listed the goal. Feedback alone does not count: an older status may follow
+    it."""
 
 
 class GoalTopics:
@@ -39,7 +40,7 @@ class GoalTopics:
         node: The node.
         name: The name of the action.
         type: The full name of its type, which the node's types know.
-        timeout: The seconds within which a server must list a goal.
+        timeout: A server must list a goal within this many seconds.
     """
 
     def __init__(self, node: Node, name: str, type: str, timeout: float) -> None:
@@ -66,7 +67,7 @@ class GoalTopics:
         """Send a goal; return the result. If the caller is cancelled, the goal is cancelled.
 
         Raises:
-            PlatformError: The value does not fit, there is no server, or the goal ends without a result.
+            PlatformError: The value does not fit the type, there is no server, or the goal ends without a result.
         """
         message = self._node.types.message(value, self._message)
         if self._goal.fault:
@@ -95,7 +96,7 @@ class GoalTopics:
             raise PlatformError(f"{self._node.title}: nobody offers the action {self.name}") from None
 
     def close(self) -> None:
-        """End the topics."""
+        """Close the channels of the topics."""
         for channel in self._channels:
             channel.close()
 

@@ -27,7 +27,7 @@ def resolve(name: str, node: str, namespace: str, remap: Mapping[str, str]) -> s
         name: ``/absolute``, ``relative`` to the namespace, or ``~private`` to the node.
         node: The node's name, without its namespace.
         namespace: The namespace, such as ``/robot``.
-        remap: Name → the name that takes its place. Both names may be absolute, relative or private.
+        remap: The names to replace, with their new names. All names may be absolute, relative or private.
     """
     absolute = _absolute(name, node, namespace)
     for old, new in remap.items():
@@ -46,10 +46,11 @@ def _absolute(name: str, node: str, namespace: str) -> str:
 
 
 def quality(qos: str | Mapping[str, Any] | None, *, depth: int, latch: bool) -> dict[str, Any]:
-    """Return a whole quality of service.
+    """Return a quality of service with all its values.
 
     Args:
-        qos: The name of a profile, or some values: ``depth``, ``reliability`` and ``durability``; None for the default.
+        qos: The name of a profile, or some of the values ``depth``, ``reliability`` and ``durability``. None is the
+            default.
         depth: The depth, if `qos` has no depth.
         latch: Whether late subscribers get the last message.
 

@@ -1,4 +1,4 @@
-"""A node: the topics, services and actions that an agent uses, over one bridge or bus."""
+"""A node: it connects an agent with topics, services and actions, through one bridge or bus."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from .naming import resolve
 from .types import Types
 
 TOLD = 100
-"""The maximum number of different texts that a node logs. A text of level `info`, or a new link, resets the count."""
+"""A node logs at most this many different texts. A text of level `info`, or a new link, resets the count."""
 WAITING = 1000
-"""The maximum number of messages that wait while the bridge starts. Beyond it, the node drops the oldest message."""
+"""At most this many frames wait while the bridge starts. If there are more, the node drops the oldest ones."""
 LEAVING = 2.0
-"""The maximum number of seconds for which an ending node sends its last messages."""
+"""A node that is closed may take this many seconds to send its last messages."""
 
 _nodes = itertools.count(1)  # nodes need different names, because ROS 1 ends an older node of the same name
 
@@ -49,23 +49,23 @@ class Link(Protocol):
 
 
 MakeLink = Callable[[Mapping[str, Any], Handle, Callable[[], None], Callable[[str], None]], Link]
-"""A function that makes a link from a node's configuration and the functions `handle`, `ready` and `lost`; see
-`BridgeProcess`."""
+"""A function that makes a link. Its arguments are a node's configuration and the functions `handle`, `ready` and
+`lost`; see `BridgeProcess`."""
 
 
 class Node:
     """A node of ROS or of the bus. The node connects at its first use, and replaces a broken link.
 
     Args:
-        title: The name of the node in logs and errors, such as ``ros1``.
+        title: The name of the node in logs and errors, for example ``ros1``.
         types: The types of its messages.
         make_link: A function that makes the link.
         name: The node's name.
         namespace: The namespace of relative names.
-        remap: Name → the name that takes its place.
+        remap: The names to replace, with their new names.
         environment: Environment variables for the bridge.
         log: The logger for warnings.
-        failed: A function to call with the reason if there can be no link.
+        failed: A function to call with the reason if no link is possible.
     """
 
     def __init__(
@@ -85,9 +85,9 @@ class Node:
         self.types = types
         self.channels: dict[int, Channel] = {}
         self.bound: dict[str, Channel | GoalTopics] = {}
-        """Slot's name → the slot's channel, for slots that publish or call."""
+        """The channels of the slots that publish or call, by the slots' names."""
         self.goals: dict[str, set[asyncio.Future[Any]]] = {}
-        """Slot's name → the slot's goals under way."""
+        """The open goals of each slot, by the slots' names."""
         self.ready = asyncio.Event()
         """An event that is set while the link works."""
         number = next(_nodes)
@@ -101,17 +101,17 @@ class Node:
         self._failed = failed
         self._connections = Connections(partial(self._tell, Kind.HANGUP, 0), self._warn)
         self._latched: dict[str, memoryview] = {}
-        """Topic → the last message, if a channel latches it."""
+        """The last message of each topic with a channel that latches."""
         self._numbers = itertools.count(1)
         self._calls = Calls(title, types)
         self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)  # frames without a link
-        self._told: set[str] = set()  # texts that the log has got
+        self._told: set[str] = set()  # the texts that are already in the log
         self._preparing: asyncio.Future[Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
     @property
     def pid(self) -> int | None:
-        """The number of the bridge's process, if it runs."""
+        """The process id of the bridge, if it runs."""
         return None if self._link is None else self._link.pid
 
     @property
@@ -142,7 +142,7 @@ class Node:
             type: The type's name.
             take: The function to call on the loop.
             latest: Whether a new message may replace an older one that `take` has not received yet.
-            rate: The maximum number of messages a second. The node takes the newest message of each interval.
+            rate: The maximum number of messages per second. `take` gets the newest message of each interval.
             qos: The quality of service; see `naming.quality`.
 
         Raises:
@@ -152,7 +152,7 @@ class Node:
         return self._open("subscriber", topic, type, binding, take=take, pause=1 / rate if rate else 0.0)
 
     def advertise(self, topic: str, type: str, *, latch: bool = False, qos: Mapping[str, Any]) -> Channel:
-        """Return a channel to publish on. With `latch`, late subscribers get the last message."""
+        """Return a channel on which to publish. With `latch`, late subscribers get the last message."""
         return self._open("publisher", topic, type, {"latch": latch, "depth": qos["depth"], "qos": dict(qos)})
 
     def client(self, service: str, type: str, *, timeout: float) -> Channel:
@@ -160,7 +160,7 @@ class Node:
         return self._open("client", service, type, {"timeout": timeout}, "srv")
 
     def offer(self, service: str, type: str, serve: Callable[[Any], Awaitable[Any]]) -> Channel:
-        """Offer a service. `serve` takes a request, and returns the response."""
+        """Offer a service. `serve` gets a request, and returns the response."""
         return self._open("server", service, type, {}, "srv", serve=serve)
 
     def action(self, name: str, type: str, *, timeout: float) -> Channel | GoalTopics:
@@ -191,7 +191,7 @@ class Node:
         return channel
 
     def absolute(self, name: str) -> str:
-        """Return the absolute form of a name, after remapping."""
+        """Remap a name, and return it as an absolute name."""
         return resolve(name, self._name, self._namespace, self._remap)
 
     def drop(self, channel: Channel) -> None:
@@ -203,7 +203,7 @@ class Node:
                 self._latched.pop(channel.name, None)
             self._tell(Kind.UNBIND, channel.number)
 
-    # ------------------------------------------------------------------------------- acting
+    # ------------------------------------------------------------------------------- using channels
 
     def start(self) -> None:
         """Start to connect, unless the node has already started.
@@ -223,10 +223,10 @@ class Node:
         Without this call, the first use of the node loads the types on the loop.
 
         Raises:
-            PlatformError: The library of types is missing.
+            PlatformError: The library `rosbags` is missing.
         """
         if not self.types.loaded:
-            if self._preparing is None:  # all callers await one future, so they continue in their order
+            if self._preparing is None:  # all callers await the same future, so they continue in order
                 self._preparing = asyncio.ensure_future(asyncio.to_thread(lambda: self.types.store))
             await asyncio.shield(self._preparing)
 
@@ -238,14 +238,14 @@ class Node:
             self._waiting.append((kind, channel, number, body))
 
     def publish(self, channel: Channel, body: memoryview) -> None:
-        """Send a message over the connections that the bridge has passed on; without them, send it over the bridge."""
+        """Send a message directly to the subscribers that are connected; if there are none, send it to the bridge."""
         if channel.latches:
             self._latched[channel.name] = body
         if not self._connections.send(channel.name, body):
             self.send(Kind.MESSAGE, channel.number, 0, body)
 
     def _tell(self, kind: Kind, channel: int, number: int = 0) -> None:
-        """Send a frame that only the present link needs."""
+        """Send a frame over the present link, if there is one. Do not keep the frame for a later link."""
         if frames := self._frames:
             frames.send(kind, channel, number)
 
@@ -276,7 +276,7 @@ class Node:
             self._calls.close(call)
 
     async def graph(self, timeout: float = 10.0) -> dict[str, list[dict[str, Any]]]:  # noqa: ASYNC109  # a public name
-        """Return the network's ``topics``, ``services`` and ``actions``, each with name, types and numbers of nodes.
+        """Return the network's ``topics``, ``services`` and ``actions``: their names, types and numbers of nodes.
 
         Raises:
             PlatformError: The bridge does not work.
@@ -297,7 +297,7 @@ class Node:
             raise PlatformError(f"{self.title}: {reason}") from None
 
     async def close(self) -> None:
-        """Send the last messages, then end the link and all channels."""
+        """Send the last messages. Then close the link and all channels."""
         for task in self._tasks:
             task.cancel()
         with contextlib.suppress(TimeoutError):
@@ -314,7 +314,7 @@ class Node:
         """Open all channels on a new link. Then send the latched messages and the frames that waited for the link."""
         frames = self._frames
         assert frames is not None  # the link has just become ready
-        self._told.clear()  # log a fault again if it comes back
+        self._told.clear()  # log a fault again if it happens again
         latched = dict(self._latched)
         for channel in self.channels.values():
             channel.fault = ""
@@ -336,7 +336,7 @@ class Node:
         if self._link is not None and self._link.failed is not None:
             if self._failed is not None:
                 self._failed(self._link.failed)
-            self.ready.set()  # a failed link never gets ready, so let waiting callers see the failure
+            self.ready.set()  # the link will never be ready; let the waiting callers see the failure
 
     def _handle(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
         known = self.channels.get(channel)
@@ -368,7 +368,7 @@ class Node:
             connection.send(body)
 
     def take(self, channel: Channel, body: memoryview) -> None:
-        """Take a message for a channel that subscribes."""
+        """Decode a message, and pass it to the function of the channel that subscribes."""
         assert channel.take is not None  # the channel subscribes
         try:
             channel.take(self.types.decode(body, channel.type))
@@ -376,7 +376,7 @@ class Node:
             self._warn(f"{channel.name}: {error}")
 
     def acknowledge(self, channel: Channel) -> None:
-        """Let the bridge send the next message."""
+        """Allow the bridge to send the channel's next message."""
         self._tell(Kind.ACK, channel.number)
 
     async def _serve(self, channel: Channel, number: int, body: memoryview) -> None:
@@ -397,7 +397,7 @@ class Node:
         self._warn(text, note["level"])
 
     def _warn(self, text: str, level: Literal["info", "warning", "error"] = "warning") -> None:
-        """Log a text once. After a text of level `info`, or with a new link, the log may get the same text again."""
+        """Log a text, unless it is already in the log. After a text of level `info`, or a new link, texts may repeat."""
         if level == "info":
             self._told.clear()
         if text not in self._told and len(self._told) < TOLD:

@@ -1,4 +1,4 @@
-"""A queue of bytes that leave by a socket, at once or as soon as the other end reads."""
+"""A queue of bytes for a socket. They leave at once, or as soon as the other end reads."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from collections.abc import Callable
 
 
 class Outbox:
-    """Sends pieces of bytes in their order, without blocking the loop.
+    """Sends pieces of data in order, without blocking the loop.
 
     Args:
         sock: The connected socket; its owner closes it.
-        failed: A function to call when the socket takes no more bytes, because the other end is gone.
-        depth: The maximum number of waiting pieces. A further piece replaces the oldest. By default there is no limit.
+        failed: A function to call when the other end is gone, so that the socket accepts no more data.
+        depth: The maximum number of waiting pieces. A further piece replaces an old one. By default there is no limit.
     """
 
     def __init__(self, sock: socket.socket, failed: Callable[[], None], depth: int = 0) -> None:
@@ -29,9 +29,9 @@ class Outbox:
         self._sent.set()
 
     def put(self, data: bytes, fd: int | None = None) -> None:
-        """Send a piece, together with a file descriptor, if given. The outbox closes the descriptor."""
+        """Send a piece of data, with a file descriptor if one is given. The outbox closes the descriptor."""
         if self._depth and len(self._waiting) > self._depth:
-            del self._waiting[1]  # not the first piece, because a part of it may have left
+            del self._waiting[1]  # not the first piece, because part of it may have left
         self._waiting.append((memoryview(data), fd))
         if self._sent.is_set():
             self._send()
@@ -41,7 +41,7 @@ class Outbox:
         await self._sent.wait()
 
     def close(self) -> None:
-        """Forget the waiting pieces."""
+        """Drop the waiting pieces."""
         self._loop.remove_writer(self._sock)
         for _, fd in self._waiting:
             if fd is not None:

@@ -1,4 +1,4 @@
-"""The places in which ROS may be installed: the interpreter and the environment of a bridge."""
+"""Find the ROS installation on this machine, and the interpreter and the environment for a bridge."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ ROS2_MEND = (
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A program beside this file, with its interpreter and its environment.
+    """A bridge's program, with the interpreter and the environment of a ROS installation.
 
     Attributes:
-        name: The user's name for the place.
+        name: The name in messages.
         program: The file's name in the folder `CHILDREN`.
         python: The interpreter.
         setup: A shell script to source first; None if there is none.
-        environment: Variables to set.
-        mend: The remedy to name after a failure to start.
+        environment: Environment variables to set.
+        mend: The remedy that the message about a failed start names.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Place:
     mend: str = ""
 
     def command(self, fd: int) -> list[str]:
-        """Return the command line that runs the program with the file descriptor of its pipe."""
+        """Return the command that runs the program. `fd` is the file descriptor of its pipe."""
         line = [self.python, str(CHILDREN / self.program), str(fd)]
         if self.setup is None:
             return line
@@ -62,7 +62,7 @@ class Place:
 
 
 def ros1_place(python: Path | None) -> Place:
-    """Return the place of rospy: the setting, the sourced ROS 1, a ROS 1 under /opt/ros, or Debian's packages.
+    """Return the place of rospy: the interpreter `python`, the sourced ROS 1, a ROS 1 in /opt/ros, or Debian's.
 
     Raises:
         PlatformError: There is no rospy.
@@ -82,11 +82,11 @@ def ros1_place(python: Path | None) -> Place:
 def ros2_place(python: Path | None, backend: str = "auto") -> Place:
     """Return the place of rclpy or DDS.
 
-    The order is: the setting, the sourced ROS 2, a ROS 2 under /opt/ros, this environment, and the environment of
-    ``make ros``. DDS in the same environments comes last.
+    The order is: the interpreter `python`, the sourced ROS 2, a ROS 2 in /opt/ros, this environment, and the
+    environment of ``make ros``. If none of them has rclpy, look for DDS in the same environments.
 
     Args:
-        python: The interpreter of the setting.
+        python: The interpreter that the settings name, or None.
         backend: ``auto``, ``rclpy`` or ``dds``.
 
     Raises:
@@ -126,5 +126,5 @@ def _dds(python: str) -> Place:
 
 
 def _system_python() -> str:
-    """Return the system's interpreter, for which ROS is built. The path may begin with another environment."""
+    """Return the system's interpreter, for which ROS is built. ``PATH`` may lead to another interpreter."""
     return "/usr/bin/python3" if Path("/usr/bin/python3").exists() else shutil.which("python3") or sys.executable

@@ -1,4 +1,4 @@
-"""A bridge process: it starts at the first use, starts again if it dies, and ends cleanly."""
+"""A bridge process: it starts when it is first used, starts again if it dies, and ends cleanly."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""The seconds until a new process replaces a dead one. The wait grows while processes die before they are ready."""
+"""The waits before a new process replaces a dead one (seconds). They grow as long as the processes do no work."""
 
 ENDING = 3.0
-"""The maximum number of seconds that a process may take to end cleanly."""
+"""A process may take this many seconds to end cleanly."""
 
 
 class BridgeProcess:
@@ -28,8 +28,8 @@ class BridgeProcess:
     Args:
         place: The program, and the interpreter that has its packages.
         config: The configuration of the program, as data for JSON.
-        handle: A function to call with each frame of the process, except frames that this class handles.
-        ready: A function to call when a process is ready for work: the first process, and each replacement.
+        handle: A function to call with each frame from the process, except the frames that this class handles.
+        ready: A function to call when the first process, or a replacement, is ready for work.
         lost: A function to call with a sentence when a process has died.
     """
 
@@ -45,7 +45,7 @@ class BridgeProcess:
         self.restarts = 0
         """The number of processes that replaced a dead process."""
         self.failed: PlatformError | None = None
-        """The reason for which no process can run any more; else None."""
+        """Why no process can run; None if one can."""
         self._place = place
         self._config = config
         self._handle = handle
@@ -60,12 +60,12 @@ class BridgeProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process's number, if it runs."""
+        """The process id, if the process runs."""
         return self._process.pid if self._process is not None else None
 
     @property
     def frames(self) -> Frames | None:
-        """The pipe to the process, once the process is ready for work."""
+        """The pipe to the process; None if the process is not ready for work."""
         return self._frames if self._works else None
 
     def start(self) -> None:
@@ -105,7 +105,7 @@ class BridgeProcess:
         await asyncio.to_thread(self._bury)
 
     def kill(self) -> None:
-        """Kill the process, and start no other."""
+        """Kill the process, and start no replacement."""
         if self._again is not None:
             self._again.cancel()
         if self._frames is not None:
@@ -137,6 +137,6 @@ class BridgeProcess:
         )
 
     def _bury(self) -> str:
-        """Make sure that the process is gone. Return the manner of its end."""
+        """Make sure that the process is gone. Return how it ended, in words."""
         process, self._process = self._process, None
         return process.end(patience=0.1) if process is not None else "closed"

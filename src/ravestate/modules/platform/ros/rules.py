@@ -1,4 +1,4 @@
-"""The rule that connects a context to ROS. `ros1` and `ros2` declare it on themselves."""
+"""The rule that connects a context to ROS. The modules `ros1` and `ros2` declare it."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from .types import Types
 
 
 class NodeSettings(rs.Settings):
-    """The settings of a node, of either version."""
+    """The settings that a node of ROS 1 and a node of ROS 2 have in common."""
 
     node: str = "ravestate"
     """The beginning of the node's name. The number of the agent's process follows it."""
     namespace: str = ""
     """The namespace of relative names, such as ``/robot``."""
     remap: dict[str, str] = pydantic.Field(default_factory=dict[str, str])
-    """The name of a topic or service → the name that takes its place."""
+    """The names of topics or services to replace, with their new names."""
     definitions: tuple[Path, ...] = ()
     """Your own ``.msg``, ``.srv`` and ``.action`` files, or folders that hold them."""
     python: Path | None = None
@@ -50,7 +50,7 @@ def open_node(
     bus: bool,
     failed: Callable[[PlatformError], None] | None = None,
 ) -> Node:
-    """Return a node, which connects at its first use.
+    """Return a node. It connects when it is first used.
 
     Args:
         version: 1 or 2.
@@ -58,7 +58,7 @@ def open_node(
         place: A function that finds the bridge's program.
         environment: Environment variables for the bridge.
         bus: Whether the node is on the built-in bus instead of ROS.
-        failed: A function to call with the reason if there can be no link.
+        failed: A function to call with the reason if no link is possible.
     """
 
     def folders() -> list[Path]:
@@ -89,7 +89,7 @@ def connect(
     version: Literal[1, 2],
     make_node: Callable[[Any, Callable[[PlatformError], None] | None], Node],
 ) -> rs.Slot[Node | None]:
-    """Declare the slot with the node, and the rule that makes the node, on a module. Return the slot.
+    """Declare on a module the slot for the node, and the rule that makes the node. Return the slot.
 
     Args:
         module: ``ros1`` or ``ros2``.
@@ -100,10 +100,10 @@ def connect(
 
     @module.rule(when=rs.startup.detached(), writes=node, detached=True, background=True)
     async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-        """Open the topics, services and actions of all slots. If the settings say so, follow the simulation's clock."""
+        """Open the topics, services and actions of all slots. With `use_sim_time`, follow the simulation's clock."""
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
-        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # at once, so that each rule of the startup finds the node
+        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # at once, so that other rules for startup find the node
         try:
             await made.prepare()
             bind_all(ctx, made, version)
@@ -121,7 +121,7 @@ def connect(
 
 
 def follow_clock(ctx: rs.RuleContext, node: Node) -> None:
-    """Let the context's clock follow the topic ``/clock``, at the same speed, and with the same stops.
+    """Let the context's clock follow the topic ``/clock``: it runs at the same speed, and stops at the same times.
 
     Raises:
         PlatformError: ROS is not installed here.
@@ -133,7 +133,7 @@ def follow_clock(ctx: rs.RuleContext, node: Node) -> None:
         nonlocal offset, last
         time = message.clock.sec + message.clock.nanosec / 1e9
         if offset is None or time < last:  # the first message, or the first after a restart of the simulation
-            ctx.drive_clock(ctx.now)  # the clock stands still from here on
+            ctx.drive_clock(ctx.now)  # from now on, the clock moves only with `/clock`
             offset = ctx.now - time
         last = time
         ctx.drive_clock(time + offset)

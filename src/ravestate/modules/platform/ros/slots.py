@@ -1,4 +1,4 @@
-"""Slots that are topics, services and actions. `ros1` and `ros2` declare them on a user's module."""
+"""Slots that are bound to topics, services and actions. `ros1` and `ros2` declare them on a designer's module."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from .node import Channel, Node
 
 DEEP = 1000
-"""The maximum number of messages that wait on the way to an agent that wants all messages."""
+"""With ``keep="all"``, at most this many messages wait on their way to the agent."""
 
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """The topic, service or action of a slot.
+    """The topic, service or action to which a slot is bound.
 
     Attributes:
         version: 1 for ROS 1, 2 for ROS 2.
-        kind: The kind of the slot.
+        kind: The role of the slot.
         name: The name of the topic, service or action, as the designer wrote it.
         type: The name of the type, as the designer wrote it.
         options: The arguments of the `Node` method that opens the topic, service or action.
@@ -55,32 +55,32 @@ class Binding:
 
 
 class TopicSlot(rs.Slot[Any]):
-    """A slot that is a topic. Its value is the last message; None before the first message."""
+    """A slot that is bound to a topic. Its value is the last message; None before the first message."""
 
     __slots__ = ("binding",)
     binding: Binding
 
 
 class ServiceSlot(TopicSlot):
-    """A slot that is a service.
+    """A slot that is bound to a service.
 
-    A write is a request, and raises ``requested``. The response raises ``changed``; a failure raises ``failed`` with the
-    reason as text.
+    A write is a request, and raises ``requested``. The response raises ``changed``. A failure raises ``failed``; the
+    payload is the reason.
     """
 
     __slots__ = ("failed", "requested")
     names = ("requested",)
     answers: tuple[str, ...] = ("changed", "failed")
-    """The signals that the other end causes. The slot's own write does not raise them."""
+    """The signals that the server's answers raise. A write to the slot does not raise them."""
     requested: rs.Signal[Any]
     failed: rs.Signal[str]
 
 
 class ActionSlot(ServiceSlot):
-    """A slot that is an action.
+    """A slot that is bound to an action.
 
-    A write is a goal, and raises ``requested``. Feedback raises ``feedback``, the result raises ``changed``, and a failure
-    (refused, aborted, cancelled) raises ``failed`` with the reason as text.
+    A write is a goal, and raises ``requested``. Feedback raises ``feedback``, and the result raises ``changed``. A
+    failure (refused, aborted, cancelled) raises ``failed``; the payload is the reason.
     """
 
     __slots__ = ("feedback",)
@@ -108,7 +108,7 @@ class Declarations:
 
     Args:
         version: 1 or 2.
-        module: The module ``ros1`` or ``ros2``; modules with such slots require it.
+        module: The module ``ros1`` or ``ros2``. Modules with such slots require it.
         node: The module's slot with the node of the context.
     """
 
@@ -134,10 +134,10 @@ class Declarations:
         Args:
             module: The module to declare the slot on.
             name: The slot's name.
-            topic: The topic, such as ``/chat``. Relative names and ``~private`` names are allowed.
-            type: The type of its messages, such as ``std_msgs/String``.
-            keep: ``latest`` lets a newer message replace a waiting message; ``all`` takes every message.
-            rate: The maximum number of messages a second. The slot takes the newest message of each interval.
+            topic: The topic, for example ``/chat``. Relative names and ``~private`` names are allowed.
+            type: The type of its messages, for example ``std_msgs/String``.
+            keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message.
+            rate: The maximum number of messages per second. The slot gets the newest message of each interval.
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
             latch: ROS 2: whether to get the last message of a publisher that latches.
 
@@ -223,13 +223,13 @@ class Declarations:
         return slot
 
     def service(self, module: Any, name: str, *, service: str, type: str, timeout: float = 5.0) -> ServiceSlot:
-        """Declare a slot that calls a service. A write is the request, and ``.changed`` brings the response.
+        """Declare a slot that calls a service. A write is the request, and ``.changed`` carries the response.
 
         Args:
             module, name: As for `subscriber`.
             service: The service's name.
-            type: The service's type, such as ``std_srvs/SetBool``.
-            timeout: The seconds after which a missing response raises ``.failed``.
+            type: The service's type, for example ``std_srvs/SetBool``.
+            timeout: If no response comes within this many seconds, the slot raises ``.failed``.
 
         Raises:
             DeclarationError: An argument is wrong.
@@ -268,7 +268,7 @@ class Declarations:
         timeout: float = 5.0,
         until: Condition | None = None,
     ) -> ActionSlot:
-        """Declare a slot that is an action: a write is the goal, and ``.changed`` brings the result.
+        """Declare a slot that is bound to an action. A write is the goal, and ``.changed`` carries the result.
 
         Feedback raises ``.feedback``. The slot cancels the goal when `until` is met, or when the ``until`` of a rule
         that writes the slot is met.
@@ -276,8 +276,8 @@ class Declarations:
         Args:
             module, name: As for `subscriber`.
             action: The action's name.
-            type: The action's type, such as ``nav2_msgs/NavigateToPose`` or, in ROS 1, ``move_base_msgs/MoveBase``.
-            timeout: The seconds within which the action's server must appear.
+            type: The action's type: ``nav2_msgs/NavigateToPose``, or ``move_base_msgs/MoveBase`` in ROS 1.
+            timeout: The action's server must appear within this many seconds.
             until: A condition that cancels the goal.
 
         Raises:
@@ -353,12 +353,12 @@ class Declarations:
 
 
 async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
-    """Send a goal from a rule, and return its result. When the rule is interrupted, the goal is cancelled.
+    """Send a goal from a rule, and return its result. If the rule is interrupted, the goal is cancelled.
 
     Args:
         ctx: The rule's context; the rule declares ``writes=slot``.
         slot: The slot of the action.
-        goal: The goal, as for any write.
+        goal: The goal: any value that you could write to the slot.
 
     Raises:
         PlatformError: The goal was refused, aborted or cancelled, or there is no server.
@@ -378,10 +378,10 @@ def module_of(module: Any) -> rs.Module:
 
 
 def bind_all(ctx: rs.RuleContext, node: Node, version: int) -> None:
-    """Open the channels of all slots that publish or call in a context, and add the rules that cancel goals."""
+    """Open the channels of a context's slots that publish or call, and add the rules that cancel goals."""
     for slot in ctx.policy.slots.values():
         if isinstance(slot, TopicSlot) and slot.binding.version == version and slot.binding.kind != "subscriber":
-            with contextlib.suppress(PlatformError):  # the slot's own rule reports the error at the first use
+            with contextlib.suppress(PlatformError):  # the slot's own rule reports the error when it is first used
                 _channel(node, slot)
             if isinstance(slot, ActionSlot):
                 _cancel_with_writers(ctx, node, slot)
@@ -396,7 +396,7 @@ def _cancel_with_writers(ctx: rs.RuleContext, node: Node, slot: ActionSlot) -> N
 
             @rs.Module(owner).rule(when=_looking(rule.until), background=True, name=title)
             async def cancel(ctx: rs.RuleContext) -> None:
-                """Cancel the goals that run."""
+                """Cancel the slot's open goals."""
                 for task in list(node.goals.get(slot.name, ())):
                     task.cancel()
 

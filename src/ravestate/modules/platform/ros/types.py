@@ -1,4 +1,4 @@
-"""The types of messages: their classes, their wire forms, and messages from plain data."""
+"""The types of messages: make messages from plain data, and convert messages to and from their wire format."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ravestate.errors import PlatformError, nearest
 from .definitions import PARTS, Definitions, full_name, messages, part_names
 
 BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4
-"""The kinds of fields, as the library `rosbags` counts them."""
+"""The numbers that the library `rosbags` gives to the kinds of fields."""
 
 DUMMY = "structure_needs_at_least_one_member"
 """The field that ROS 2 gives to a message without fields."""
@@ -24,7 +24,7 @@ class Types:
     """The types of ROS 1 or ROS 2 that an agent uses.
 
     Args:
-        version: 1 or 2. The wire form of ROS 2 is CDR.
+        version: 1 or 2. The wire format of ROS 2 is CDR.
         definitions: The definition files for types that the library lacks.
     """
 
@@ -49,7 +49,7 @@ class Types:
         return self._store is not None
 
     def require(self, name: str, kind: str = "msg") -> str:
-        """Load a type and all types in it; return the type's full name.
+        """Load a type and all types of its fields. Return the type's full name.
 
         Raises:
             PlatformError: The definition of the type is missing or wrong. The message names the remedy.
@@ -85,7 +85,7 @@ class Types:
             try:
                 for fields in get_types_from_msg(part, f"{package}/msg/{short}").values():
                     parsed[full] = fields
-            except Exception as error:  # the library's parser raises many kinds
+            except Exception as error:  # the library's parser raises many kinds of errors
                 raise PlatformError(f"the definition of {full} is wrong: {error}") from error
         if self.version == 2:
             for _, fields in parsed.values():
@@ -100,10 +100,10 @@ class Types:
         new = {full: fields for full, fields in parsed.items() if full not in self.store.fielddefs}
         self.store.register(new)
 
-    # ------------------------------------------------------------------------------- wire forms
+    # ------------------------------------------------------------------------------- wire format
 
     def encode(self, value: Any, name: str) -> memoryview:
-        """Return the wire form of a message.
+        """Return a message in its wire format.
 
         Args:
             value: A message, a mapping of fields (missing fields are zero), or the value of the only field.
@@ -115,20 +115,20 @@ class Types:
         message = self.message(value, name)
         try:
             return (self.store.serialize_cdr if self.version == 2 else self.store.serialize_ros1)(message, name)
-        except Exception as error:  # wrong kinds of values fail in generated code, in many ways
+        except Exception as error:  # the library's generated code raises many kinds of errors for wrong values
             raise PlatformError(
                 f"{value!r} does not fit {name}: {error}; its fields are {self.describe(name)}"
             ) from error
 
     def decode(self, data: memoryview | bytes, name: str) -> Any:
-        """Return the message with this wire form. Its arrays are views of `data`, not copies.
+        """Return the message that `data` holds in its wire format. Its arrays are views of `data`, not copies.
 
         Raises:
             PlatformError: The bytes are not a message of this type.
         """
         try:
             return (self.store.deserialize_cdr if self.version == 2 else self.store.deserialize_ros1)(data, name)
-        except Exception as error:  # the library's reader raises many kinds
+        except Exception as error:  # the library's reader raises many kinds of errors
             raise PlatformError(f"a message is not of the type {name}: {error}") from error
 
     def message(self, value: Any, name: str) -> Any:
@@ -187,7 +187,7 @@ class Types:
             items = [None] * count
         return [self._field(item, (inner, inside), f"{path}[{n}]") for n, item in enumerate(items)]
 
-    # ------------------------------------------------------------------------------- looking in
+    # ------------------------------------------------------------------------------- descriptions
 
     def describe(self, name: str) -> str:
         """Return the fields of a type as text, such as ``data: string``."""
@@ -195,7 +195,7 @@ class Types:
         return ", ".join(f"{field}: {_spelt(what)}" for field, what in fields if field != DUMMY) or "none"
 
     def fields(self, name: str) -> dict[str, Any]:
-        """Return type → the type's fields as data for JSON, for a type and for all types in it."""
+        """Return the fields of a type, and of all types in it, as data for JSON. The keys are the types' names."""
         found: dict[str, Any] = {}
 
         def collect(type_: str) -> None:
@@ -282,7 +282,7 @@ def _base_store(version: int) -> Any:
 
 
 def _store(version: int) -> Any:
-    """Return a new store of types, which begins with the common types."""
+    """Return a new store of types with the common types in it."""
     base = _base_store(version)
     store = type(base)()
     store.fielddefs.update(base.fielddefs)

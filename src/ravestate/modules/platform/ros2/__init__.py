@@ -1,4 +1,4 @@
-"""ROS 2: slots that are topics, services and actions."""
+"""ROS 2: slots that are bound to topics, services and actions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Telegram: each chat of a bot is a conversation of its own with the agent."""
+"""Telegram: each chat of a bot is a separate conversation with the agent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The bot: it logs in, gets updates by polling or by a webhook, and gives them to the room."""
+"""The bot: it logs in, gets updates by polling or by a webhook, and passes their messages to the room."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-POLL = 30  # the seconds for which the server holds a request for updates, if there are none
+POLL = 30  # if there are no updates, the server holds a request for them for this many seconds
 MOST = 100  # the maximum number of updates in an answer
-PATIENCE = 10  # the seconds for which the bot waits for a late answer to a request for updates
-ANSWER = 20.0  # the seconds to wait for the answer to any other request
-CONFLICTS = 4  # the number of conflicts in a row after which the bot gives up: another program polls the same bot
-SETTLED = 60.0  # after this many seconds, the bot never gives up: a program that came later should give up instead
-CONFLICT_WAIT = 2.0  # the seconds to wait after a conflict: after a crash, the server still holds the old request
+PATIENCE = 10  # after the server should have answered, the bot waits this many more seconds
+ANSWER = 20.0  # the maximum number of seconds to wait for the answer to any other request
+CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
+SETTLED = 60.0  # after it has run this many seconds, the bot never gives up: a program that came later should instead
+CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); after a crash, the server still holds the old request
 SECRET = "x-telegram-bot-api-secret-token"
 
 log = logging.getLogger("ravestate.telegramio")
@@ -73,13 +73,13 @@ async def _log_in(bot: Bot, root: str) -> User:
 
 
 class Inlet:
-    """Takes updates from the server, and gives them to a room."""
+    """Gets updates from the server, and passes their messages to a room."""
 
     def __init__(self, bot: Bot, me: User, room: Room, carrier: TelegramCarrier, settings: Settings) -> None:
         self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings
 
     async def listen(self, url: str, token: str) -> None:
-        """Take the updates that the server sends to a webhook. The webhook stays set, so that no update is lost."""
+        """Receive the updates that the server sends to a webhook. The webhook stays set, so that no update is lost."""
         from ravestate.modules.platform.chats.webhook import listen
 
         secret = hashlib.sha256(f"webhook {token}".encode()).hexdigest()
@@ -92,7 +92,7 @@ class Inlet:
         await listen(url, address, SECRET, secret, lambda update: self.take([update]), announce)
 
     async def poll(self) -> None:
-        """Ask the server for updates."""
+        """Ask the server for updates until cancelled."""
         offset, conflicts, ready = 0, 0, False
         attempts = Attempts(log, "no updates")
         now = asyncio.get_running_loop().time
@@ -126,7 +126,7 @@ class Inlet:
                 await attempts.fail(error, wait_of(error))
 
     def take(self, updates: Sequence[Mapping[str, Any]]) -> None:
-        """Give updates to the room. After the call they are stored, so the caller may acknowledge them."""
+        """Pass updates to the room, which stores them. The caller may acknowledge them after the call."""
         self._room.receive(self._room.read(updates, self._read))
 
     def _read(self, data: Mapping[str, Any]) -> Incoming | None:

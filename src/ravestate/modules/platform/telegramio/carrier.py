@@ -18,10 +18,10 @@ from ravestate.modules.platform.chats.sender import SHOWN
 from .requests import FloodError
 
 UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)  # errors before a request is sent
-AHEAD = 40  # the number of ids among which to look for a message whose attempt had no answer
-KNOWN = 1000  # the number of newest message ids that the carrier remembers for each numbering
-DRAFT = 1  # the id of the draft in each chat, which has at most one draft at a time
-BIGGEST = 20 * 1024 * 1024  # the bytes of the largest file that the server delivers
+AHEAD = 40  # after an attempt without an answer, look for the message among this many ids
+KNOWN = 1000  # the carrier remembers this many of the newest message ids for each numbering
+DRAFT = 1  # the id of every draft, because a chat has at most one draft at a time
+BIGGEST = 20 * 1024 * 1024  # the size in bytes of the largest file that the server delivers
 REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
 
 
@@ -44,21 +44,21 @@ class TelegramCarrier:
         self._drafts = drafts
         self.rate = rate
         self.current = asyncio.Event()
-        """Set once the bot has the messages that came before its start."""
-        # The known message ids. The key is a chat with a numbering of its own, or "" for the bot's common numbering.
+        """Set as soon as the bot has the messages that came before its start."""
+        # The known message ids. Key: a chat that numbers its messages itself, or "" for the bot's common numbering.
         self._ids: defaultdict[str, deque[int]] = defaultdict(lambda: deque(maxlen=KNOWN))
 
     def note(self, chat: str, id: str) -> None:
-        """Note the id of a message that has come or gone."""
+        """Note the id of a message that the bot has received or sent."""
         if id.isdecimal():
             self._ids[_numbering(chat)].append(int(id))
 
     def trace(self, chat: str) -> str:
-        """Return the newest message id before an attempt."""
+        """Return the newest known message id. Call this before an attempt."""
         return str(max(self._ids[_numbering(chat)], default=""))
 
     def can_react(self, emoji: str) -> bool:
-        """Return whether Telegram has a reaction of this emoji."""
+        """Return whether Telegram accepts this emoji as a reaction."""
         return emoji in REACTIONS or emoji.replace("\ufe0f", "") in REACTIONS
 
     async def send(self, message: Outgoing, again: bool) -> str:
@@ -142,7 +142,7 @@ class TelegramCarrier:
 
 
 def _numbering(chat: str) -> str:
-    """Return the key of the numbering that a chat's message ids belong to. Supergroups and channels have their own."""
+    """Return the key of the numbering of a chat's messages. Each supergroup and channel has its own numbering."""
     return chat if chat.startswith("-100") else ""
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from telegram.error import NetworkError, TelegramError
 from telegram.request import HTTPXRequest
 
-WAIT = 5.0  # the seconds to wait if the server asks for a wait without a time
+WAIT = 5.0  # how many seconds to wait if the server asks for a wait but gives no time
 
 
 class FloodError(TelegramError):
@@ -20,7 +20,7 @@ class FloodError(TelegramError):
 
 
 class Requests(HTTPXRequest):
-    """Requests that raise a `FloodError` for a flood wait, without a warning of the library."""
+    """Requests that raise a `FloodError` for a flood wait, so that the library does not warn about it."""
 
     async def do_request(self, *values: Any, **named: Any) -> tuple[int, bytes]:
         """Make a request; return the status and the body of the answer."""
@@ -36,5 +36,5 @@ class Requests(HTTPXRequest):
 
 
 def wait_of(error: Exception) -> float:
-    """Return the wait that the server has set with an error (seconds); 0 if there is none."""
+    """Return the wait that the server asks for in an error (seconds); 0 if it asks for none."""
     return error.seconds if isinstance(error, FloodError) else 0.0

@@ -1,4 +1,4 @@
-"""Serving an agent on Telegram, from the start of its bot to its end."""
+"""Serve an agent on Telegram, from the start of its bot to its end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Updates: the messages that Telegram reports, as the room takes them."""
+"""Translate the updates of Telegram into messages for `Room`."""
 
 from __future__ import annotations
 

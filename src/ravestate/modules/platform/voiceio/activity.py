@@ -1,4 +1,4 @@
-"""Voice activity: the probability of speech, by the Silero model that comes with faster-whisper."""
+"""Voice activity: the probability that a sound is speech. The model is Silero, which comes with faster-whisper."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .sound import Samples, samples
 
 CHUNK = 512
-"""The number of samples that the model judges at once: 32 ms."""
+"""The model judges this many samples (32 ms) at a time."""
 _CONTEXT = 64
 
 
@@ -49,7 +49,10 @@ class Activity:
 
 
 def speech_spans(pcm: bytes, above: float = 0.5, gap: float = 0.5) -> list[tuple[float, float]]:
-    """Return begin and end (seconds) of each span of speech in a sound (16 kHz). A pause below `gap` ends no span."""
+    """Return the begin and the end (seconds) of each span of speech in a sound (16 kHz).
+
+    A chunk is speech if its probability is at least `above`. A pause shorter than `gap` seconds does not end a span.
+    """
     judge, found = Activity(), list[tuple[float, float]]()
     sound = samples(pcm)
     for at in range(0, len(sound) - CHUNK + 1, CHUNK):
@@ -77,7 +80,7 @@ def session(file: Path) -> Any:
     """Return an ONNX model that runs in one thread."""
     onnxruntime: Any = import_module("onnxruntime")  # the package has no types
     options = onnxruntime.SessionOptions()
-    # Without this, products of whole numbers overflow on processors without VNNI, and probabilities differ by machine.
+    # Otherwise, integer products overflow on processors without VNNI, and each machine computes other probabilities.
     options.add_session_config_entry("session.x64quantprecision", "1")
     options.inter_op_num_threads = options.intra_op_num_threads = 1
     options.log_severity_level = 3

@@ -1,4 +1,4 @@
-"""The times of written words, from the times of spoken words."""
+"""Find out when each written word is spoken, from the times of the spoken words."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _PHONEMES = 0.85
 _DIGIT = 4.0
 """The average number of phonemes in a spoken digit."""
 _MOST = 10
-"""The maximum number of spoken words for one written word. For example, 1859 is several spoken words."""
+"""The maximum number of spoken words for one written word. For example, 1859 is spoken as several words."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a text: its place (characters), and its beginning in the sound (seconds)."""
+    """A word of a text: its place in the text (characters), and when it begins in the sound (seconds)."""
 
     begin: int
     end: int
@@ -30,7 +30,7 @@ def places_of(text: str) -> list[tuple[int, int]]:
 
 
 def by_places(text: str, found: Sequence[tuple[int, float]], length: float) -> tuple[Word, ...]:
-    """Return the words of a text, from the places and times of some words.
+    """Return the words of a text with their times, from the places and times of some of them.
 
     Args:
         text: The text.
@@ -46,10 +46,10 @@ def by_places(text: str, found: Sequence[tuple[int, float]], length: float) -> t
 
 
 def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -> tuple[Word, ...]:
-    """Return the words of a text, from the times (seconds) and the numbers of phonemes of its spoken words.
+    """Return the words of a text with their times, from the spoken words: time (seconds) and number of phonemes.
 
-    One spoken word may be several written words ("there was a"), and a number is several spoken words. The function
-    takes the alignment with the most plausible lengths.
+    One spoken word may be several written words ("there was a"), and a written number is several spoken words. The
+    function chooses the alignment with the most plausible lengths.
     """
     places = places_of(text)
     expected = [_expected(text[begin:end]) for begin, end in places]
@@ -93,7 +93,7 @@ def _expected(word: str) -> float:
 def _filled(
     text: str, places: Sequence[tuple[int, int]], times: Mapping[int, float], length: float
 ) -> tuple[Word, ...]:
-    """Return all words. A word without a time gets a time between its neighbours, according to its place."""
+    """Return all words. A word without a time gets a time between those of its neighbours, according to its place."""
     known = [
         (-1, 0, 0.0),
         *((row, places[row][0], times[row]) for row in sorted(times)),

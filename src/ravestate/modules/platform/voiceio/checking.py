@@ -15,7 +15,7 @@ from .names import Settings
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line about a part: whether it is there, whether speech needs it, and details or the remedy."""
+    """A line of the report about one part: whether it is there, whether speech needs it, and details or the remedy."""
 
     part: str
     present: bool

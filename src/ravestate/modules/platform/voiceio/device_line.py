@@ -16,29 +16,30 @@ from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 BLOCK = 0.02
 """The length of a block (seconds)."""
 WAITING = 200
-"""The maximum number of blocks of sound that wait for a slow agent. Older blocks are dropped."""
+"""At most this many blocks of sound wait for a slow agent. Older blocks are dropped."""
 GONE = 2.0
-"""The seconds after which a device that neither brings nor takes sound counts as unplugged."""
+"""A device counts as unplugged if it carries no sound for this many seconds."""
 AGAIN = 2.0
-"""The seconds between two attempts to open a device that was unplugged."""
+"""The time between two attempts to open an unplugged device (seconds)."""
 
 log = logging.getLogger("ravestate.voiceio")
 
 
 class DeviceLine:
-    """A microphone and a loudspeaker.
+    """A line to a microphone and a loudspeaker of this machine.
 
     Args:
-        source, sink: The devices' names, or parts of them; ``default`` for the system's choice; empty for none.
+        source, sink: The names of the devices, or parts of the names. ``default`` is the system's choice. An empty name
+            means no device.
 
     Raises:
         PlatformError: PortAudio is missing, or a device cannot be opened.
     """
 
     cancels_echo = False
-    """Whether the sound comes without the loudspeaker's echo."""
+    """Always False: the microphone's sound may contain the loudspeaker's echo."""
     ended = False
-    """Whether the microphone's sound has come to its end."""
+    """Always False: a microphone's sound does not end."""
 
     def __init__(self, source: str = "default", sink: str = "default") -> None:
         self._names = source, sink
@@ -58,7 +59,7 @@ class DeviceLine:
         self._watch = asyncio.create_task(self._keep_open())
 
     def _open(self, *, again: bool = False) -> None:
-        """Open the devices. With `again`, a missing loudspeaker is no error, so that the agent can go on listening."""
+        """Open the devices. If `again` is true, ignore a missing loudspeaker, so that the agent can keep listening."""
         sound = portaudio()
         parts = (
             ("microphone", "source", sound.RawInputStream, IN_RATE, self._take),
@@ -76,7 +77,7 @@ class DeviceLine:
                 self._streams[-1].start()
             except (sound.PortAudioError, ValueError) as error:
                 if again and what == "loudspeaker":
-                    self.stop()  # drop the sound that nobody would hear; the next sound looks for the loudspeaker again
+                    self.stop()  # drop the inaudible sound; the next sound makes `_keep_open` look for the loudspeaker
                     continue
                 self._shut()
                 raise PlatformError(
@@ -85,12 +86,12 @@ class DeviceLine:
                 ) from error
 
     async def blocks(self) -> AsyncIterator[bytes]:
-        """Yield the microphone's sound. If a device was unplugged and comes back, the line opens it again."""
+        """Yield the microphone's sound. If an unplugged device comes back, the line opens it again."""
         while not self._closed and (block := await self._blocks.get()) is not None:
             yield block
 
     async def _keep_open(self) -> None:
-        """Open the devices again after one was unplugged. An unplugged device raises no error, but carries no sound."""
+        """Open the devices again if one has been unplugged. PortAudio reports no error then, but carries no sound."""
         while not self._closed:
             await asyncio.sleep(GONE / 4)
             late = self._loop.time() - GONE
@@ -130,7 +131,7 @@ class DeviceLine:
 
     @property
     def played(self) -> float:
-        """The seconds of sound that the loudspeaker has taken."""
+        """How many seconds of sound the loudspeaker has accepted."""
         return self._played / 2 / OUT_RATE
 
     async def drained(self) -> None:
@@ -200,7 +201,7 @@ def portaudio() -> Any:
 
 
 def restart() -> None:
-    """Make PortAudio look for devices again, because it knows only the devices that were there at its start.
+    """Make PortAudio look for devices again. It knows only the devices that were there when it started.
 
     Raises:
         PlatformError: PortAudio does not start.

@@ -1,4 +1,4 @@
-"""The user's sound: the beginnings and pauses of speech, and the sound of the turn so far."""
+"""Find the beginnings and pauses of the user's speech, and keep the sound of the turn so far."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ from .pitch import NEEDED, change, is_another, pitch
 from .sound import Samples, samples
 
 BEFORE = 12
-"""The number of chunks before the onset that belong to the turn, so that a soft beginning is not cut off."""
+"""A turn includes this many chunks before its onset, so that a soft beginning is not cut off."""
 ONSET = 2
-"""The number of successive chunks of speech that make an onset. A click is shorter."""
+"""This many successive chunks of speech are an onset. A click is shorter."""
 STAY = 0.7
-"""The factor that lowers the threshold of speech while the user speaks, so that soft chunks continue the speech."""
+"""While the user speaks, the threshold of speech is multiplied by this factor, so that soft chunks continue the
+speech."""
 ARTICULATE = 3
-"""The number of articulate chunks since the onset that prove speech, rather than a hum or a cough."""
+"""This many articulate chunks since the onset prove speech, rather than a hum or a cough."""
 LONG = 16
-"""The number of chunks of any speech since the onset that also prove speech: half a second."""
+"""This many chunks since the onset (half a second) prove speech, even if they are not articulate."""
 LONGEST = 60.0
-"""The longest turn (seconds). A longer turn is taken in parts."""
+"""The longest turn (seconds). A longer turn is split into several turns."""
 CLIPPED = 0.02
-"""A second of speech counts as clipped if more than this share of its samples have the greatest value."""
+"""A second of speech counts as clipped if more than this share of its samples is at the limit."""
 
 COMPARED = round(2.0 * IN_RATE / CHUNK)
-"""The number of chunks on each side of a pause, for the comparison of two voices: 2 s."""
+"""At a pause, the ear compares the voices in this many chunks (2 s) on each side."""
 SEARCHED = round(8.0 * IN_RATE / CHUNK)
-"""The number of chunks at the end of a turn in which the ear looks for a change of the voice: 8 s."""
+"""The ear looks for a change of voice in this many chunks (8 s) at the end of a turn."""
 
 Event = Literal["onset", "articulate", "another", "pause"]
 
@@ -54,9 +55,9 @@ class Turn:
 
     Attributes:
         start: The time of the onset (seconds).
-        end: The time at which speech ended last.
+        end: The time of the last speech so far.
         agent_spoke: Whether the agent was speaking at the onset.
-        full: Whether the turn has reached its greatest length, so that the agent takes it at once.
+        full: Whether the turn has reached its greatest length, and is therefore over.
     """
 
     start: float
@@ -65,9 +66,10 @@ class Turn:
     full: bool = False
     chunks: list[bytes] = field(default_factory=list[bytes])
     pitches: list[float | None] = field(default_factory=list[float | None])
-    """The pitch (Hz) of each chunk; None without voice."""
+    """The pitch (Hz) of each chunk; None for a chunk without a voice."""
     continued: tuple[int, float, float] | None = None
-    """The last continuation after a pause: its first chunk, its time, and the time at which the pause began."""
+    """How the turn last continued after a pause: the first new chunk, its time, and the time at which the pause
+    began."""
 
     @property
     def sound(self) -> bytes:
@@ -76,45 +78,45 @@ class Turn:
 
 
 class Ear:
-    """The ear of one line. It takes blocks of sound and yields events, such as onsets and pauses.
+    """The ear of one line. It gets blocks of sound and yields events, for example onsets and pauses.
 
     Args:
-        speech: The probability above which a chunk counts as speech.
-        pause: The seconds of silence that make a pause.
+        speech: A chunk counts as speech from this probability on.
+        pause: This many seconds of silence are a pause.
         canceller: The canceller that removes the echo; None for a line without echo.
     """
 
     def __init__(self, speech: float = 0.5, pause: float = 0.2, canceller: Canceller | None = None) -> None:
         self.turn: Turn | None = None
-        """The present turn, also during a pause; None before the next onset."""
+        """The present turn, even during a pause. None if there has been no onset since the last turn."""
         self.speaking = False
-        """Whether the user speaks."""
+        """Whether the user is speaking."""
         self.parted: Turn | None = None
         """The turn of the first person, after another person has begun to speak (event ``another``)."""
         self.clipped = False
-        """Whether the sound is so loud that it is cut off at the limit."""
+        """Whether the sound has been so loud that it was cut off at the limit."""
         self._activity = Activity()
         self._speech = speech
         self._pause = round(pause * IN_RATE / CHUNK)
         self._canceller = canceller
         self._leak = Leak()
-        self._frames = bytearray()  # microphone sound that fills no frame of the canceller yet
-        self._far = bytearray()  # the loudspeaker's sound of the same time
-        self._clean = bytearray()  # sound without echo that fills no chunk yet
+        self._frames = bytearray()  # the microphone's sound that does not fill a frame of the canceller yet
+        self._far = bytearray()  # the loudspeaker's sound at the same time
+        self._clean = bytearray()  # the sound without echo that does not fill a chunk yet
         self._before: deque[bytes] = deque(maxlen=BEFORE)  # the last chunks before a turn
         self._lately: deque[bool] = deque(maxlen=ONSET)  # whether the last chunks are articulate
-        self._in_a_row = self._silent = 0  # the numbers of successive chunks of speech and of silence
-        self._spoken = self._articulate = 0  # the numbers of all chunks and of articulate chunks since the onset
-        self._at_limit = 0  # the number of clipped samples in this second of speech
-        self._sure = False  # whether the event ``articulate`` has come since the onset
+        self._in_a_row = self._silent = 0  # how many chunks of speech, or of silence, came last
+        self._spoken = self._articulate = 0  # how many chunks, and how many articulate ones, came since the onset
+        self._at_limit = 0  # how many samples in this second of speech are clipped
+        self._sure = False  # whether the ear has yielded ``articulate`` since the onset
 
     def feed(self, block: bytes, now: float, far: bytes = b"", *, agent_speaks: bool = False) -> Iterator[Event]:
-        """Take a block of sound; yield the events in it.
+        """Listen to a block of sound, and yield the events in it.
 
         Args:
             block: The sound (PCM at `IN_RATE`), of any length.
             now: The time at the end of the block (seconds).
-            far: The loudspeaker's sound in the same time, as long as `block`; empty for silence.
+            far: The loudspeaker's sound at the same time, as long as `block`; empty for silence.
             agent_speaks: Whether the agent is speaking.
         """
         self._clean += self._without_echo(block, far)
@@ -152,7 +154,7 @@ class Ear:
             del self._frames[: 2 * FRAME], self._far[: 2 * FRAME]
             self._leak.play(samples(near), samples(played))
             cleaned = near if self._canceller is None else self._canceller.clean(near, played)
-            # Without an echo, the canceller would only harm a user who speaks while the agent speaks.
+            # If there is no echo, the canceller would only damage the user's speech while the agent speaks.
             clean += cleaned if self._leak.echoes else near
         return bytes(clean)
 
@@ -206,7 +208,7 @@ class Ear:
             self.turn.continued = first, now, self.turn.end
 
     def _pitch(self) -> float | None:
-        """Return the pitch of the newest chunk. The end of the chunk before it takes part in the measurement."""
+        """Return the pitch of the newest chunk, measured together with the end of the previous chunk."""
         assert self.turn is not None
         lately = samples(b"".join(self.turn.chunks[-2:]))[-NEEDED:]
         return pitch(lately) if len(lately) == NEEDED else None
@@ -240,7 +242,7 @@ class Ear:
 
 
 def is_articulate(sound: Samples) -> bool:
-    """Return whether a chunk of speech has the sounds of an open mouth. A hum has hardly any above 600 Hz."""
+    """Return whether a chunk of speech comes from an open mouth. A hum has hardly any power above 600 Hz."""
     power = np.abs(np.fft.rfft(sound * np.hanning(len(sound)))) ** 2
     per_hertz = len(sound) / IN_RATE
     low = power[round(80 * per_hertz) : round(600 * per_hertz)].sum() + 1e-9

@@ -10,16 +10,16 @@ from typing import Any
 from ravestate.modules.modality.rawio.line import IN_RATE
 
 FRAME = 320
-"""The number of samples in a frame: 20 ms."""
+"""The number of samples in a frame (20 ms)."""
 TAIL = 4096
-"""The number of samples within which an echo arrives: 256 ms."""
+"""The canceller removes echoes that arrive within this many samples (256 ms)."""
 
-# Requests of the library.
+# The numbers of requests to the library.
 _SET_RATE, _SET_DENOISE, _SET_STATE, _SET_SUPPRESS, _SET_SUPPRESS_ACTIVE = 24, 0, 24, 20, 22
 
 
 class EchoCanceller:
-    """The canceller of one line.
+    """The echo canceller of one line.
 
     Raises:
         OSError: The library is not installed.

@@ -1,4 +1,4 @@
-"""The agent's feelings in its voice, if the agent has the module `emotion`."""
+"""Make the agent's feelings audible in its voice, if the agent has the module `emotion`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .manner import FEELINGS, Prosody
 from .names import module, prosody
 
 LASTS = 15.0
-"""The seconds for which a feeling is audible."""
+"""A feeling is audible for this many seconds."""
 
 
 def add_feelings(ctx: rs.RuleContext) -> None:
@@ -26,7 +26,7 @@ def add_feelings(ctx: rs.RuleContext) -> None:
         background=True,
     )
     async def feel(ctx: rs.RuleContext) -> None:
-        """Speak for a while in the manner of the feeling."""
+        """Speak for a while in the manner of the agent's new feeling."""
         ctx[prosody] = FEELINGS.get(ctx.payload(emotion.felt.changed) or "", Prosody())
         await ctx.sleep(LASTS)
         ctx[prosody] = Prosody()

@@ -1,4 +1,4 @@
-"""Following the user's sound, from the first block of a line to the last."""
+"""Follow the user's sound, from the first block of a line to the last one."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from .opening import Conversation
 
 DEAF = 0.25
-"""The seconds for which an agent with `half_duplex` stays deaf after its speech, because the room echoes."""
+"""With `half_duplex`, the agent stays deaf for this many seconds after its speech, because the room echoes."""
 LONGEST_END = 300.0
-"""The greatest number of seconds for which an agent may go on after the end of a recording."""
+"""After the end of a recording, the agent may continue for this many seconds."""
 
 
 async def follow(ctx: rs.RuleContext, talk: Conversation) -> None:

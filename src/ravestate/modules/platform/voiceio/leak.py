@@ -1,4 +1,4 @@
-"""The part of the agent's voice that stays in the microphone's sound. Only louder sound counts as another voice."""
+"""Estimate how much of the agent's voice stays in the microphone's sound. Only louder sound counts as another voice."""
 
 from __future__ import annotations
 
@@ -12,44 +12,45 @@ from .likeness import FAR, NEAR, likeness, strength
 from .sound import Samples
 
 MEMORY = 16
-"""The number of last frames of the loudspeaker's sound that may still echo: 0.3 s."""
+"""This many of the last frames of the loudspeaker's sound (0.3 s) may still echo."""
 SILENT = 100.0
-"""The power of a frame below which the loudspeaker is silent."""
+"""A frame with less power than this counts as silence."""
 FIRST = 10 ** (-13 / 10)
-"""The share of the loudspeaker's power to expect at first, before the canceller has learnt the room."""
+"""The expected share of the loudspeaker's power at first, before the canceller has learnt the room."""
 LEAST, MOST = 1e-6, 0.25
+"""The limits of the expected share."""
 CLEAR = 10.0
-"""The factor above the expected power at which the sound is another voice: 10 dB."""
+"""Sound with this many times the expected power (10 dB more) is another voice."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
-"""The factors by which a chunk changes the expected share: for less power than expected, for more, and for another
-voice."""
+"""A chunk multiplies the expected share by `DOWN` if it has less power than expected, and by `UP` if it has more. A
+chunk of another voice multiplies the share by `SLOWLY`."""
 
 SETTLED = 15
-"""The number of frames with sound on both sides after which the measured strength of the echo counts: 0.3 s."""
+"""The measured strength of the echo counts after this many frames (0.3 s) with sound on both sides."""
 SMOOTH = 0.3
 """The weight of a new measurement in the mean strength."""
 MARGIN = 10 ** (4 / 10)
-"""The factor by which an echo may exceed its measured strength, which does not include late reflections."""
+"""An echo may be this many times stronger than measured, because the measurement misses late reflections."""
 
 ALIKE = 25.0
-"""The `likeness` above which the microphone hears the loudspeaker."""
+"""If the `likeness` is greater than this, the microphone hears the loudspeaker."""
 TWICE = 2
-"""The number of comparisons in a row that prove an echo. For a moment, two voices may be alike by chance."""
+"""This many comparisons in a row prove an echo. One comparison may find two voices alike by chance."""
 DOUBTFUL = 12
-"""The number of frames with sound on both sides, but no echo, after which a line counts as free of echo: 0.24 s."""
+"""A line counts as free of echo after this many frames (0.24 s) with sound on both sides, but without an echo."""
 QUIET = 0.25
-"""The weight of a frame in which the microphone is silent: an echo may be late."""
+"""A frame in which the microphone is silent counts only this much, because an echo may be late."""
 OFTEN, SELDOM = 2, 8
-"""The frames between two comparisons before and after the first decision. A comparison takes a few milliseconds."""
+"""Compare the sounds once in this many frames: before and after the first decision. A comparison takes milliseconds."""
 GONE = 250
-"""The same as `DOUBTFUL`, for a line that had an echo: 5 s. Somebody may speak louder than the echo."""
+"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). Somebody may have spoken louder than the echo."""
 
 
 class Leak:
-    """The expected share of the loudspeaker's power in the cleaned sound of the microphone.
+    """Estimates which share of the loudspeaker's power stays in the cleaned sound of the microphone.
 
     On a line without echo (headphones, a recording), no sound counts as the agent's. The likeness of the two sounds
-    shows whether a line has an echo. Their levels do not, because a user who speaks may be as loud as an echo.
+    shows whether a line has an echo. Their levels do not show it, because a user may speak as loudly as an echo.
     """
 
     def __init__(self) -> None:
@@ -59,10 +60,10 @@ class Leak:
         self._near_sound: NDArray[np.float32] = np.zeros(NEAR, np.float32)
         self._far_sound: NDArray[np.float32] = np.zeros(FAR, np.float32)
         self._strength: float | None = None  # the measured strength of the echo before cleaning
-        self._unlike = 0.0  # the (weighted) number of frames without an echo since the last echo
-        self._limit = DOUBTFUL  # the number of such frames after which the line counts as free of echo
-        self._frame = 0  # the number of frames with sound on both sides
-        self._alike = 0  # the number of comparisons in a row that found an echo
+        self._unlike = 0.0  # how many frames (weighted) came since the last echo
+        self._limit = DOUBTFUL  # after so many such frames, the line counts as free of echo
+        self._frame = 0  # how many frames had sound on both sides
+        self._alike = 0  # how many comparisons in a row have found an echo
         self.echoes = False
         """Whether an echo has been found, so that the microphone's sound needs cleaning."""
 
@@ -72,7 +73,7 @@ class Leak:
         return self._unlike < self._limit
 
     def play(self, near: Samples, far: Samples) -> None:
-        """Note a frame of the microphone's sound before cleaning, and the frame of the loudspeaker's sound."""
+        """Note a frame of the microphone's sound before cleaning, and the loudspeaker's frame at the same time."""
         self._far.append(_power(far))
         self._near_sound = _shifted(self._near_sound, near)
         self._far_sound = _shifted(self._far_sound, far)
@@ -98,7 +99,7 @@ class Leak:
             self.echoes, self._limit = False, 0
 
     def hides(self, near: Samples) -> bool:
-        """Return whether a chunk of the microphone's cleaned sound may be the loudspeaker's. Learn from the chunk."""
+        """Return whether a chunk of the microphone's cleaned sound may come from the loudspeaker. Learn from it."""
         far = max(self._far, default=0.0)
         if far < SILENT or not self.possible:
             return False
@@ -112,7 +113,7 @@ class Leak:
 
     @property
     def _loudest(self) -> float:
-        """The greatest share that an echo can have. A user who speaks from the first moment does not increase it."""
+        """The greatest possible share of an echo. It stays the same even if the user speaks from the first moment."""
         if self._strength is None or self._frame < SETTLED:
             return CLEAR * MOST
         return MARGIN * self._strength

@@ -8,26 +8,26 @@ from numpy.typing import NDArray
 from ravestate.modules.modality.rawio.line import IN_RATE
 
 NEAR = 8000
-"""The number of samples of the microphone's sound in a comparison: 0.5 s."""
+"""A comparison uses this many samples (0.5 s) of the microphone's sound."""
 FAR = 24000
-"""The number of samples of the loudspeaker's sound in a comparison. An echo arrives within 1 s."""
+"""A comparison uses this many samples (1.5 s) of the loudspeaker's sound. So it finds echoes that arrive within 1 s."""
 EARLY = 1600
-"""The number of samples by which the loudspeaker's sound may come later than its echo: 0.1 s."""
+"""The loudspeaker's sound may be reported up to this many samples (0.1 s) later than its echo."""
 _SIZE = 32768
 WINDOW = 1024
-"""The number of samples in a window of `strength`: 64 ms, which hold most of an echo."""
+"""The number of samples in a window of `strength`. Its 64 ms hold most of an echo."""
 _BAND = slice(200 * _SIZE // IN_RATE, 6000 * _SIZE // IN_RATE)
 _WINDOW = np.hanning(WINDOW).astype(np.float32)
 _EDGE = np.hanning(160)[80:]
-"""The fade-out for both sounds. Both are cut off at the same time, and two abrupt ends would look like an echo."""
+"""The fade-out for both sounds. Both are cut off at the same time, so two abrupt ends would look like an echo."""
 
 
 def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float, int]:
     """Return the highest peak of the whitened correlation (GCC-PHAT), in standard deviations, and its delay in samples.
 
-    An echo repeats the loudspeaker's sound at one delay, so all frequencies agree on this delay. Then the peak is
-    mostly above 30, at any level. For another voice, the peak is about 10; while
-    few samples are known, it may be up to 20.
+    An echo repeats the loudspeaker's sound at one delay, so all frequencies agree on this delay. The peak is then
+    usually above 30, at any level. For another voice, the peak is about 10. It may be up to 20 as long as few samples
+    are known.
 
     Args:
         near: The last `NEAR` samples of the microphone.
@@ -48,10 +48,10 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
 
 
 def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) -> float:
-    """Return the share of the loudspeaker's power that the microphone hears, also while somebody speaks.
+    """Return the share of the loudspeaker's power that the microphone hears, even if somebody is speaking.
 
     The share is the part of the power that depends on the loudspeaker's sound in each band (Welch's coherence). The
-    power of another voice is divided by the number of windows. With 14 windows, such a voice counts 11 dB less.
+    power of another voice is divided by the number of windows. With 14 windows, it counts 11 dB less.
 
     Args:
         near, far: As for `likeness`.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Prosody:
-    """The manner of speech, relative to the voice's normal manner, which is 1.
+    """The manner of speech. Each value is a factor; 1 is the voice's normal manner.
 
     Attributes:
         rate: The speed.
@@ -28,4 +28,4 @@ FEELINGS: Mapping[str, Prosody] = {
     "shy": Prosody(0.92, 0.92, 0.8),
     "sad": Prosody(0.85, 0.8, 0.6),
 }
-"""The agent's feeling → its manner of speech."""
+"""The manner of speech for each feeling of the agent."""

@@ -1,4 +1,4 @@
-"""The processes of the models of speech: the backends are the files in the folder ``children``."""
+"""The processes of the speech models. Their programs are the files in the folder ``children``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CHILDREN = Path(__file__).with_name("children")
 
 
 def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True) -> ModelProcess:
-    """Return the process of a backend, which is the file ``kind`` in `CHILDREN`. Pair each call with `drop`."""
+    """Return the process of the backend in the file `kind` of the folder `CHILDREN`. Pair each call with `drop`."""
 
     def mend(reason: str) -> str:
         if kind == "espeak":

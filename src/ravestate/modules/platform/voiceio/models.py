@@ -1,4 +1,4 @@
-"""The models on this machine: folders, files, and downloads of missing models."""
+"""Find the speech models on this machine, and download missing ones."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def whisper_model(name: str) -> Path:
     """Return the folder of a model for faster-whisper.
 
     Args:
-        name: A folder's path, or the name of a folder within `folders`; empty for the best model on this machine.
+        name: A folder's path, or the name of a folder in `folders`; empty for the best model on this machine.
 
     Raises:
         PlatformError: There is no such model; the message says how to get one.
@@ -82,7 +82,7 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
 
 
 def piper_voice(name: str) -> Path | None:
-    """Return the file of a voice for Piper, by its path or its name within `folders`. An empty name fits any voice."""
+    """Return the file of a voice for Piper, by its path or its name in `folders`. An empty name fits any voice."""
     if name and Path(name).expanduser().suffix == ".onnx" and Path(name).expanduser().is_file():
         return Path(name).expanduser().absolute()
     for folder in folders():
@@ -93,7 +93,10 @@ def piper_voice(name: str) -> Path | None:
 
 
 def piper_python(setting: Path | None) -> str | None:
-    """Return an interpreter with Piper: from the setting, this interpreter, or the environment of ``make voice``."""
+    """Return a Python interpreter that has Piper; None if there is none.
+
+    It is the one in the setting, this interpreter, or the one of the environment that ``make voice`` creates.
+    """
     if setting is not None:
         return str(setting.expanduser())
     if find_spec("piper") is not None:
@@ -105,5 +108,5 @@ def piper_python(setting: Path | None) -> str | None:
 
 
 def smart_turn() -> Path | None:
-    """Return the file of the model for the end of a turn; None if this machine has no such file."""
+    """Return the file of the model that detects the end of a turn; None if this machine has no such file."""
     return next((file for folder in folders() for file in sorted(folder.glob(SMART_TURN), reverse=True)), None)

@@ -1,4 +1,4 @@
-"""The agent's sound: utterances as they grow, and the parts that the user has heard."""
+"""Play the agent's utterances while they grow, and find out which part of them the user has heard."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from .synthesiser import Spoken, Synthesiser
 
 HEARD = 0.5
-"""The share of a word that must have sounded for the word to count as heard."""
+"""A word counts as heard if this share of it has been played."""
 FAINT = 0.1
-"""The share of a word's greatest level below which the end of the word counts as a pause after it."""
+"""Sound at the end of a word counts as a pause if its level is below this share of the word's greatest level."""
 DRIFT = 0.06
-"""How far (seconds) the echo's reference may drift from the play-out before it jumps there. The reference is the
-loudspeaker's sound for the echo canceller. It advances with the microphone's sound."""
+"""The echo's reference is the loudspeaker's sound for the echo canceller. It advances with the microphone's sound. If
+it is more than this many seconds away from the loudspeaker's position, it jumps there."""
 LEAD = 4.0
-"""The seconds of sound in the loudspeaker's queue above which the mouth synthesises no more text."""
+"""If the loudspeaker's queue has more than this many seconds of sound, the mouth waits before it synthesises more."""
 KEPT = 30.0
-"""The seconds of sound to keep as the echo's reference."""
+"""How many seconds of sound to keep as the echo's reference."""
 
 
 class Speech:
@@ -38,7 +38,7 @@ class Speech:
     Args:
         text: The text so far.
         whole: Whether the text is complete.
-        counts: Whether ``rawio.heard`` reports it. For a filler, this is False.
+        counts: Whether ``rawio.heard`` reports the utterance; False for a filler.
     """
 
     def __init__(self, text: str = "", *, whole: bool = False, counts: bool = True) -> None:
@@ -48,9 +48,9 @@ class Speech:
         self.start = self.end = 0.0
         """The times at which the utterance's sound began and ended (seconds on the context's clock)."""
         self.over = False
-        """Whether the agent has finished the utterance, or was cut short."""
+        """Whether the agent has finished the utterance, or has been cut short."""
         self.heard = ""
-        """The part that the user heard, once the utterance is over."""
+        """The part that the user heard; empty until the utterance is over."""
         self._given = 0
         self._grown = asyncio.Event()
 
@@ -82,7 +82,7 @@ class Speech:
 
 @dataclass(slots=True)
 class _Queued:
-    """A sentence in the loudspeaker's queue. Its sound begins when the line has played `start` seconds."""
+    """A sentence in the loudspeaker's queue. Its sound begins when the line has played `start` seconds of sound."""
 
     start: float
     spoken: Spoken
@@ -102,13 +102,13 @@ class Mouth:
         self.turn = asyncio.Lock()
         """The lock that an utterance holds while it is spoken, so that only one is spoken at a time."""
         self.growing: Speech | None = None
-        """The utterance that still grows."""
+        """The utterance that is still growing; None if there is none."""
         self.said = ""
-        """The last queued sentences, by which the agent recognises its own voice in the microphone."""
+        """The last queued sentences. With them, the agent recognises its own words in the microphone's sound."""
         self.speaking = False
-        """Whether an utterance is under way, also while the speech is held."""
+        """Whether an utterance is being spoken, even if the speech is held."""
         self.silent_since: float | None = None
-        """The time since which the speech is held back; None if it is not held back."""
+        """The time at which `hold` stopped the speech; None if the speech is not held."""
         self._queue: list[_Queued] = []
         self._end = 0.0
         self._held_at: float | None = None
@@ -119,17 +119,17 @@ class Mouth:
 
     @property
     def held(self) -> bool:
-        """Whether the speech is held."""
+        """Whether `hold` has stopped the speech for the time being."""
         return self._held_at is not None
 
     @property
     def position(self) -> float:
-        """The seconds of sound that the line has played. While the speech is held, the position at which it stopped."""
+        """How many seconds of sound the line has played. While the speech is held, the position at which it stopped."""
         return self.line.played if self._held_at is None else self._held_at
 
     @property
     def lead(self) -> float:
-        """The seconds of sound that wait in the queue."""
+        """How many seconds of sound wait in the queue."""
         return max(0.0, self._end - self.position)
 
     @property
@@ -139,7 +139,7 @@ class Mouth:
 
     @staticmethod
     def words(sentence: str) -> str:
-        """Return a sentence as the voice can speak it; empty if it has no words."""
+        """Return a sentence without characters that the voice cannot speak; empty if it has no words."""
         return speakable(sentence)
 
     def begin(self) -> None:
@@ -189,7 +189,7 @@ class Mouth:
         self._released.set()
 
     async def played_out(self) -> None:
-        """Wait until everything has been played, also after holds."""
+        """Wait until all sound has been played. While the speech is held, keep waiting."""
         while True:
             await self.line.drained()
             if self._held_at is None:
@@ -197,8 +197,7 @@ class Mouth:
             await self._released.wait()
 
     async def room(self) -> None:
-        """Wait until little sound is left in the queue. This also works for a line that drops sound without playing
-        it."""
+        """Wait until little sound is left in the queue, even if the line drops sound without playing it."""
         while (left := self.lead - LEAD) > 0.0:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(max(0.05, left)):
@@ -215,7 +214,7 @@ class Mouth:
         self._queue.clear()
 
     def heard(self, text: str) -> str:
-        """Return the part of the utterance `text` that the user has heard, to the word."""
+        """Return the words of the utterance `text` that the user has heard."""
         position, end = self.position, 0
         for part in self._queue:
             words, sound = part.spoken.words, part.spoken.sound

@@ -1,4 +1,4 @@
-"""The module: its settings, signals and slots."""
+"""The names of `voiceio`: its settings, its module, its signals and slots."""
 
 from __future__ import annotations
 
@@ -28,11 +28,12 @@ class Settings(rs.Settings):
     model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
     source: str = "default"
-    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` goes first."""
+    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
+    priority."""
     sink: str = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
-    """Whether the agent is deaf while it speaks, so that nobody can interrupt it: for a loud loudspeaker."""
+    """Whether the agent is deaf while it speaks. This helps if the loudspeaker is loud, but nobody can interrupt."""
     echo_cancellation: bool = True
     """Whether the agent's own voice is removed from the microphone's sound (libspeexdsp)."""
 
@@ -45,9 +46,10 @@ class Settings(rs.Settings):
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """The seconds after which a recogniser counts as stuck, and starts again. A piece of sound has at most 25 s."""
+    """The time limit for recognising up to 25 s of sound (seconds). A slower recogniser counts as stuck, and is started
+    again."""
     captions: Seconds = 1.0
-    """Seconds between two captions (``rawio.hearing``) while the user speaks; 0 for none."""
+    """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 
     voice: str = ""
     """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
@@ -55,22 +57,22 @@ class Settings(rs.Settings):
     """The Python interpreter of Piper's environment, by default that of ``make voice``."""
 
     speech: Share = 0.5
-    """The probability of speech above which a sound counts as speech."""
+    """A sound counts as speech from this probability on."""
     pause: Annotated[float, Field(ge=0.1)] = 0.2
-    """Seconds of silence after which the turn may be over."""
+    """This many seconds of silence are a pause, and end a turn whose words and melody are complete."""
     doubtful_pause: Seconds = 1.2
-    """The seconds of silence that end a turn whose words or melody sound unfinished."""
+    """This many seconds of silence end a turn that may be incomplete."""
     longest_pause: Seconds = 1.4
-    """Seconds of silence that end every turn."""
+    """This many seconds of silence end every turn."""
     complete: Share = 0.5
-    """The probability of a complete turn (smart-turn) above which the melody sounds finished."""
+    """The melody counts as complete from this probability on (smart-turn)."""
 
     ask_back_below: Share = 0.38
-    """The recogniser's confidence below which the agent asks back."""
+    """The agent asks back if the recogniser's confidence is below this."""
     back_channel: Seconds = 1.0
-    """The seconds of the user's speech after which it is more than an "mhm", so that the agent stops speaking."""
+    """If the user speaks longer than this (seconds), it is more than an "mhm", so the agent stops speaking."""
     filler_after: Seconds = 0.8
-    """Seconds without an answer after which the agent says a filler; 0 for none."""
+    """The agent says a filler after this many seconds without an answer; 0 for no fillers."""
     fillers: tuple[str, ...] = ("Hm.", "Well.", "Let me see.")
     """The fillers."""
 
@@ -78,16 +80,16 @@ class Settings(rs.Settings):
 module = rs.Module("voiceio", requires=[rawio, verbaliser], settings=Settings)
 
 another_speaks: rs.Signal[Turn] = module.signal("another_speaks", payload=cast("type[Turn]", object))
-"""Another person has gone on after the first person. The payload is the first person's turn."""
+"""Another person has begun to speak after the first one. The payload is the first person's turn."""
 
 utterance: rs.Signal[Utterance] = module.signal("utterance", payload=Utterance)
 """The user has finished a turn. The words also go to ``rawio.input`` if the recogniser is confident enough."""
 
 user_speaking = module.flag("user_speaking")
-"""True while the user speaks. A pause of `pause` seconds ends it."""
+"""True while the user speaks. It becomes false after `pause` seconds of silence."""
 
 agent_speaking = module.flag("agent_speaking")
-"""True while the agent's voice sounds."""
+"""True while the agent's voice is audible."""
 
 heard = rawio.heard
 """The part of the agent's last utterance that the user heard: the slot ``rawio.heard`` itself."""
@@ -105,13 +107,13 @@ barge_in = module.signal("barge_in")
 """The user interrupts: the agent stops speaking."""
 
 held = module.flag("held")
-"""True while the agent's speech is held, until it is clear whether the user interrupts."""
+"""True while the agent's speech is paused, until it is clear whether the user interrupts."""
 
 speech: rs.Signal[Speech] = module.signal("speech", payload=cast("type[Speech]", object))
 """The agent begins to speak an utterance, which may still grow."""
 
 prosody: rs.Slot[Prosody] = module.slot("prosody", Prosody(), type=Prosody, input=True)
-"""The manner of the agent's speech. A module `emotion` in the agent sets it."""
+"""The manner of the agent's speech. If the agent has the module `emotion`, its feelings set this slot."""
 
 conversation: rs.Slot[Conversation | None] = module.slot("conversation", None)
-"""The open line with its ear, mouth and models; None while no line is open."""
+"""The open line with its ear, mouth and models; None if no line is open."""

@@ -23,7 +23,7 @@ from .turn import Melody, is_back_channel, is_demand, is_echo, melody_of, wanted
 from .wav_line import WavLine
 
 SURE = 0.55
-"""The confidence below which a short sound does not interrupt the agent. Recognisers may hear "Amen" in an "mm"."""
+"""A short sound interrupts the agent only from this confidence on. Recognisers may hear "Amen" in an "mm"."""
 
 
 @dataclass(slots=True)
@@ -42,17 +42,17 @@ class Conversation:
         """Close the line, and release the models. With `linger`, the models stay loaded for a while.
 
         Raises:
-            PlatformError: The file of the loudspeaker's sound cannot be written. Even so, all parts are closed.
+            PlatformError: The file for the loudspeaker's sound cannot be written. All parts are closed nevertheless.
         """
         self.closed = True
-        with ExitStack() as parts:  # after a fault in one part, close the others
+        with ExitStack() as parts:  # close all parts, even if one of them fails
             parts.callback(self.mouth.voice.close, linger=linger)
             parts.callback(self.recogniser.close, linger=linger)
             parts.callback(self.ear.close)
             parts.callback(self.line.close)
 
     async def words(self, sound: bytes, *, partial: bool = False) -> Recognised:
-        """Return the words of a sound. If the call is cancelled, later requests do not wait for it.
+        """Return the words in a sound. A cancelled request is dropped if it is still waiting for earlier requests.
 
         Args:
             sound: The sound (16 kHz).
@@ -68,7 +68,7 @@ class Conversation:
             unwanted.set()
 
     async def judge(self, turn: Turn) -> tuple[Recognised, float]:
-        """Return the words of a turn, and the seconds of silence after which the turn is over.
+        """Return the words of a turn, and how many seconds of silence end it.
 
         Raises:
             PlatformError: The recogniser fails.
@@ -79,11 +79,11 @@ class Conversation:
             complete = None if melody is None else await asyncio.to_thread(melody.complete, sound)
             found = await hearing
         finally:
-            hearing.cancel()  # if the turn goes on, nobody needs these words or their error
+            hearing.cancel()  # if the turn continues, these words and their error are no longer needed
         return found, 0.0 if turn.full else wanted_silence(found.text, complete, self.settings, found.last)
 
     def verdict(self, turn: Turn, found: Recognised) -> tuple[str, str]:
-        """Return the kind of a turn (``utterance``, ``back_channel``, ``false_alarm``), and the words or the reason."""
+        """Return the kind of a turn (``utterance``, ``back_channel``, ``false_alarm``), with its words or the reason."""
         if not found.text:
             return "false_alarm", "there are no words in the sound"
         if turn.agent_spoke:
@@ -104,7 +104,7 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     Args:
         given: A platform's line; None to open the files or devices that the settings name.
         settings: The module's settings.
-        warn: A function to call with a sentence for each missing part that the conversation can do without.
+        warn: For each missing part that is not essential, this function gets a sentence about it.
 
     Raises:
         PlatformError: A model, a program or a device is missing. The message says how to get it.
@@ -130,12 +130,12 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
 
 
 def is_file(name: str) -> bool:
-    """Return whether the setting of a source or a sink names a file rather than a device."""
+    """Return whether the setting `source` or `sink` names a file rather than a device."""
     return Path(name).suffix.lower() in (".wav", ".ogg", ".mp3", ".flac", ".m4a", ".opus")
 
 
 async def _line(settings: Settings) -> Line:
-    """Open the line between the files or devices that the settings name. One may be a file, and the other a device."""
+    """Open a line to the files or devices that the settings name. The source may be a file, and the sink a device."""
     source, sink = _file(settings.source), _file(settings.sink)
     by_clock = sink is not None or not settings.sink
     files = await asyncio.to_thread(WavLine, source, sink) if source or by_clock else None

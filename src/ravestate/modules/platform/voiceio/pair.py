@@ -1,4 +1,4 @@
-"""A line with the microphone of one line and the loudspeaker of another, such as a recording and a device."""
+"""Combine the microphone of one line with the loudspeaker of another, for example a recording with a device."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ravestate.modules.modality.rawio.line import Line
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A line of two halves.
+    """A line that takes its microphone and its loudspeaker from two other lines.
 
     Attributes:
         source: The line that has the microphone.
@@ -23,12 +23,12 @@ class Pair:
 
     @property
     def cancels_echo(self) -> bool:
-        """Whether the sound comes without the loudspeaker's echo."""
+        """Whether the microphone's sound comes without the loudspeaker's echo."""
         return self.source.cancels_echo
 
     @property
     def ended(self) -> bool:
-        """Whether the microphone's sound has come to its end."""
+        """Whether the microphone's sound has ended."""
         return self.source.ended
 
     def blocks(self) -> AsyncIterator[bytes]:
@@ -45,7 +45,7 @@ class Pair:
 
     @property
     def played(self) -> float:
-        """The seconds of sound that have been played."""
+        """How many seconds of sound the loudspeaker has played."""
         return self.sink.played
 
     async def drained(self) -> None:

@@ -1,4 +1,4 @@
-"""The pitch of a voice, which shows that another person has begun to speak."""
+"""Measure the pitch of a voice, to detect that another person has begun to speak."""
 
 from __future__ import annotations
 
@@ -11,24 +11,26 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .sound import Samples
 
 FRAME = 640
-"""The number of samples in a frame: 40 ms."""
+"""The number of samples in a frame (40 ms)."""
 LOWEST, HIGHEST = 70.0, 400.0
 """The range of speaking voices (Hz)."""
 PERIODIC = 0.6
-"""The autocorrelation at one period above which a frame is voiced."""
+"""A frame is voiced if its autocorrelation at one period is greater than this."""
 ENOUGH = 8
-"""The number of voiced frames that are enough to know a voice's pitch."""
+"""This many voiced frames are enough to know a voice's pitch."""
 ANOTHER = 1.6
-"""The ratio of two mean pitches above which they belong to two people. One person's pitch varies less."""
+"""If the ratio of two median pitches is greater than this, they belong to two people. One person's pitch varies
+less."""
 LASTING = 15
-"""The number of voiced frames on each side of a change within speech. One person's pitch jumps for a shorter time."""
+"""A change of voice within speech needs this many voiced frames on each side. One person's pitch jumps for a shorter
+time."""
 AGREE = 0.9
-"""The share of the frames on each side of a change whose pitches must be on the same side of the threshold."""
+"""On each side of a change, at least this share of the pitches must be on the same side of the threshold."""
 SOFT = 500
-"""The level below which a frame counts as silence."""
+"""A frame below this level counts as silence."""
 _SHORTEST, _LONGEST = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
 NEEDED = FRAME + _LONGEST + 1
-"""The number of samples from which to compute a pitch: a frame, and the frame one period later."""
+"""The number of samples needed to compute a pitch: a frame, and the frame one period later."""
 _SIZE = 1 << (NEEDED + FRAME).bit_length()
 
 
@@ -58,7 +60,7 @@ def pitch(sound: Samples) -> float | None:
 
 
 def is_another(first: Sequence[float | None], second: Sequence[float | None]) -> bool:
-    """Return whether two rows of pitches seem to be the voices of two people."""
+    """Return whether two sequences of pitches seem to be the voices of two people."""
     one, other = _voiced(first), _voiced(second)
     if len(one) < ENOUGH or len(other) < ENOUGH:
         return False
@@ -67,10 +69,10 @@ def is_another(first: Sequence[float | None], second: Sequence[float | None]) ->
 
 
 def change(found: Sequence[float | None]) -> int | None:
-    """Return the place in a row of pitches at which another person begins; None if only one person speaks.
+    """Return the index in a sequence of pitches at which another person begins; None if only one person speaks.
 
-    One person's pitch also jumps, but seldom for long. So nearly all pitches on each side of the place must be on the
-    same side of the threshold.
+    The pitch of one person also jumps, but seldom for long. So nearly all pitches before the index must be on one side
+    of the threshold, and nearly all later ones on the other side.
     """
     places = [place for place, each in enumerate(found) if each is not None]
     logs = np.log(np.array(_voiced(found), np.float64))

@@ -1,4 +1,4 @@
-"""A play-out clock, which computes the part of queued sound that has been played at a time."""
+"""A play-out clock: it computes which part of the queued sound has been played at a given time."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class PlayOut:
         return self._parts[-1].end if self._parts else float("-inf")
 
     def played(self, now: float) -> float:
-        """Return the seconds of sound that were played until `now`, not counting pauses."""
+        """Return how many seconds of sound have been played until `now`, without pauses."""
         return sum(min(part.end, max(part.begin, now)) - part.begin for part in self._parts)
 
     def parts(self) -> Iterator[tuple[float, bytes]]:

@@ -22,9 +22,9 @@ LONGEST = 25.0
 """The maximum number of seconds of sound in one request. A whisper model reads 30 s, including silence at the end."""
 
 _MARKS = re.compile(r"\[[^\]]*\]|\([^)]*\)|\*[^*]*\*|[♪♫]+")
-"""Notes of a recogniser about sounds other than speech, such as ``[Music]`` or ``(coughs)``."""
+"""A recogniser's notes about sounds other than speech, for example ``[Music]`` or ``(coughs)``."""
 
-# Whisper has learnt these phrases from the ends of films, and writes them for noise and silence.
+# Whisper has learnt these phrases from the last words of films, and writes them for noise and silence.
 _PHANTOMS = frozenset(
     {"i", "you", "thank you", "thanks for watching", "thank you for watching", "bye", "the end", "so"}
 )
@@ -37,7 +37,7 @@ class Recognised:
     Attributes:
         text: The words; empty if there are none.
         confidence: The recogniser's confidence, from 0 to 1.
-        last: The candidates for the last word, with their probabilities. Empty if the recogniser names no candidates.
+        last: The candidates for the last word, with their probabilities. Empty if the recogniser gives no candidates.
     """
 
     text: str
@@ -93,16 +93,16 @@ class Recogniser:
     def recognise(self, pcm: bytes, *, partial: bool = False, unwanted: Event | None = None) -> Recognised:
         """Return the words of a sound (16 kHz).
 
-        A sound may have any length, because the recogniser takes it in pieces. Other requests may come between pieces.
+        A sound may have any length, because the recogniser gets it in pieces. Other requests may come between pieces.
 
         Args:
             pcm: The sound.
-            partial: Whether the sound is the beginning of an utterance, for a caption: quicker, and less exact.
-            unwanted: An event that another thread sets if nobody needs the words any more. It stops the next pieces.
+            partial: Whether the sound is the beginning of an utterance, for a caption. This is quicker, but less exact.
+            unwanted: An event that another thread sets if the words are no longer needed. It stops the next pieces.
 
         Raises:
-            PlatformError: The recogniser fails, or does not answer in time, also in a second attempt. Or nobody needs
-                the words any more.
+            PlatformError: The recogniser fails, or does not answer in time, in two attempts. Or the words are no longer
+                needed.
         """
         found: list[tuple[float, Recognised]] = []
         for piece in pieces(pcm, IN_RATE, LONGEST):
@@ -126,7 +126,7 @@ class Recogniser:
         return replace(found, last=answer.get("last", {})) if found.text else found
 
     def close(self, *, linger: bool = False) -> None:
-        """Release the model. Its last user ends the process: at once, or with `linger` after a while."""
+        """Release the model. If nobody else uses it, its process ends: at once, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
 
 

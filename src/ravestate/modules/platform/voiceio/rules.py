@@ -48,13 +48,13 @@ if TYPE_CHECKING:
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Open the line, and raise signals when the user begins to speak, speaks articulately, or pauses."""
+    """Open the line. Raise signals when the user begins to speak, speaks articulately, or pauses."""
     settings: Settings = ctx.settings
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
         return rs.Resign("the user's platform has no line in rawio.sound now")
     if line is not None and ctx.payload(rawio.sound.changed) is None:
-        return rs.Resign("a line came at once, and another run of this rule opens it")
+        return rs.Resign("the new line has a run of its own")
 
     def warn(text: str) -> None:
         ctx.log.warning("%s", text)
@@ -88,7 +88,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _is_served(ctx: rs.RuleContext) -> bool:
-    """Return whether a platform with many users runs this context. Then the user is not at the machine's devices."""
+    """Return whether a platform with many users runs this context. If so, the user is not at this machine's devices."""
     return any(each.serve is not None for each in ctx.policy.modules)
 
 
@@ -113,7 +113,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
         try:
             found = await talk.words(turn.sound, partial=True)
         except PlatformError as error:
-            if talk.closed:  # closing the line has ended the recogniser's process in the middle of its work
+            if talk.closed:  # the recogniser failed because closing the line has ended its process
                 return rs.Resign("the line is closed")
             ctx.log.warning("%s", error)
             continue
@@ -128,7 +128,7 @@ async def caption(ctx: rs.RuleContext) -> rs.Resign | None:
     until=user_speaking.true,
 )
 async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Recognise the words at a pause, and wait until the turn is over; more speech continues the turn."""
+    """Recognise the words at a pause, and wait until the turn is over. If the user speaks again, the turn continues."""
     talk = ctx[conversation]
     if talk is None or (turn := talk.ear.turn) is None:
         return rs.Resign("the line is closed")
@@ -161,7 +161,7 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=another_speaks, reads=conversation, emits=(utterance, false_alarm))
 async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Take the turn of the person who spoke first, because the words of two people are not one sentence."""
+    """Handle the turn of the person who spoke first separately, because the words of two people are not one sentence."""
     talk, turn = ctx[conversation], ctx.payload(another_speaks)
     if talk is None:
         return rs.Resign("the line is closed")
@@ -238,8 +238,8 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
     if growing is not None and (rest is not None or not ctx[rawio.speaking]):
         talk.mouth.growing = None
         growing.grow(rest or "")
-        growing.finish()  # rules need not set `rawio.speaking`: then the new utterance shows that the old one ended
-        if growing.over and rest is not None:  # it was cut while it grew: note its heard part once it is complete
+        growing.finish()  # if no rule sets `rawio.speaking`, only the new utterance shows that the old one has ended
+        if growing.over and rest is not None:  # it was cut off while it grew; note the heard part now
             ctx[rawio.heard] = growing.heard
     if rest is None and speakable(text):
         ctx.emit(speech, Speech(text, whole=True))
@@ -248,7 +248,7 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.speaking.false.max_age(None).detached(), reads=conversation, background=True)
 async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
-    """End a growing utterance that no rule continues."""
+    """End a growing utterance when no rule continues it."""
     talk = ctx[conversation]
     if talk is None or talk.mouth.growing is None:
         return rs.Resign("no utterance grows")
@@ -264,7 +264,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     until=barge_in | utterance | rawio.hush | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak an utterance sentence by sentence. If the user interrupts it, note the part that the user has heard."""
+    """Speak an utterance sentence by sentence. In the end, note the part of it that the user heard."""
     talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
     if talk is None:
         return rs.Resign("the line is closed")
@@ -291,7 +291,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
             except PlatformError as error:
                 if not talk.closed:
                     ctx.log.error("%s", error)
-                saying.heard = saying.text.strip()  # without a voice, the user may still read the text
+                saying.heard = saying.text.strip()  # the voice failed, but the user may read the text
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)
                 raise
@@ -317,7 +317,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Hold the agent's speech when the user speaks up."""
+    """Pause the agent's speech when the user speaks up."""
     talk = ctx[conversation]
     if talk is None or not talk.mouth.speaking:
         return rs.Resign("the agent does not speak")
@@ -334,7 +334,7 @@ async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def give_way(ctx: rs.RuleContext) -> None:
-    """Stop speaking for good when the user's speech goes on, because an "mhm" would be shorter."""
+    """Stop speaking for good if the user keeps speaking: an "mhm" would be shorter."""
     await ctx.sleep(ctx.settings.back_channel)
     ctx.emit(barge_in)
 
@@ -346,7 +346,7 @@ async def give_way(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Continue the held speech, because the user did not interrupt."""
+    """Continue the paused speech, because the user did not interrupt."""
     talk = ctx[conversation]
     if talk is None or not talk.mouth.held:
         return rs.Resign("nothing is held")

@@ -1,4 +1,4 @@
-"""Sounds as bytes: mono PCM (16 bits, signed, little-endian), and files of many formats."""
+"""Convert sounds: mono PCM bytes (16 bits, signed, little-endian), and files of many formats."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ Samples = NDArray[np.int16]
 LONGEST = 3600.0
 """The maximum number of seconds to read from a file."""
 FRAME = 0.02
-"""The length (seconds) of the frames among which `pieces` looks for a quiet moment."""
+"""`pieces` looks for a quiet moment in frames of this length (seconds)."""
 QUIET = 15
-"""The number of frames of a quiet moment: 0.3 s."""
+"""A quiet moment has this many frames (0.3 s)."""
 
 
 def samples(pcm: bytes) -> Samples:
-    """Return PCM bytes as samples, without half a sample at the end."""
+    """Return PCM bytes as samples. Drop an odd byte at the end."""
     return np.frombuffer(pcm[: len(pcm) // 2 * 2], "<i2")
 
 
 def seconds(pcm: bytes, rate: int) -> float:
-    """Return the length of a sound."""
+    """Return the length of a sound in seconds. `rate` is in Hz."""
     return len(pcm) / 2 / rate
 
 
@@ -64,10 +64,10 @@ def resample(pcm: bytes, old: int, new: int) -> bytes:
 
 
 def decode(source: bytes | Path, rate: int) -> bytes:
-    """Return the sound of an encoded file (WAV, OGG, MP3, …) as PCM at `rate` (Hz). Channels are mixed.
+    """Return the sound in a file (WAV, OGG, MP3, …) as PCM at `rate` (Hz). The channels are mixed.
 
     Raises:
-        PlatformError: The file is missing, holds no sound, or is damaged from its beginning.
+        PlatformError: The file is missing, holds no sound, or is damaged at its beginning.
     """
     av = _av()
     name = str(source) if isinstance(source, Path) else f"{len(source)} bytes"
@@ -98,7 +98,7 @@ def decode(source: bytes | Path, rate: int) -> bytes:
 
 
 def encode_ogg(pcm: bytes, rate: int) -> bytes:
-    """Return a sound as an OGG file with Opus, the format of messengers for voice notes."""
+    """Return a sound as an OGG file with Opus, the usual format of voice notes."""
     av = _av()
     target = io.BytesIO()
     with av.open(target, "w", format="ogg") as container:

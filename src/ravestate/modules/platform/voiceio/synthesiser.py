@@ -16,7 +16,7 @@ from .names import Settings
 from .sound import resample, seconds
 
 PATIENCE = 20.0
-"""The maximum number of seconds for the synthesis of a sentence."""
+"""The synthesis of a sentence may take this many seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class Spoken:
 class Synthesiser:
     """The voice that the settings name. All methods block and are thread-safe.
 
-    A voice varies at random from sentence to sentence. So a conversation sounds the same each time only if its process
-    speaks for no other conversation.
+    A voice varies at random from sentence to sentence. So a repeated conversation sounds the same only if no other
+    conversation uses its process.
 
     Args:
         settings: The settings of voiceio.
@@ -92,7 +92,7 @@ class Synthesiser:
         return Spoken(text, sound, reference, _words(text, answer, seconds(sound, OUT_RATE)))
 
     def close(self, *, linger: bool = False) -> None:
-        """Release the voice. Its last user ends the process: at once, or with `linger` after a while."""
+        """Release the voice. If nobody else uses it, its process ends: at once, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
 
 

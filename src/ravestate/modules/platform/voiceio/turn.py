@@ -17,25 +17,25 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 from .names import Settings
 
 WINDOW = 8.0
-"""The number of seconds at the end of a turn that the melody model hears."""
+"""The melody model hears this many seconds at the end of a turn."""
 
 UNFINISHED = 0.3
-"""If the melody's probability is below this share of the setting `complete`, the turn goes on, whatever the words
-are."""
+"""If the melody's probability is below this share of the setting `complete`, the user wants to say more, whatever the
+words are."""
 
 ANOTHER = 0.03
-"""The turn may not be over if the last word may be one after which a sentence goes on, such as *my*. This is the least
-probability of all such candidates together."""
+"""A sentence does not end after a word such as *my*. If the candidates of this kind have at least this probability
+together, it is doubtful whether the turn is over."""
 UNCLEAR = 0.3
-"""If no candidate has this probability, the last word is unclear, for example because it breaks off."""
+"""If no candidate has this probability, the last word is unclear, for example because it was cut off."""
 
 _SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+[-.]?)+|m(?:[-.][a-z]{1,2})*[-.][mnh]+")
-"""Laughter, and hums as a recogniser writes or spells them: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""
+"""Laughter and hums in a recogniser's spelling: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""
 _EDGES = ".,!?…;:\"'“”‘’()-–— "
 
 
 class Melody:
-    """The model that judges from the sound whether a turn is complete (smart-turn)."""
+    """A model that judges by the sound whether a turn is complete (smart-turn)."""
 
     def __init__(self, file: Path) -> None:
         """Load the model in a file.
@@ -52,7 +52,10 @@ class Melody:
         self._features: Any = FeatureExtractor(chunk_length=int(WINDOW))
 
     def complete(self, pcm: bytes) -> float:
-        """Return the probability that the turn with this sound (16 kHz, with 0.2 s of silence at its end) is complete."""
+        """Return the probability that a turn is complete.
+
+        `pcm` is its sound (16 kHz), with 0.2 s of silence at the end.
+        """
         import numpy as np
 
         wanted = int(WINDOW * IN_RATE)
@@ -67,7 +70,7 @@ class Melody:
 
 @lru_cache(maxsize=1)
 def melody_of(file: Path) -> Melody:
-    """Return the model in a file. The model keeps nothing of the sounds, so it stays loaded for the next conversation.
+    """Return the model in a file. It stays loaded for the next conversation, because it stores no sounds.
 
     Raises:
         PlatformError: The file cannot be loaded.
@@ -78,12 +81,12 @@ def melody_of(file: Path) -> Melody:
 def wanted_silence(
     text: str, complete: float | None, settings: Settings, last: Mapping[str, float] | None = None
 ) -> float:
-    """Return the seconds of silence after which a turn is over.
+    """Return how many seconds of silence end a turn.
 
     Args:
         text: The words so far.
-        complete: The probability of a complete melody; None without the model.
-        settings: The limits.
+        complete: The probability that the melody is complete; None if there is no model.
+        settings: The settings with the pauses and limits.
         last: The recogniser's candidates for the last word, with their probabilities.
     """
     words = completeness(text, settings.language)
@@ -96,7 +99,7 @@ def wanted_silence(
 
 
 def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
-    """Return whether words are complete, judged by the last word. An article is open, an auxiliary verb is doubtful.
+    """Judge by the last word whether a text is complete. With an article, it is open; with an auxiliary verb, doubtful.
 
     Example:
         >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")
@@ -112,9 +115,10 @@ def completeness(text: str, language: str = "en") -> Literal["open", "doubtful",
 
 
 def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
-    """Return whether the last word is unclear, or may be a word after which the sentence goes on.
+    """Return whether the last word is unclear, or may be a word that cannot end the sentence.
 
-    A recogniser has learnt from whole sentences, so it may hear "a photograph of mine" in "a photograph of my".
+    A recogniser has learnt from whole sentences. So it may hear "a photograph of mine" if the user says "a photograph
+    of my", and pauses.
     """
     known, written = _words(language), _bare(text.split()[-1])
     more = known["open"] | known["doubtful"]
@@ -123,7 +127,7 @@ def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
 
 
 def is_back_channel(text: str, language: str = "en") -> bool:
-    """Return whether words show only that the user listens or laughs.
+    """Return whether the words show merely that the user is listening or laughing.
 
     Example:
         >>> is_back_channel("Yeah, I see."), is_back_channel("Ha ha ha!"), is_back_channel("Yes, but why?")
@@ -144,7 +148,7 @@ def is_back_channel(text: str, language: str = "en") -> bool:
 
 
 def is_demand(text: str, language: str = "en") -> bool:
-    """Return whether words ask the agent to stop or to listen.
+    """Return whether the words ask the agent to stop or to listen.
 
     Example:
         >>> is_demand("Hey, wait."), is_demand("In a month")
@@ -154,7 +158,7 @@ def is_demand(text: str, language: str = "en") -> bool:
 
 
 def is_echo(text: str, spoken: str) -> bool:
-    """Return whether at least three words were recognised, and most of them are the agent's own words in a row.
+    """Return whether the recognised words (at least three) are mostly a passage of the agent's own words.
 
     Example:
         >>> is_echo("lived in a museum", "Once there was a robot. It lived in a museum.")

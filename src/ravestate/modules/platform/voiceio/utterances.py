@@ -12,8 +12,8 @@ class Utterance:
     Attributes:
         text: The recognised words; empty if there were none.
         confidence: The recogniser's confidence, from 0 to 1.
-        start: The time at which the speech began: seconds on the context's clock, or from the beginning of a file.
-        end: The time at which the speech ended, in the same seconds.
+        start: The time at which the speech began: seconds on the context's clock, or since the beginning of a file.
+        end: The time at which the speech ended, measured like `start`.
     """
 
     text: str

@@ -1,4 +1,4 @@
-"""Voice notes: a recording as text, and a text as a recording."""
+"""Voice notes: turn recordings into text, and text into recordings."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ def transcribe(sound: bytes | Path, settings: Settings | None = None) -> Utteran
 
     Args:
         sound: A file or its bytes, in any usual format: WAV, OGG with Opus, MP3, M4A.
-        settings: The recogniser and its model, by default those of the environment.
+        settings: The settings of voiceio; by default, those of the environment.
 
     Returns:
-        The utterance, with times from the beginning of the recording (seconds). Its text is empty if nobody speaks.
+        The utterance. Its times count from the beginning of the recording. Its text is empty if nobody speaks.
 
     Raises:
         PlatformError: The recording cannot be read, or a package or a model is missing.

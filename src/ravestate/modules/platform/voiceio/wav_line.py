@@ -1,4 +1,4 @@
-"""A line between files: a recording takes the place of the microphone, and a WAV file that of the loudspeaker."""
+"""A line to files: a recording replaces the microphone, and a WAV file replaces the loudspeaker."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ BLOCK = 0.02
 
 
 class WavLine:
-    """A recording as the microphone, at the speed of the loop's clock. Silence follows the recording.
+    """A line whose microphone plays a recording at the speed of the loop's clock, and then silence.
 
     Args:
         source: The recording, in any usual format; None for silence.
-        sink: The WAV file for the loudspeaker's sound, on the time line of the recording; None to drop the sound.
+        sink: The WAV file for the loudspeaker's sound. It starts when the recording starts. None drops the sound.
 
     Raises:
         PlatformError: The recording cannot be read, or the WAV file cannot be written.
     """
 
     cancels_echo = False
-    """Whether the sound comes without the loudspeaker's echo."""
+    """Always False: the recording may contain an echo."""
 
     def __init__(self, source: Path | None, sink: Path | None = None) -> None:
         if sink is not None:
@@ -43,7 +43,7 @@ class WavLine:
         """Whether the recording has ended."""
 
     def begin(self) -> float:
-        """Begin the time line now, and return its beginning. `blocks` calls this method, too."""
+        """Start the recording and the WAV file now, and return this time. `blocks` calls this method, too."""
         self._begun = _now()
         return self._begun
 
@@ -72,7 +72,7 @@ class WavLine:
 
     @property
     def played(self) -> float:
-        """The seconds of sound that have been played."""
+        """How many seconds of sound have been played."""
         return self._out.played(_now())
 
     async def drained(self) -> None:
@@ -107,7 +107,7 @@ class WavLine:
 
 
 def check_target(path: Path) -> None:
-    """Make sure that a WAV file can be written, so that a long conversation does not end in a fault.
+    """Make sure that a WAV file can be written, so that the sound of a long conversation is not lost at its end.
 
     Raises:
         PlatformError: The name does not end in ``.wav``, or the file cannot be written.

@@ -15,7 +15,7 @@ from .names import ORIGIN
 if TYPE_CHECKING:
     from .names import Settings
 
-PAUSE = 1.0  # the seconds that the server waits before it refuses a wrong token, so that guessing takes long
+PAUSE = 1.0  # the server waits this many seconds before it refuses a wrong token, so that guessing takes long
 
 
 def is_local(host: str) -> bool:
@@ -32,8 +32,8 @@ class Access:
     """Checks each request before the server answers it.
 
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
-    checks prevent that. Against DNS rebinding, the server answers only to names of this machine. It accepts only its
-    own origin and those in the settings. All methods expect the names of headers in lower case.
+    checks prevent that. Against DNS rebinding, the server answers only to names of this machine. And it accepts only
+    requests from its own origin and from the origins in the settings. All methods expect header names in lower case.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -55,7 +55,7 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request may not reach the board; None if it may. Only the agent's own page may."""
+        """Return why a request may not reach the board; None if it may. Only the agent's own page may reach it."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (
@@ -65,9 +65,9 @@ class Access:
         return None
 
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
-        """Return the origin of a site that tries to embed the page without permission; None if no site does.
+        """Return the origin of the site that tries to embed the page without permission; None if no site tries.
 
-        Browsers send the necessary headers only over HTTPS or to this machine, and only if widget.js permits them.
+        Browsers send the necessary headers only over HTTPS or to this machine, and only if widget.js permits it.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None
@@ -80,7 +80,7 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Return whether a token is right, or none is needed. The time taken reveals nothing about the token."""
+        """Return whether a token is right, or no token is needed. The time of the check reveals nothing about it."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )

@@ -32,7 +32,7 @@ PAGE = Path(__file__).parent / "page"
 """The folder of the built page: the output of ``npm run build`` in ``frontend/``."""
 
 MOST_LOGGED = 100
-"""The maximum number of embedding sites that the log names, each once, so that strangers cannot fill the log."""
+"""The log names at most this many embedding sites, each only once, so that strangers cannot fill it."""
 
 log = logging.getLogger("ravestate.webio")
 
@@ -128,9 +128,9 @@ def _devices(sessions: Sessions) -> list[str]:
 
 
 def _bounds(framing: Iterable[str], devices: Iterable[str]) -> dict[str, str]:
-    """Return headers that restrict scripts, and let only the page's own site and the origins `framing` embed it.
+    """Return headers that restrict scripts. They let only the page's own site and the origins in `framing` embed it.
 
-    The page may use the microphone and the camera only if they are among the `devices`.
+    They let the page use the microphone and the camera only if these are among the `devices`.
     """
     policy = (
         "default-src 'none'",

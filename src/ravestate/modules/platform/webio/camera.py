@@ -1,4 +1,4 @@
-"""The camera of a visitor, which is in a browser, as the agent's `rawio.camera`."""
+"""The camera in a visitor's browser as the agent's `rawio.camera`."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ MOST_FACES = 50
 
 
 class Window(Protocol):
-    """A window of the visitor, which can have the camera."""
+    """A browser window of the visitor, which can have the camera."""
 
     def wake(self) -> None:
-        """Note that the agent wants a picture, or sees other faces."""
+        """Note that the agent wants a picture, or that the visible faces have changed."""
         ...
 
     def lose_camera(self, why: str) -> None:
@@ -36,10 +36,10 @@ def sees(policy: Policy) -> bool:
 
 
 class PageCamera:
-    """The camera of one window: a `rawio.Camera`. It keeps at most one picture, until the agent takes it.
+    """The camera of one browser window: a `rawio.Camera`. It keeps at most one picture, until the agent fetches it.
 
-    The window sends one picture for each time that the agent asks. So the agent's own pace sets the rate, and a slow
-    network or a busy agent piles up no pictures.
+    The window sends one picture for each request of the agent. So the agent's own pace sets the rate, and no pictures
+    pile up if the network is slow or the agent is busy.
 
     Args:
         window: The window whose camera is on.
@@ -51,7 +51,7 @@ class PageCamera:
         self.asked = 0
         """The number of the agent's last request for a picture."""
         self.waits = False
-        """Whether the agent waits for the answer to this request."""
+        """Whether the agent is waiting for the picture of request number `asked`."""
         self.faces: tuple[Face, ...] = ()
         """The faces that the agent sees now."""
         self.closed = False
@@ -65,7 +65,7 @@ class PageCamera:
     # -------------------------------------------------------------------------------- the agent's side
 
     async def next(self) -> bytes | None:
-        """Ask for a picture, and wait for it. Return a JPEG; None once the camera is off."""
+        """Ask for a picture, and wait for it. Return a JPEG, or None if the camera is off."""
         if not self.waits and self._picture is None and not self.closed:
             self.asked += 1
             self.waits = True
@@ -92,7 +92,7 @@ class PageCamera:
     # -------------------------------------------------------------------------------- the window's side
 
     def take(self, number: int, picture: bytes) -> None:
-        """Take the answer to request `number`; ignore it if nobody waits for it."""
+        """Accept the picture that answers request `number`; ignore it if the agent does not wait for it."""
         if self.waits and number == self.asked:
             self.waits = False
             self._picture = picture

@@ -1,4 +1,4 @@
-"""A WebSocket for any protocol, with closing codes, and limits on the size of frames and the wait for the first."""
+"""A WebSocket for any protocol. It limits the size of frames, the wait for the first one, and the queue of replies."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .protocol import serialise
 LONGEST = 128 * 1024
 """The maximum number of bytes in a frame. A text may have 10,000 characters, each up to twelve bytes in JSON."""
 
-SILENT = 10.0  # the seconds that a client has to send its first frame
+SILENT = 10.0  # the server waits this many seconds for the client's first frame
 
 
 class Channel:
-    """A WebSocket, not accepted yet, that carries frames as text.
+    """Carries frames as text over a WebSocket that the server has not accepted yet.
 
-    At most `replies` replies may wait: a client that keeps asking without reading is dropped.
+    At most `replies` replies wait to be sent. A client that keeps asking without reading the replies is disconnected.
     """
 
     def __init__(self, socket: WebSocket, replies: int) -> None:
@@ -30,10 +30,10 @@ class Channel:
         self._most = replies
         self._replies: deque[str] = deque()
         self.woken = asyncio.Event()
-        """An event that is set when there is something to send, such as a reply."""
+        """An event that is set when there is something to send, for example a reply."""
 
     async def carry(self, serve: Callable[[], Awaitable[None]]) -> None:
-        """Accept the client, and run `serve` until either side closes. The client gets a `ProtocolError` as a frame."""
+        """Accept the client, and run `serve` until either side closes. Report a `ProtocolError` to the client."""
         with contextlib.suppress(WebSocketDisconnect):
             await self._socket.accept()
             try:
@@ -43,7 +43,7 @@ class Channel:
                 await self._socket.close(CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code)
 
     async def first(self, expected: str) -> str | bytes:
-        """Return the client's first frame; `expected` is an example of it, for the error message."""
+        """Return the client's first frame. `expected` is an example of such a frame, for the error message."""
         try:
             async with asyncio.timeout(SILENT):
                 return await self.receive()
@@ -86,7 +86,7 @@ class Channel:
 
 
 class Bucket:
-    """A rate limit (token bucket) for events: at most `burst` at once, then `rate` per second. Times are in seconds.
+    """A rate limit (token bucket): at most `burst` events at once, then `rate` events per second. Times are in seconds.
 
     Example:
         >>> bucket = Bucket(burst=2, rate=0.5, now=0.0)
@@ -105,13 +105,13 @@ class Bucket:
         self._time = now
 
     def wait(self, now: float) -> float:
-        """Count an event, even beyond the limit; return the seconds until the limit allows it, or 0."""
+        """Count an event, even beyond the limit. Return how many seconds it must wait to keep to the limit."""
         self._fill(now)
         self._level -= 1
         return max(0.0, -self._level / self._rate)
 
     def take(self, now: float, amount: float = 1) -> bool:
-        """Count an event, or `amount` events, if the limit allows them; return whether it does."""
+        """Count `amount` events if the limit allows them. Return whether it does."""
         self._fill(now)
         if self._level < amount:
             return False

@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from .sessions import Sessions
 
 BURST, RATE = 20, 5.0
-"""How many frames a client may send in a burst, and per second after it. The server delays further frames, and loses
-none. `Writing` frames have their own limit with the same numbers; the server ignores further `Writing` frames."""
+"""How many frames a client may send in a burst, and per second after it. The server delays further frames, but drops
+none. `Writing` frames have their own limit with the same numbers. The server ignores further `Writing` frames."""
 
 SOUND_BURST, SOUND_RATE = 2 * 32_000, 1.25 * 32_000
-"""How many bytes of sound a client may send in a burst (2 s), and per second after it. The server ignores more."""
+"""How many bytes of sound a client may send in a burst (2 s), and per second after it. The server ignores the rest."""
 
 REPORTS_BURST, REPORTS_RATE = 40, 20.0
-"""How many `Played` frames a client may send in a burst, and per second after it. The server ignores more."""
+"""How many `Played` frames a client may send in a burst, and per second after it. The server ignores the rest."""
 
 PICTURES_BURST, PICTURES_RATE = 20, 20.0
 """How many pictures a client may send in a burst, and per second after it. The server delays further pictures."""
 
-REPLIES = 32  # the maximum number of replies that may wait to be sent to a client
+REPLIES = 32  # the maximum number of replies to a client that wait to be sent
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
@@ -67,7 +67,7 @@ class Connection:
         self._stream: object = None  # the line and the stream of the client's last `Flush`
         self._listens: object = None  # the line of the client's last `Listening`
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
-        self._announced: int | None = None  # the number of the picture that the next binary frame holds
+        self._announced: int | None = None  # the number of the picture in the next binary frame, from its `Picture`
         self._look: object = None  # the camera and the number of the client's last `Look`
         self._faces: tuple[frames.Face, ...] = ()  # the client's last `Faces`
         self._unseen: str | None = None  # why this window has lost the camera, if the client does not know it yet
@@ -204,7 +204,7 @@ class Connection:
         self._channel.reply(serialise(frame))
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
-        """Send all that the client lacks: a name other than `agent`, messages after number `last`, a new `Piece`."""
+        """Send each change. The client already has the messages up to number `last`, and knows the agent as `agent`."""
         shown, typing, paused, caption, marked = "", False, False, "", 0
         woken = self._channel.woken
         while True:
@@ -245,7 +245,7 @@ class Connection:
             await woken.wait()
 
     async def _write_sound(self, session: Session) -> None:
-        """Send the agent's sound if this window has the line. If it has just lost the line, tell the client so."""
+        """Send the agent's sound if this window has the line. If it has just lost the line, tell the client."""
         if self._taken is not None:
             why, self._taken = self._taken, None
             await self._send(frames.Taken(why))
@@ -263,7 +263,7 @@ class Connection:
                 return
 
     async def _write_sight(self, session: Session) -> None:
-        """Ask for a picture, and send the faces that the agent sees, if this window has the camera."""
+        """If this window has the camera, ask for a picture, and send the faces that the agent sees."""
         if self._unseen is not None:
             why, self._unseen = self._unseen, None
             await self._send(frames.Unseen(why))

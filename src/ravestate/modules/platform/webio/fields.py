@@ -19,7 +19,7 @@ LONGEST_TEXT = 10_000
 """The maximum number of characters in one utterance of a visitor."""
 
 LONGEST_SOUND = 32_000
-"""The maximum number of bytes of sound in one frame from a client: 1 s."""
+"""The maximum number of bytes of sound in one frame from a client (1 s)."""
 
 LONGEST_PICTURE = 100_000
 """The maximum number of bytes of a picture."""
@@ -42,10 +42,10 @@ CLOSING_CODES = {
 
 
 class ProtocolError(PlatformError, ValueError):
-    """A frame that cannot be understood.
+    """A frame that breaks the protocol.
 
     Attributes:
-        code: One word for programs, e.g. ``malformed``; the message is for people.
+        code: One word for programs, e.g. ``malformed``. The message is for people.
         id: The refused frame's `id`, if that frame is a `Say`.
     """
 
@@ -59,7 +59,7 @@ def heard_text(text: str) -> str:
     """Return the text of a visitor's utterance without control characters.
 
     Raises:
-        ProtocolError: The code is ``too-long`` for too many characters, ``empty`` for a blank text.
+        ProtocolError: The text has too many characters (code ``too-long``) or is blank (code ``empty``).
 
     Example:
         >>> heard_text("\\x1b[31mred\\x1b[0m\\x00")
@@ -74,7 +74,7 @@ def heard_text(text: str) -> str:
 
 
 def name_of(text: str) -> str:
-    """Return a text as one line, without invisible characters or characters that change the writing direction.
+    """Return a text as one line, without invisible characters and without characters that change the writing direction.
 
     Example:
         >>> name_of(" Ada\\u202e\\nLovelace ")

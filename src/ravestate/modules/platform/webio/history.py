@@ -30,11 +30,11 @@ class History:
         self.marked = 0
         """How many marks there have been so far."""
         self.last = 0
-        """The number of the newest message; 0 before the first."""
+        """The number of the newest message; 0 before the first message."""
 
     @property
     def first(self) -> int:
-        """The number of the oldest message. While there is none, the number that the next message will get."""
+        """The number of the oldest message. If there are no messages, the number that the next message will get."""
         return self.last - len(self._messages) + 1
 
     def newest(self, speaker: Speaker) -> Message | None:
@@ -42,7 +42,10 @@ class History:
         return next((message for message in reversed(self._messages) if message.speaker == speaker), None)
 
     def add(self, speaker: Speaker, text: str, time: int, id: str | None = None) -> Message:
-        """Add a message, and return it; `time` is in milliseconds since 1970. A text longer than `characters` is cut."""
+        """Add a message, and return it. Cut a text that is longer than `characters`.
+
+        `time` is in milliseconds since 1970.
+        """
         text = text[: self._characters]
         self.last += 1
         message = Message(self.last, speaker, text, time, id)
@@ -71,7 +74,7 @@ class History:
         return list(itertools.islice(said, most))
 
     def since(self, number: int) -> Iterator[Message]:
-        """Yield the messages with numbers greater than `number`, in order, including those added meanwhile."""
+        """Yield the messages with numbers greater than `number`, in order, even those added during the iteration."""
         while number < self.last:
             number = max(number + 1, self.first)
             yield self._messages[number - self.first]

@@ -1,4 +1,4 @@
-"""Limits on connections, before the application gets a request and after a client has stopped reading.
+"""Limits on clients that open too many connections, send too slowly, or do not read.
 
 The classes extend uvicorn's protocols, which have no such limits.
 """
@@ -17,12 +17,13 @@ from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import InvalidState
 
-TIMEOUT = 10.0  # the seconds that a client has to send its request, and then again to read the answer
+TIMEOUT = 10.0  # a client may take this many seconds to send its request, and as many to read the answer
 
 LOWEST_RATE = 8 * 1024
-"""The least rate at which a client may send a request (bytes per second). A client may fall behind by `TIMEOUT` seconds."""
+"""The lowest rate at which a client may send a request (bytes per second). A client that is more than `TIMEOUT` seconds
+behind is too slow."""
 
-STALL_TIMEOUT = 20.0  # the seconds for which a client of a WebSocket may leave data unread
+STALL_TIMEOUT = 20.0  # the client of a WebSocket may leave data unread for this many seconds
 
 FULL = (
     b"HTTP/1.1 503 Service Unavailable\r\nconnection: close\r\ncontent-type: text/plain\r\ncontent-length: %d\r\n\r\n%s"
@@ -49,11 +50,11 @@ class LimitedHTTP(H11Protocol):
         self._per_address = per_address
         self._most = most
         self._received = 0  # how many bytes came since the last check
-        self._waited: object = None  # the request whose client was slow at the last check
-        self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind the lowest rate
+        self._waited: object = None  # the request for which the last check waited
+        self._late: tuple[object, float] = (None, 0.0)  # a request, and how many bytes it lacks at the lowest rate
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the base class
-        """Take a new connection, or refuse it if there are too many."""
+        """Accept a new connection, or refuse it if there are too many."""
         super().connection_made(transport)
         if len(self.connections) > self._most:
             self._refuse("too many connections")
@@ -104,7 +105,7 @@ class LimitedHTTP(H11Protocol):
 
 
 class LimitedWebSocket(WebSocketsSansIOProtocol):
-    """A WebSocket that hangs up on a client that does not read, instead of keeping the client's data."""
+    """A WebSocket that hangs up on a client that does not read, instead of storing more and more data for it."""
 
     _stalled: asyncio.TimerHandle | None = None
 
@@ -121,12 +122,12 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
             self.handshake_complete = True  # else uvicorn would log the missing answer as an error
 
     async def run_asgi(self) -> None:
-        """Run the application; some time after its end, hang up on a client that has not closed the connection."""
+        """Run the application. `TIMEOUT` seconds after its end, hang up if the client has not closed the connection."""
         await super().run_asgi()
         self.loop.call_later(TIMEOUT, self._end_late)
 
     def shutdown(self) -> None:
-        """Close the connection when the server stops. uvicorn fails if the client is closing it at the same moment."""
+        """Close the connection when the server stops. uvicorn itself fails if the client closes it at that moment."""
         with contextlib.suppress(InvalidState):
             super().shutdown()
         self.transport.close()
@@ -136,17 +137,17 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
             _hang_up(self.transport)
 
     def pause_writing(self) -> None:
-        """Start a time limit for a client that leaves much data unread."""
+        """Start a time limit, because the client leaves much data unread."""
         super().pause_writing()
         self._stalled = self.loop.call_later(STALL_TIMEOUT, _hang_up, self.transport)
 
     def resume_writing(self) -> None:
-        """Stop the time limit: the client reads again."""
+        """Stop the time limit, because the client is reading again."""
         super().resume_writing()
         self._stop_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Stop the time limit: the connection has ended."""
+        """Stop the time limit, because the connection has ended."""
         self._stop_timer()
         super().connection_lost(exc)
 

@@ -1,4 +1,4 @@
-"""The line between a visitor's microphone and loudspeaker, which are in a browser, and the agent."""
+"""The audio line between the agent and a visitor's browser: microphone and loudspeaker."""
 
 from __future__ import annotations
 
@@ -13,35 +13,36 @@ if TYPE_CHECKING:
     from ravestate.declare.slot import Slot
     from ravestate.policy.policy import Policy
 
-SAMPLE = 2  # the bytes of a sample
+SAMPLE = 2  # the size of a sample in bytes
 
 BLOCK = rawio.IN_RATE // 50 * SAMPLE
-"""The bytes of a block of the visitor's sound: 20 ms."""
+"""The size in bytes of a 20 ms block of the visitor's sound."""
 
 MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
-"""The maximum number of bytes of the visitor's sound that wait for the agent: 5 s. The oldest bytes are dropped."""
+"""At most this many bytes (5 s) of the visitor's sound wait for the agent. The line drops older sound."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
-"""The silence that the agent hears when the microphone goes off, so that the visitor's utterance ends: 2 s."""
+"""2 s of silence. The agent hears it when the microphone goes off, so that the visitor's utterance ends."""
 
 CHUNK = rawio.OUT_RATE // 5 * SAMPLE
-"""The maximum number of bytes of the agent's sound in one frame: 0.2 s."""
+"""The maximum number of bytes of the agent's sound in one frame (0.2 s)."""
 
 AHEAD = rawio.OUT_RATE
-"""The maximum number of samples that wait in a window to be played: 1 s, so that `stop` drops little sound."""
+"""At most about this many unplayed samples (1 s) are in the browser window. `stop` drops them, so there should be
+few."""
 
 BETWEEN = 0.2
-"""The seconds after a report for which `played` assumes that the loudspeaker goes on."""
+"""After a report of the browser window, `played` assumes for this many seconds that the sound keeps playing."""
 
 STALL = 5.0
-"""The seconds after which a window that plays nothing of its sound loses the line."""
+"""A browser window loses the line if it plays none of its sound for this many seconds."""
 
 DEAF = 30.0
-"""The seconds after which a window loses the line if no rule takes its sound. Models may take long to load."""
+"""A browser window loses the line if no rule listens to it within this many seconds. Models may take long to load."""
 
 
 class Window(Protocol):
-    """A window of the visitor, which can have the line."""
+    """A browser window of the visitor, which can have the line."""
 
     def wake(self) -> None:
         """Note that there is sound to fetch, or that sound was dropped."""
@@ -65,20 +66,20 @@ def uses(policy: Policy, slot: Slot[Any]) -> bool:
 
 
 class PageLine:
-    """A `rawio.Line` whose microphone and loudspeaker are in at most one window of the visitor at a time.
+    """A `rawio.Line` to a visitor's browser. At most one browser window has the line at a time.
 
     The agent's sound consists of streams. A new stream begins when sound is dropped, and when a window gets the line.
     The window reports how much of the present stream it has played. While no window has the line, sound counts as
     played at once, because the visitor reads the words.
 
     Args:
-        on_left: Called when no window has the line any more.
+        on_left: The line calls this function when the window that has the line leaves it.
     """
 
     cancels_echo = True
-    """Whether the visitor's sound comes without the loudspeaker's echo: browsers remove it."""
+    """Always True: browsers remove the loudspeaker's echo from the microphone's sound."""
     ended = False
-    """Whether the visitor's sound has ended: never, because they may turn the microphone on again."""
+    """Always False: the visitor may turn the microphone on again."""
 
     def __init__(self, on_left: Callable[[], None] = lambda: None) -> None:
         self.window: Window | None = None
@@ -91,11 +92,11 @@ class PageLine:
         """Whether the line is closed."""
         self._on_left = on_left
         self.listens = False
-        """Whether a rule has begun to take the visitor's sound. Its models may take a while to load."""
+        """Whether a rule has begun to listen to the visitor. Before that, the rule may have to load its models."""
         self._waiting: deque[memoryview] = deque()
         self._queued = self._sent = self._reported = 0  # samples of the present stream
         self._earlier = 0  # samples of earlier streams that were played
-        self._most = 0  # the greatest number of samples that `played` has returned
+        self._most = 0  # the greatest result of `played` so far, in samples
         self._moved: float | None = None  # the time of the last report; None if this report showed no progress
         self._drained = asyncio.Event()
         self._drained.set()
@@ -149,7 +150,7 @@ class PageLine:
 
     @property
     def played(self) -> float:
-        """The seconds of sound that the loudspeaker has played; an estimate between two reports of the window."""
+        """How many seconds of sound the loudspeaker has played. Between two reports of the window, it is an estimate."""
         since = 0.0
         if self._moved is not None:
             since = min(asyncio.get_running_loop().time() - self._moved, BETWEEN)
@@ -181,7 +182,7 @@ class PageLine:
             self._expect(DEAF, self._find_deaf)
 
     def leave(self, window: Window) -> None:
-        """Take the line away from a window, and drop the queued sound. Do nothing if the window does not have the line."""
+        """Take the line away from a window, and drop the queued sound. Ignore a window that does not have the line."""
         if self.window is not window:
             return
         self.window = None
@@ -190,7 +191,7 @@ class PageLine:
         self._on_left()
 
     def hear(self, window: Window, sound: bytes) -> None:
-        """Take sound of the visitor; ignore it if the window does not have the line."""
+        """Accept the visitor's sound from a window; ignore it if the window does not have the line."""
         if self.window is window:
             self._listen(sound)
 
@@ -201,7 +202,10 @@ class PageLine:
         self._arrived.set()
 
     def fetch(self, window: Window) -> memoryview | None:
-        """Return the next sound for a window, at most `CHUNK` bytes; None while `AHEAD` sent samples are still unplayed."""
+        """Return the next sound for a window, at most `CHUNK` bytes.
+
+        Return None if no sound waits, if the window does not have the line, or if it has `AHEAD` unplayed samples.
+        """
         if self.window is not window or not self._waiting or self._sent - self._reported >= AHEAD:
             return None
         first = self._waiting.popleft()

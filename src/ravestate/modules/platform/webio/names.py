@@ -48,9 +48,10 @@ class Settings(rs.Settings):
         "after you say yes: as numbers, in its memory on that computer. To delete them, say “forget my face”; to delete "
         "all that it knows about you, say “forget me”."
     )
-    """The notice that the page shows before the camera goes on: the kept data, their place, and how to delete them."""
+    """The notice that the page shows before the camera goes on. It says which data are kept, where, and how to delete
+    them."""
     keep: float = pydantic.Field(600.0, ge=0, allow_inf_nan=False)
-    """The seconds for which the server keeps a conversation after its visitor has disconnected."""
+    """How many seconds the server keeps a conversation after its visitor has disconnected."""
     sessions: int = pydantic.Field(1000, ge=1)
     """The maximum number of conversations at a time."""
     per_address: int = pydantic.Field(100, ge=1)

@@ -1,4 +1,4 @@
-"""The files of the built pages, which the server keeps in memory, plain and compressed."""
+"""Serve the files of the built pages from memory, plain or compressed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KINDS = {
     ".woff2": "font/woff2",
 }
 COMPRESSED = {".woff2"}
-"""The endings of files whose content is compressed already."""
+"""The suffixes of files that are compressed already."""
 
 
 async def refuse(socket: WebSocket, answer: Response) -> None:
@@ -32,7 +32,10 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
 
 
 class Pages:
-    """An ASGI application that serves the files of a folder, read once, and ``index.html`` for the folder itself."""
+    """An ASGI application that serves the files of a folder, and ``index.html`` for the folder itself.
+
+    It reads the files only once.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._files: dict[str, tuple[bytes, bytes | None, str, str]] = {}

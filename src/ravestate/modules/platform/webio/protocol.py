@@ -1,4 +1,4 @@
-"""The web protocol, version 1: JSON frames, and sound, over a WebSocket between an agent and its visitors.
+"""The web protocol, version 1: JSON frames, sound and pictures over a WebSocket between an agent and its visitors.
 
 ``docs/reference/web-protocol.md`` describes each frame. The records are in `frames`, the types of their fields in `fields`.
 Nothing here reads or writes a connection: `parse` and `serialise` translate between text and records.
@@ -81,7 +81,7 @@ def _explained(error: ValidationError, fields: dict[str, Any], frames: TypeAdapt
 
 @functools.cache
 def _expected(frames: TypeAdapter[Any]) -> dict[str, dict[str, str]]:
-    """Return frame type → field → the description of the field's value, from the JSON schema."""
+    """Return what each field of each frame type expects, in words from the JSON schema."""
     schema = frames.json_schema()
     kinds = (schema["$defs"][kind["$ref"].rpartition("/")[2]]["properties"] for kind in schema["oneOf"])
     return {

@@ -1,4 +1,4 @@
-"""The rules that show the agent's words and work on the page."""
+"""The rules that show on the page what is said, what the agent is called, and that it is working."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from ravestate.modules import interloc, rawio
 
 from .names import module, page
 
-SLOW = 0.3  # the seconds of waiting after which the page shows that the agent is working
+SLOW = 0.3  # the page shows that the agent is working after the pressure has lasted this many seconds
 
 rawio.carry(module, page)
 
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), reads=page)
 async def show_input(ctx: rs.RuleContext) -> None:
-    """Show the visitor's words on the page if they were not typed there."""
+    """Show the visitor's words on the page, unless they were typed there."""
     if session := ctx[page]:
         session.note_input(ctx.payload(rawio.input.changed))
 

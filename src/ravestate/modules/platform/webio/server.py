@@ -33,16 +33,16 @@ import gc
 SPARE = 128  # the number of open files that the server leaves to the rest of the process
 BACKLOG = 256  # how many connections the system accepts before the server takes them
 UNREAD = 128 * 1024  # how many bytes the system buffers for a client that does not read
-LAST_WORDS = 2.0  # the seconds that connections have to close when the server ends
+LAST_WORDS = 2.0  # when the server ends, connections may take this many seconds to close
 
 
 SWITCH = 0.0005
-"""The seconds after which a computing thread gives way to another. An answer takes several turns of the event loop.
-With Python's default, each turn would wait 5 ms while a thread analyses a sentence."""
+"""A computing thread gives way to another one after this many seconds. An answer takes several turns of the event loop.
+With Python's default, each turn would wait 5 ms while another thread analyses a sentence."""
 
 COLLECT = (10_000, 10, 10)
 """The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10), it would scan all objects of
-several hundred conversations every few seconds, and hold up all answers meanwhile."""
+several hundred conversations every few seconds. All answers would have to wait for it."""
 
 
 _before: list[tuple[float, tuple[int, int, int]]] = []  # for each running server: the settings to restore
@@ -50,7 +50,7 @@ _before: list[tuple[float, tuple[int, int, int]]] = []  # for each running serve
 
 @contextlib.contextmanager
 def low_latency() -> Generator[None]:
-    """Tune the interpreter for quick answers while the body runs. The last body to end restores the settings."""
+    """Tune the interpreter for quick answers inside the ``with`` block. The last block to end restores the settings."""
     _before.append(_before[0] if _before else (sys.getswitchinterval(), gc.get_threshold()))
     sys.setswitchinterval(SWITCH)
     gc.set_threshold(*COLLECT)
@@ -64,10 +64,10 @@ def low_latency() -> Generator[None]:
 
 
 class Server:
-    """Serves the page of an agent, as its settings say: ``async with Server(agent) as server``. See also `webio.app`.
+    """Serves the page of an agent: ``async with Server(agent) as server``. See also `webio.app`.
 
     Raises:
-        PlatformError: Other machines can reach the address, and there is no token; or as for `make_app`.
+        PlatformError: Other machines can reach the address, and there is no token. Or `make_app` refuses the agent.
     """
 
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
@@ -84,7 +84,7 @@ class Server:
         self._saved = contextlib.ExitStack()
 
     async def __aenter__(self) -> Server:
-        """Start to listen, or raise a `PlatformError`."""
+        """Start to listen. Raise a `PlatformError` if the address cannot be used."""
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
         limits = functools.partial(LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions))
@@ -146,7 +146,7 @@ class Server:
     def announce(self, pages: Mapping[str, str] = MappingProxyType({"agent": ""})) -> None:
         """Print the address of each page. `pages` maps names of pages to their paths.
 
-        The token appears only on a terminal: other outputs are often kept in files that others can read.
+        The token appears only on a terminal. Other outputs often end up in files that other people can read.
         """
 
         def lines(address: Callable[[str], str]) -> str:
@@ -169,7 +169,7 @@ class Server:
 
 
 class _Uvicorn(uvicorn.Server):
-    """A uvicorn server without a periodic tick and without signal handlers: the agent's runner has its own handlers."""
+    """A uvicorn server without a periodic tick and without signal handlers. The agent's runner has its own handlers."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
@@ -177,7 +177,7 @@ class _Uvicorn(uvicorn.Server):
         self.told = asyncio.Event()
 
     async def main_loop(self) -> None:
-        """Wait until `told` is set, which orders the server to end."""
+        """Run the server until `told` is set."""
         self.listening.set()
         await self.told.wait()
 
@@ -211,7 +211,7 @@ def _listen(host: str, port: int) -> socket.socket:
 
 
 def _most(wanted: int) -> int:
-    """Return how many connections to allow: the wanted number, or fewer if the limit on open files demands it."""
+    """Return how many connections to allow: `wanted`, or fewer if the system limits the number of open files."""
     try:
         import resource
     except ImportError:  # Windows has no such limit

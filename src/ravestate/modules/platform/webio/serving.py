@@ -1,4 +1,4 @@
-"""The two ways to serve an agent's page: alone, or as an ASGI application within another application."""
+"""The two ways to serve an agent's page: alone, or mounted in another ASGI application."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ async def serve(agent: Agent) -> None:
 def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
     """Return an agent's page as an ASGI application, to serve alone or to mount in another application.
 
-    The application's lifespan ends the conversations. A mounted application has no lifespan of its own: enter
-    ``chat.router.lifespan_context(chat)`` in the outer application's lifespan. The outer server limits the connections.
+    The conversations end with the application's lifespan. A mounted application has no lifespan of its own. So enter
+    ``chat.router.lifespan_context(chat)`` in the outer application's lifespan. Let the outer server limit connections.
 
     Args:
         agent: An agent with ``webio`` among its modules.
-        routes: More routes beside the page, protected by the same checks of host and origin.
+        routes: Further routes, protected by the same checks of host and origin as the page.
         inside: The path of the board among those routes, e.g. ``board/``.
 
     Raises:

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
 REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
-GRACE = 0.3  # the seconds after the visitor's words before the page shows that the agent is working
-RECENT = 5  # the number of the agent's newest messages among which `mark_heard` searches
+GRACE = 0.3  # after the visitor's words, the page waits this many seconds to show that the agent is working
+RECENT = 5  # `mark_heard` searches this many of the agent's newest messages
 LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
 WORD = re.compile(r"\S+")
-LINGER = 30.0  # the seconds for which the line stays in ``rawio.sound`` after the microphone went off
-FAREWELL = 5.0  # the seconds that the agent has for a farewell
+LINGER = 30.0  # the line stays in ``rawio.sound`` for this many seconds after the microphone has gone off
+FAREWELL = 5.0  # the agent may take this many seconds to say goodbye
 
 log = logging.getLogger("ravestate.webio")
 
@@ -70,7 +70,7 @@ class Session:
 
     def __init__(self, context: Context, name: str | None = None, *, hears: bool = False, sees: bool = False) -> None:
         self.id = secrets.token_urlsafe(24)
-        """The conversation's secret id; a client sends it to resume."""
+        """The conversation's secret id. A client sends it to resume the conversation."""
         self.visitor = f"webio-{secrets.token_hex(4)}"
         """The key of the visitor in ``interloc.users``."""
         self.name = name
@@ -85,22 +85,23 @@ class Session:
         self.hears = hears
         """Whether the agent can hear and speak."""
         self.line: PageLine | None = None
-        """The line to the visitor's microphone and loudspeaker; None while the microphone is off in all windows."""
+        """The line to the visitor's microphone and loudspeaker. None if the microphone has been off for `LINGER`
+        seconds."""
         self.sees = sees
         """Whether the agent can see."""
         self.camera: PageCamera | None = None
-        """The visitor's camera; None while it is off in all windows."""
+        """The visitor's camera; None if it is off in all browser windows."""
         self.caption = ""
         """The words so far of an utterance that the visitor is still speaking."""
         self.ended: Ending | None = None
-        """The reason for which the conversation is over; None while it goes on."""
+        """Why the conversation is over; None if it is not over."""
         self.onlookers: set[Onlooker] = set()
         self._begun = False
         self._left: asyncio.Event = asyncio.Event()
         self._reason = Ending.CANCELLED
         self._heard: OrderedDict[str, None] = OrderedDict()
         self._put: deque[str] = deque()  # words in the history; `note_input` must not add them again
-        # The part that the visitor heard of a growing utterance whose speech was cut.
+        # The part that the visitor heard of a growing utterance, if its speech was cut off.
         self._heard_part: str | None = None
         self._hanging_up: asyncio.TimerHandle | None = None
         self._working = False
@@ -139,7 +140,7 @@ class Session:
             self.notify()
 
     def leave(self, reason: Ending) -> None:
-        """End the conversation for good. The first reason counts."""
+        """End the conversation for good. Only the reason of the first call counts."""
         if not self.leaving:
             self._reason = reason
             self._left.set()
@@ -149,18 +150,18 @@ class Session:
             if await agent_left(self.context, self._left.wait()):
                 self._reason = Ending.LEFT
         finally:
-            self._left.set()  # from now on the session takes no input
+            self._left.set()  # from now on, the session ignores input
 
     @property
     def leaving(self) -> bool:
-        """Whether the visitor or the agent has left: the session takes no more input, but the agent may say goodbye."""
+        """Whether the visitor or the agent has left. The session then ignores input, but the agent may say goodbye."""
         return self._left.is_set()
 
     def hear(self, id: str, text: str) -> bool:
-        """Take the visitor's words, checked by `heard_text`. Ignore them if words with this `id` came before.
+        """Pass the visitor's words, which `heard_text` has checked, to the agent. Ignore words whose `id` came before.
 
         Returns:
-            Whether the session took the words, now or before; False if the session is `leaving`.
+            Whether the agent has got the words, now or before. False if the session is `leaving`.
         """
         if self.leaving:
             return False
@@ -178,7 +179,7 @@ class Session:
         return True
 
     def note_input(self, text: str) -> None:
-        """Note an input of the agent. If it did not come through `hear`, add it to the history."""
+        """Add an input of the agent to the history, unless `hear` has already added it."""
         if text in self._put:
             while self._put.popleft() != text:
                 pass  # a later input in the same instant has replaced these words
@@ -238,7 +239,7 @@ class Session:
         self._stay_on_line()
 
     def take_camera(self, window: CameraWindow) -> None:
-        """Note that the camera is on in a window, and put it into ``rawio.camera``. Another window loses it."""
+        """Note that a window's camera is on, and put it into ``rawio.camera``. Any other window loses its camera."""
         if self.camera is not None:
             if self.camera.window is window and not self.camera.closed:
                 return
@@ -300,9 +301,9 @@ class Session:
             self.utter(self.partial)
 
     def show_work(self, grace: float = 0.0) -> None:
-        """Show that the agent is working, after `grace` seconds, until no rule may write an answer any more.
+        """After `grace` seconds, show that the agent is working, until no rule can write an answer any longer.
 
-        A filler such as "Let me think…" does not end this: the rule that makes the answer still runs.
+        A filler such as "Let me think…" does not end this, because the rule that makes the answer is still running.
         """
         if self._following is None:
             self._following = asyncio.create_task(self._follow(grace))
@@ -323,7 +324,7 @@ class Session:
 
     @property
     def typing(self) -> bool:
-        """Whether the agent is working on an answer, and no part of it shows yet."""
+        """Whether the agent is working on an answer of which the page shows nothing yet."""
         return self._working and not self.partial and self.ended is None
 
     @property
@@ -332,7 +333,7 @@ class Session:
         return self._begun and self.ended is None and self.context.paused
 
     def notify(self) -> None:
-        """Wake the onlookers: the conversation has changed."""
+        """Wake the onlookers, because the conversation has changed."""
         for onlooker in self.onlookers:
             onlooker.wake()
 

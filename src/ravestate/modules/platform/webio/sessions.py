@@ -18,10 +18,10 @@ ONLOOKERS = 8  # the maximum number of windows that may show one conversation at
 
 
 class Sessions:
-    """All conversations with one agent, which makes a context for each.
+    """All conversations with one agent. The agent makes a context for each of them.
 
-    If there are `limit` conversations already, a new one ends a conversation that has no window. If all of them have
-    windows, the new one is refused. A conversation that has no window is kept for `keep` seconds.
+    A conversation without a browser window is kept for `keep` seconds. If there are `limit` conversations already, a
+    new one ends a conversation without a window. If all of them have windows, the new one is refused.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -34,7 +34,7 @@ class Sessions:
         self._keep = keep
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[Session, asyncio.Task[None]] = {}
-        self._timers: dict[Session, asyncio.TimerHandle] = {}  # conversation without a window → timer of its end
+        self._timers: dict[Session, asyncio.TimerHandle] = {}  # the timers that end conversations without a window
         self._closed = False
 
     def __len__(self) -> int:
@@ -49,7 +49,11 @@ class Sessions:
         return self._sessions.get(id)
 
     async def open(self, name: str | None = None) -> Session:
-        """Begin a conversation with a visitor. If there are too many, or the agent is switched off, raise a `ProtocolError`."""
+        """Begin a conversation with a visitor.
+
+        Raises:
+            ProtocolError: There are too many conversations, or the agent is being switched off.
+        """
         if len(self._tasks) >= self._limit:
             await self._make_room()
         if self._closed:
@@ -63,7 +67,7 @@ class Sessions:
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Add an onlooker, such as a window, to a conversation, unless the conversation has too many."""
+        """Add an onlooker, for example a window, to a conversation. Refuse it if the conversation has too many."""
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)
@@ -72,7 +76,7 @@ class Sessions:
             timer.cancel()
 
     def exit(self, session: Session, onlooker: Onlooker) -> None:
-        """Remove an onlooker from a conversation; after the last one, the conversation ends in `keep` seconds."""
+        """Remove an onlooker from a conversation. If no onlooker is left, the conversation ends in `keep` seconds."""
         session.onlookers.discard(onlooker)
         if not session.onlookers and session in self._tasks:
             self._abandon(session)
@@ -97,7 +101,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End a conversation that has no window. Prefer visitors who never spoke, then the visitor who left earliest."""
+        """End the conversation that has been without a window longest. Prefer visitors who never spoke."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

@@ -1,4 +1,4 @@
-"""The vision worker: the process that takes pictures from a camera, and finds faces and poses in pictures.
+"""The vision worker: the process that reads pictures from a camera, and finds faces and poses in pictures.
 
 It runs in its own environment, and imports nothing from Ravestate. A request is a record and the bytes of a picture:
 
@@ -6,11 +6,12 @@ It runs in its own environment, and imports nothing from Ravestate. A request is
     {"do": "look", "stream": "a", "want": ["faces", "pose"], "at": 1.5, "known": [{"track": 3, "box": [x, y, w, h], "fresh": true}]}
     {"do": "close", "stream": "a"}
 
-An answer has ``fault`` if a camera or a picture has a fault. Without a new picture, the answer has no field
+An answer has ``fault`` if a camera or a picture has a fault. If there is no new picture, the answer has no field
 ``picture``. A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``.
 
 The bytes of a look are an encoded picture (JPEG, PNG), or raw pixels. For raw pixels, the record has
-``"shape": [height, width]``, and may have ``"encoding"`` (``rgb8``) and ``"step"``, the bytes of a row.
+``"shape": [height, width]``. It may have ``"encoding"`` (default ``rgb8``) and ``"step"`` (the length of a row in
+bytes).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def load(config: dict[str, Any]):
     """Load the shared models, and return the function that handles a request.
 
     Args:
-        config: ``want`` names the things that requests will ask for: ``faces``, ``pose`` or both.
+        config: Its item ``want`` names what requests will ask for: ``faces``, ``pose`` or both.
     """
     with contextlib.suppress(OSError):
         os.nice(10)  # the conversation comes first
@@ -46,7 +47,7 @@ class Worker:
         self._streams: dict[str, Stream] = {}
 
     def load(self, what: str) -> None:
-        """Load the models that find faces. Each stream loads its own models that find poses."""
+        """Load the models for faces, if `what` is ``faces``. Each stream loads its own model for poses."""
         if what == "faces" and self._faces is None:
             from .faces import Faces
 
@@ -100,7 +101,7 @@ class Stream:
         return {"live": self._camera.live}
 
     def picture(self, at: float) -> tuple[picture.Picture | None, dict[str, Any]]:
-        """Return the camera's newest picture at a time, or None, and the beginning of the answer."""
+        """Return the camera's newest picture at a time, or None. Also return the first fields of the answer."""
         if self._camera is None:
             return None, {"closed": True}
         before = time.monotonic()

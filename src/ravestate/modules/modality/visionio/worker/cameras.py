@@ -1,4 +1,4 @@
-"""Cameras: a device, a video file, a folder of pictures. Each gives its newest picture, and skips older ones."""
+"""Cameras: a device, a video file, a folder of pictures. Each returns its newest picture, and skips older ones."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from . import picture
 from .picture import Picture
 
 EACH = 1.0
-"""The seconds for which each picture of a folder is shown."""
+"""Each picture of a folder is shown for this many seconds."""
 SUFFIXES = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".tif", ".tiff"}
 BEHIND = 1.0
-"""The maximum number of seconds that one look may spend on skipping pictures of a video."""
+"""One look may spend this many seconds on skipping pictures of a video."""
 WHOLE = 0.9
-"""The minimum share of a video's pictures that must be readable. With fewer, the video counts as damaged."""
+"""A video counts as damaged if less than this share of its pictures is readable."""
 SILENT = 5.0
-"""The seconds without a picture after which a device counts as lost."""
+"""A device counts as lost if it delivers no picture for this many seconds."""
 
 
 def open_camera(source: str, *, loop: bool = False):
@@ -49,7 +49,7 @@ def open_camera(source: str, *, loop: bool = False):
 
 
 class Device:
-    """A camera of this machine. A thread takes its pictures, and keeps the newest picture."""
+    """A camera of this machine. A thread reads its pictures, and keeps the newest one."""
 
     live = True
     ended = False
@@ -74,7 +74,7 @@ class Device:
         """Return the newest picture. If it was already returned, wait for the next picture.
 
         Raises:
-            OSError: The camera gives no more pictures.
+            OSError: The camera delivers no more pictures.
         """
         with self._new:
             self._new.wait_for(lambda: self._pixels is not None or self._fault, SILENT)
@@ -102,7 +102,7 @@ class Device:
 
 
 class Video:
-    """A video file. Its pictures come at the times that the file gives them."""
+    """A video file. Its pictures come at the times that the file says."""
 
     live = False
 
@@ -110,7 +110,7 @@ class Video:
         self.ended = False
         self.skipped = 0
         self._path, self._loop = path, loop
-        self._begun = 0.0  # the time at which the video last began, because it may loop
+        self._begun = 0.0  # the time at which the present round of the loop began
         self._waiting: tuple[float, Any] | None = None
         self._last = 0.0
         self._fault = ""

@@ -1,4 +1,4 @@
-"""Faces in a picture: their boxes, their visibility, and their vectors."""
+"""Find the faces in a picture, and compute their boxes, their visibility and their vectors."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ import numpy as np
 from .picture import Picture
 
 SURE = 0.5
-"""The confidence above which MediaPipe's finding counts as a face."""
+"""A face that MediaPipe finds counts from this confidence on."""
 SAME = 0.3
-"""The overlap (intersection over union) above which two boxes belong to the same face."""
+"""Two boxes with at least this overlap (intersection over union) belong to the same face."""
 MOST = 3
-"""The maximum number of vectors that a look computes, unless the request says otherwise."""
+"""A look computes at most this many vectors, unless the request says otherwise."""
 WITHIN = 0.6
-"""The minimum share of a box inside another box for the two to belong to the same face."""
+"""Two boxes belong to the same face if at least this share of the smaller box is inside the other one."""
 LAP = 0.2
-"""The share of a tile that overlaps with the next tile."""
+"""Neighbouring tiles share this part of a tile."""
 HOG = 960
-"""The longer side (pixels) of the picture for dlib's detector, which finds faces of 80 pixels. A thorough look doubles
-this side."""
+"""The picture is scaled for dlib's detector, which finds faces of 80 pixels: its longer side gets this many pixels, or
+twice as many for a thorough look."""
 FACE = 110
-"""The width (pixels) to which a face is scaled when its box is refined."""
+"""To refine the box of a face, the face is scaled to this width (pixels)."""
 
 
 class Faces:
@@ -59,8 +59,8 @@ class Faces:
 
         Args:
             picture: The picture.
-            header: The request. ``known`` has the tracks with their last boxes; a ``fresh`` track needs no vector. With
-                ``thorough`` 1 or 2, also look for small faces. ``most`` is the maximum number of vectors.
+            header: The request. ``known`` has the tracks with their last boxes. A ``fresh`` track needs no vector. If
+                ``thorough`` is 1 or 2, also look for small faces. ``most`` is the maximum number of vectors.
         """
         boxes = self._boxes(picture, thorough=int(header.get("thorough", 0)))
         boxes.sort(key=lambda box: -box[2] * box[3])
@@ -115,7 +115,7 @@ class Faces:
         return round(quality * (1.0 if frontal else 0.5), 3), [round(number, 6) for number in vector]
 
     def _refined(self, pixels: np.ndarray, box: list[float]) -> tuple[bool, dlib.rectangle]:
-        """Return whether dlib sees a frontal face in a box, and the box as dlib's landmarks expect it."""
+        """Return whether dlib sees a frontal face in a box, and the refined box for dlib's landmarks."""
         x, y, width, height = box
         left, top = max(0, int(x - width / 2)), max(0, int(y - height / 2))
         crop = pixels[top : int(y + 1.5 * height), left : int(x + 1.5 * width)]
@@ -151,7 +151,7 @@ def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
     grey = cv2.cvtColor(chip, cv2.COLOR_RGB2GRAY)
     sharp = float(cv2.Laplacian(grey, cv2.CV_64F).var())
     parts = (
-        (distance - 8) / 22,  # with more than 30 pixels between the eyes, the face is not more visible
+        (distance - 8) / 22,  # more than 30 pixels between the eyes do not make a face more visible
         (0.45 - aside) / 0.3,  # 0: the nose is in the middle; 0.5: a profile
         sharp / 40,
         (float(grey.std()) - 8) / 20,
@@ -160,9 +160,9 @@ def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
 
 
 def assign(boxes: list[list[float]], known: list[list[float]]) -> list[int | None]:
-    """Return for each box the number of the known box with the greatest overlap; None for a new face.
+    """Return for each box the index of the known box with the greatest overlap, or None for a new face.
 
-    Each known box is taken at most once.
+    Each known box belongs to at most one box.
     """
     pairs = [(overlap(box, other), i, j) for i, box in enumerate(boxes) for j, other in enumerate(known)]
     taken: dict[int, int] = {}
@@ -173,7 +173,7 @@ def assign(boxes: list[list[float]], known: list[list[float]]) -> list[int | Non
 
 
 def is_part(one: list[float], other: list[float]) -> bool:
-    """Return whether two boxes belong to one face. One box may show only a part of the face."""
+    """Return whether two boxes belong to one face, even if one of them shows only a part of it."""
     shared = _shared(one, other)
     return overlap(one, other) >= SAME or shared >= WITHIN * min(one[2] * one[3], other[2] * other[3])
 

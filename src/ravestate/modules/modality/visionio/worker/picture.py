@@ -1,4 +1,4 @@
-"""A picture in the worker: pixels of a size that is quick to search, and the size of the original."""
+"""A picture in the worker: scaled down for a quick search, with the size of the original."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import numpy as np
 cv2.setNumThreads(1)
 
 LARGEST = 1280
-"""The longer side (pixels) above which a picture is scaled down. Faces of 40 pixels are still recognisable."""
+"""A picture is scaled down if its longer side has more pixels than this. Faces of 40 pixels stay recognisable."""
 DARK = 6.0
-"""The mean brightness (0 to 255) below which a picture counts as black."""
+"""A picture counts as black if its mean brightness (0 to 255) is below this."""
 
 
 class Picture:
@@ -22,10 +22,10 @@ class Picture:
 
     Attributes:
         pixels: RGB, (height, width, 3), uint8, scaled down.
-        scale: The factor from these pixels to those of the original.
+        scale: The size of the original divided by the size of `pixels`.
         width, height: The size of the original (pixels).
         dark: Whether the picture is black.
-        time: The time at which it was taken (seconds). For one camera, it never goes back.
+        time: The time of the picture (seconds). It never decreases from one picture of a camera to the next.
     """
 
     def __init__(self, pixels: np.ndarray, time: float = 0.0) -> None:
@@ -47,7 +47,7 @@ CHANNELS = {
     "bgra8": (4, cv2.COLOR_BGRA2RGB),
     "mono8": (1, cv2.COLOR_GRAY2RGB),
 }
-"""Encoding of raw pixels → the bytes of a pixel, and OpenCV's conversion to RGB."""
+"""For each encoding of raw pixels, the size of a pixel in bytes and OpenCV's conversion to RGB."""
 
 
 def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb8", step: int = 0) -> Picture:
@@ -57,7 +57,7 @@ def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb
         data: The file or the pixels.
         shape: The height and the width of raw pixels; None for a file.
         encoding: A key of `CHANNELS`.
-        step: The bytes of a row of raw pixels; 0 if no bytes follow its last pixel.
+        step: The length in bytes of a row of raw pixels, including padding; 0 if rows have no padding.
 
     Raises:
         ValueError: The bytes are not a picture.

@@ -1,4 +1,4 @@
-"""The pose of a person in a picture."""
+"""Find the pose of a person in a picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Pose:
         self._landmarks = Landmarks(model_complexity=1)
 
     def find(self, picture: Picture, header: dict[str, Any]) -> list[list[float]] | None:
-        """Return 33 landmarks, each (x, y, z, visibility) in shares of the picture's size; None without a person.
+        """Return 33 landmarks, each (x, y, z, visibility) as shares of the picture's size. None if there is no body.
 
         Args:
             picture: The picture.

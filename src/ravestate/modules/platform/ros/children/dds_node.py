@@ -1,6 +1,6 @@
-"""The bridge process for the network of ROS 2 without an installed ROS 2, by DDS (cyclonedds). It carries only topics.
+"""A bridge process that joins the network of ROS 2 by DDS (cyclonedds), without an installed ROS 2.
 
-There are no services: DDS-RPC finds the answer to a call by a sample's metadata, which the library does not offer.
+It carries only topics, no services. For those, it would need a sample's metadata, which the library does not offer.
 """
 
 # pyright: basic, reportMissingImports=false
@@ -95,7 +95,7 @@ class DdsNode:
         self._channels.pop(channel, None)
 
     def ask(self):
-        """Return the topics, services and actions of the network, without those of this node."""
+        """Return the topics of the network, with the numbers of other participants' publishers and subscribers."""
         import time
 
         from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
@@ -118,11 +118,11 @@ class DdsNode:
 
 
 def raw_type(name, fields):
-    """Return a class for samples that are already in their wire form.
+    """Return a class for samples that are already in their wire format.
 
     Args:
-        name: The type, such as ``std_msgs/msg/String``.
-        fields: Type → its fields, each a name and a description as in rosbags; for the type and all types in it.
+        name: The type, for example ``std_msgs/msg/String``.
+        fields: The fields of the type, and of all types in it. Each field is a name and a description as in rosbags.
     """
     from cyclonedds.idl import make_idl_struct
     from cyclonedds.idl._main import IDL

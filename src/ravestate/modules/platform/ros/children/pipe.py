@@ -1,4 +1,4 @@
-"""The child's end of the pipe between an agent and its bridge process. The programs beside this file use it.
+"""The child's end of the pipe between an agent and its bridge process. The programs in this folder use it.
 
 A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. A body of at least `LARGE` bytes
 travels in shared memory: the sender copies it there once, and the pipe carries the file descriptor.
@@ -22,15 +22,15 @@ HEAD = struct.Struct("<BBxxIII")
 SHARED = 1  # a flag: the body is in shared memory
 PASSED = 2  # a flag: a socket comes with the frame
 LARGE = 1 << 16
-SEEKING = 0.7  # the part of a call's time-out in which the server must appear, so that the agent gets a fault in time
+SEEKING = 0.7  # the server must appear within this part of a call's time-out, so that a fault reaches the agent in time
 
 OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
 SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 """The kinds of frames.
 
-From the agent: OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE, HANGUP. From the bridge: READY, FEEDBACK, TOLD, NOTE,
-SUBSCRIBER, PUBLISHER. Both: MESSAGE, CALL, ANSWER, FAULT. A socket, the connection with
-another node, comes with SUBSCRIBER and PUBLISHER.
+The agent sends OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE and HANGUP. The bridge sends READY, FEEDBACK, TOLD, NOTE,
+SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which
+is the connection with another node.
 """
 
 
@@ -44,7 +44,7 @@ class Pipe:
         self._fds = []
 
     def send(self, kind, channel=0, number=0, body=b""):
-        """Send a frame. This call blocks while the agent does not read."""
+        """Send a frame. This call blocks until the agent reads."""
         size = len(body)
         with self._sending:
             if size >= LARGE and hasattr(os, "memfd_create"):
@@ -74,7 +74,7 @@ class Pipe:
         self.send(kind, channel, number, json.dumps(value).encode())
 
     def note(self, channel, text, level="warning"):
-        """Send a note for the agent's log about a channel; channel 0 is the whole node."""
+        """Send a note about a channel for the agent's log. Channel 0 means the whole node."""
         self.tell(NOTE, {"text": text, "level": level}, channel)
 
     def receive(self):
@@ -112,8 +112,8 @@ class Pipe:
 class Outlet:
     """Carries the messages of one subscription to the agent.
 
-    With `latest`, the next message leaves once the agent has acknowledged the previous message. Newer messages replace
-    waiting messages.
+    With `latest`, a message waits until the agent has acknowledged the previous one. A newer message replaces the
+    waiting message.
     """
 
     def __init__(self, pipe, channel, latest):
@@ -165,7 +165,7 @@ def serve(open_node):
         pass
     finally:
         sys.stdout.flush()
-        os._exit(0)  # threads of the libraries must not keep the process
+        os._exit(0)  # the libraries' threads must not keep the process alive
 
 
 def _obey(pipe, node):

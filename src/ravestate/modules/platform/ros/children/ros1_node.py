@@ -1,4 +1,4 @@
-"""The bridge process of ROS 1: a rospy node that passes on messages in their wire form."""
+"""The bridge process of ROS 1: a rospy node that passes on messages in their wire format."""
 
 # pyright: basic, reportMissingImports=false
 from __future__ import annotations
@@ -15,7 +15,7 @@ PROBE = 1.0  # seconds between two looks at the master
 
 
 def message_class(type_, md5, text=""):
-    """Return a class whose messages are bytes in their wire form."""
+    """Return a class for messages that stay bytes in their wire format."""
     import genpy
 
     class Raw(genpy.Message):
@@ -52,7 +52,7 @@ def call_class():
             return self.connection
 
         @transport.setter
-        def transport(self, made):  # rospy sets the transport once it has connected
+        def transport(self, made):  # rospy sets the transport when it has connected
             self.connection = made
             if made is not None and self.ended:
                 made.close()
@@ -181,7 +181,7 @@ class Ros1Node:
         return subscriber
 
     def check(self, topic, header):
-        """Tell the agent about each subscription to a topic whose type is not the type of a publisher."""
+        """Warn the agent about each of its subscriptions to a topic whose type differs from that of a publisher."""
         for channel, binding in list(self._bindings.items()):
             if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
                 self._pipe.note(channel, _mismatch(binding, header))
@@ -231,7 +231,7 @@ class Ros1Node:
         return service._response_class(bytes(done[1]))
 
     def message(self, channel, body):
-        """Drop a message. The agent sends a message here only if its topic has no subscriber."""
+        """Drop a message. The agent passes a message to the bridge only if the topic has no subscriber."""
 
     def call(self, channel, number, body):
         # A persistent proxy keeps its connection, which `cancel` closes.

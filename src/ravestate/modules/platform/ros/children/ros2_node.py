@@ -1,4 +1,4 @@
-"""The bridge process of ROS 2: an rclpy node that passes on messages in their wire form (CDR)."""
+"""The bridge process of ROS 2: an rclpy node that passes on messages in their wire format (CDR)."""
 
 # pyright: basic, reportMissingImports=false
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Ros2Node:
         self._executor.wake()
 
     def _look_at_types(self):
-        """Warn about each node that has another type for a topic. ROS 2 would connect nothing, and say nothing."""
+        """Warn about each node that uses another type for a topic. ROS 2 would not connect them, and report nothing."""
         for channel, binding in list(self._bindings.items()):
             name, type_ = binding["name"], binding["type"]
             if binding["kind"] == "subscriber":
@@ -144,7 +144,7 @@ class Ros2Node:
         self._channels[channel].publish(bytes(body))
 
     def call(self, channel, number, body):
-        """Call a service, or send a goal to an action server, in a thread, because the server may not be there yet."""
+        """Call a service, or send a goal to an action server, in a thread. The server may not be there yet."""
         act = self._call
         if self._bindings[channel]["kind"] == "action":
             act = self._act
@@ -247,7 +247,7 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal, or forget a call, so that a service that never answers leaves nothing behind."""
+        """Cancel a goal, or forget a call. Otherwise, a call that is never answered would stay in memory."""
         call = self._calls.pop((channel, number), None)
         if call is not None:
             call["cancelled"] = True
@@ -267,7 +267,7 @@ class Ros2Node:
             return
         if kind == "action":
             thing.destroy()
-        else:  # the node must forget it first, because the executor keeps failing on a destroyed entity
+        else:  # the node must forget the entity first, because the executor keeps failing on a destroyed one
             forget = {"subscriber": "subscription", "server": "service"}.get(kind, kind)
             getattr(self._node, f"destroy_{forget}")(thing)
         self._executor.wake()

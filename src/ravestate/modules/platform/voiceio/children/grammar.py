@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 DOUBTFUL = 3.0
-"""The mean loss per frame (nats) at which the confidence is one half. A loss shows how badly the command fits."""
+"""At this mean loss per frame (nats), the confidence is one half. The loss shows how badly the command fits."""
 
 
 def load(config: dict[str, Any]) -> Any:

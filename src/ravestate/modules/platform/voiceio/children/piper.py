@@ -7,7 +7,7 @@ import importlib
 from typing import Any
 
 STRESS = "ˈˌː"
-"""Marks of stress and length, which are not sounds."""
+"""Marks of stress and length, which are not phonemes."""
 
 
 def load(config: dict[str, Any]) -> Any:

@@ -1,9 +1,9 @@
 """The backend of speech recognition by faster-whisper. `serve` runs this file.
 
-Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So this backend
-does not fill the window: it adds only a few seconds of silence (`TAIL`) to a sound. A sentence then takes a fifth of
-the time. A sound has at most 25 seconds. In such a short window, the model often misses the end, and writes the same
-words again. The backend cuts the repetition off.
+Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So this backend does not
+fill the window: it adds only a few seconds of silence (`TAIL`) to a sound. A sentence then takes a fifth of the time. A
+sound has at most 25 seconds. In such a short window, the model often overlooks the end of the sound, and writes the
+same words again. The backend cuts off the repetition.
 """
 
 # pyright: basic
@@ -14,17 +14,17 @@ import zlib
 from typing import Any
 
 TAIL = 5.0
-"""The seconds of silence after the sound. With less silence, the model repeats itself more often."""
+"""This many seconds of silence follow the sound. With less silence, the model repeats itself more often."""
 MOST = 8
-"""The maximum number of tokens in a second of speech. People say at most five words in a second."""
+"""The maximum number of tokens in a second of speech. People say at most five words a second."""
 PHRASE = 3
-"""The minimum number of words in a repeated phrase that is cut off. People do repeat shorter phrases ("no, no")."""
+"""A repeated phrase is cut off if it has at least this many words. People do repeat shorter phrases ("no, no")."""
 PLAUSIBLE = 0.02
-"""The probability above which an alternative for the last word is reported."""
+"""An alternative for the last word is reported if its probability is greater than this."""
 POOR = -1.0
 """If the mean log probability of the tokens is below this, the backend tries again with windows of 30 seconds."""
 REPEATED = 2.4
-"""The compression ratio above which a text counts as repetitive, which shows that the model is confused."""
+"""A text with a greater compression ratio is repetitive, which shows that the model is confused."""
 
 
 def load(config: dict[str, Any]) -> Any:
@@ -115,7 +115,7 @@ def load(config: dict[str, Any]) -> Any:
 
 
 def _once(words: list[str], *, at_limit: bool) -> int:
-    """Return the number of words before a phrase is repeated; without a repetition, the number of all words."""
+    """Return how many words come before the repetition of a phrase. If nothing is repeated, count all words."""
     for length in range(1 if at_limit else PHRASE, len(words)):
         if all(words[at] == words[at - length] for at in range(length, len(words))):
             return length if at_limit or len(words) >= 2 * length else len(words)
@@ -123,7 +123,7 @@ def _once(words: list[str], *, at_limit: bool) -> int:
 
 
 def _plausible(np: Any, tokenizer: Any, step: Any) -> dict[str, float]:
-    """Return the plausible words at one place, with their probabilities."""
+    """Return the plausible words for one step of the model, with their probabilities."""
     likely = [int(token) for token in np.flatnonzero(step > math.log(PLAUSIBLE)) if token < tokenizer.eot]
     found: dict[str, float] = {}
     for token in likely:
