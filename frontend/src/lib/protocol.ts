@@ -1,6 +1,6 @@
 // Written by tools/protocol.py from ravestate.modules.platform.webio.frames: change that file, and run the tool.
 
-/** The version of the protocol. A new frame or field keeps this number; any other change increases it. */
+/** The version of the protocol. Adding a type of frame or a field does not change it; any other change increases it. */
 export const VERSION = 1;
 
 /** The maximum number of characters in one utterance of a visitor. */
@@ -9,7 +9,7 @@ export const LONGEST_TEXT = 10000;
 /** The maximum number of bytes of a picture. */
 export const LONGEST_PICTURE = 100000;
 
-/** Error code → the WebSocket's closing code; any other error closes with the code of `malformed`. */
+/** The code with which the WebSocket closes after an error. Any other error closes it with the code of `malformed`. */
 export const CLOSING_CODES = {
   ended: 1000,
   closing: 1001,
@@ -22,12 +22,12 @@ export const CLOSING_CODES = {
   behind: 4409,
 };
 
-/** The first frame: it asks for a conversation. */
+/** The first frame: the client asks for a new conversation, or resumes one. */
 export interface Hello {
   type: "hello";
   /** The version of the protocol. */
   v: number;
-  /** The id of the conversation to resume; if it is missing, a new conversation begins. */
+  /** The id of the conversation to resume. Without it, a new conversation begins. */
   session?: string;
   /** The number of the last message that the client has; 0 if it has none. */
   last?: number;
@@ -54,7 +54,7 @@ export interface Bye {
   type: "bye";
 }
 
-/** A request for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings. */
+/** A request for a `Pong`. It exists because browsers cannot send the WebSocket's own pings. */
 export interface Ping {
   type: "ping";
 }
@@ -69,7 +69,7 @@ export interface Microphone {
   on: boolean;
 }
 
-/** The loudspeaker's position. While sound plays, the client sends this frame every 100 ms, and at the sound's end. */
+/** How much the loudspeaker has played. The client sends this frame every 100 ms of sound, and when the sound ends. */
 export interface Played {
   type: "played";
   /** The number of the stream, from the last `Flush`. */
@@ -105,15 +105,15 @@ export interface Welcome {
   type: "welcome";
   /** The version of the protocol. */
   v: number;
-  /** The conversation's secret id; a client sends it to resume. */
+  /** The conversation's secret id. A client sends it to resume the conversation. */
   session: string;
-  /** Whether this resumes the conversation that the client asked for. */
+  /** Whether the server has resumed the conversation that the client asked for. */
   resumed: boolean;
   /** The number of the oldest message that the server keeps. */
   first: number;
   /** The agent's name. */
   agent: string;
-  /** The address of the board for this conversation, relative to the page; None without a board. */
+  /** The address of the board for this conversation, relative to the page; None if there is no board. */
   inside?: string;
   /** The number of the newest message; 0 before the first message. */
   last?: number;
@@ -121,9 +121,9 @@ export interface Welcome {
   writing?: boolean;
   /** A few things that the visitor could say first. */
   suggestions?: string[];
-  /** A line of text that the page shows until the visitor has said something; None for no line. */
+  /** A line of text that the page shows until the visitor has said something; None if there is none. */
   note?: string;
-  /** Whether the agent can hear and speak: the server accepts `Microphone` and sound. */
+  /** Whether the agent can hear and speak. If so, the server accepts `Microphone` frames and sound. */
   voice?: boolean;
   /** The notice to show before the camera goes on, if the agent can see; None if it cannot. */
   sight?: string;
@@ -147,14 +147,14 @@ export interface Message {
   time: number;
   /** The `id` of the client's `Say`, if the utterance came from a `Say`. */
   id?: string;
-  /** The part of the utterance that the visitor heard, if the agent's speech was cut. */
+  /** The part of the utterance that the visitor heard, if the agent's speech was cut off. */
   heard?: string;
 }
 
-/** A piece of an utterance that is still growing: `text` replaces everything from character `at` on. */
+/** A change to an utterance that is still growing: `text` replaces everything from position `at` on. */
 export interface Piece {
   type: "piece";
-  /** The position in the utterance where `text` begins, in UTF-16 units as JavaScript counts. */
+  /** The position in the utterance where `text` begins, in UTF-16 units, as in JavaScript. */
   at: number;
   /** The utterance from `at` to its new end. */
   text: string;
@@ -172,13 +172,13 @@ export interface Paused {
   on: boolean;
 }
 
-/** The words so far of an utterance that the visitor is still speaking; empty once it has become a `Message`. */
+/** The words so far of an utterance that the visitor is still speaking. Empty after it has become a `Message`. */
 export interface Caption {
   type: "caption";
   text: string;
 }
 
-/** The part of a message of the agent that the visitor heard: all of it, unless the agent's speech was cut. */
+/** The part of an agent's message that the visitor heard: all of it, unless the agent's speech was cut off. */
 export interface Heard {
   type: "heard";
   /** The message's number. */
@@ -187,14 +187,14 @@ export interface Heard {
   text: string;
 }
 
-/** The client drops all sound that it has not played. The sound after this frame is a new stream. */
+/** An order to drop all unplayed sound. The sound after this frame is a new stream. */
 export interface Flush {
   type: "flush";
   /** The number of the new stream. */
   n: number;
 }
 
-/** The agent takes the sound of this window's microphone. The agent may have had to load its models first. */
+/** The agent has begun to listen to this window's microphone. It may have had to load its models first. */
 export interface Listening {
   type: "listening";
 }
@@ -205,16 +205,16 @@ export interface Taken {
   text: string;
 }
 
-/** The agent wants a picture of this window's camera. */
+/** The agent wants a picture from this window's camera. */
 export interface Look {
   type: "look";
-  /** The number of this request. A `Picture` with an earlier number is ignored. */
+  /** The number of this request. The server ignores a `Picture` with an earlier number. */
   n: number;
 }
 
 /** A face that the agent sees. */
 export interface Face {
-  /** x, y, width and height, in shares of the picture's size, from the upper left corner. */
+  /** x, y, width and height, as shares of the picture's width and height. (0, 0) is the upper left corner. */
   box: [number, number, number, number];
   /** The person's name; missing if the agent does not know it. */
   name?: string;

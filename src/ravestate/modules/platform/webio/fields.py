@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules._text import printable
 
 VERSION = 1
-"""The version of the protocol. A new frame or field keeps this number; any other change increases it."""
+"""The version of the protocol. Adding a type of frame or a field does not change it; any other change increases it."""
 
 LONGEST_NAME = 80
 """The maximum number of characters in a visitor's name."""
@@ -38,7 +38,7 @@ CLOSING_CODES = {
     "silent": 4408,
     "behind": 4409,
 }
-"""Error code → the WebSocket's closing code; any other error closes with the code of ``malformed``."""
+"""The code with which the WebSocket closes after an error. Any other error closes it with the code of ``malformed``."""
 
 
 class ProtocolError(PlatformError, ValueError):

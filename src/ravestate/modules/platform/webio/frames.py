@@ -14,11 +14,11 @@ from .fields import Id, Name, Number, Share, Speaker, Spoken, String, Text, Trut
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """The first frame: it asks for a conversation.
+    """The first frame: the client asks for a new conversation, or resumes one.
 
     Attributes:
         v: The version of the protocol.
-        session: The id of the conversation to resume; if it is missing, a new conversation begins.
+        session: The id of the conversation to resume. Without it, a new conversation begins.
         last: The number of the last message that the client has; 0 if it has none.
         token: The server's token, if the server asks for one.
         name: The visitor's name, if it is known.
@@ -57,7 +57,7 @@ class Bye:
 
 @dataclass(frozen=True, slots=True)
 class Ping:
-    """A request for a `Pong`. Browsers need it: they cannot send the WebSocket's own pings."""
+    """A request for a `Pong`. It exists because browsers cannot send the WebSocket's own pings."""
 
     type: Literal["ping"] = "ping"
 
@@ -76,7 +76,7 @@ class Microphone:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """The loudspeaker's position. While sound plays, the client sends this frame every 100 ms, and at the sound's end.
+    """How much the loudspeaker has played. The client sends this frame every 100 ms of sound, and when the sound ends.
 
     Attributes:
         n: The number of the stream, from the last `Flush`.
@@ -127,16 +127,16 @@ class Welcome:
 
     Attributes:
         v: The version of the protocol.
-        session: The conversation's secret id; a client sends it to resume.
-        resumed: Whether this resumes the conversation that the client asked for.
+        session: The conversation's secret id. A client sends it to resume the conversation.
+        resumed: Whether the server has resumed the conversation that the client asked for.
         first: The number of the oldest message that the server keeps.
         agent: The agent's name.
-        inside: The address of the board for this conversation, relative to the page; None without a board.
+        inside: The address of the board for this conversation, relative to the page; None if there is no board.
         last: The number of the newest message; 0 before the first message.
         writing: Whether the server accepts `Writing` frames. Early server releases did not.
         suggestions: A few things that the visitor could say first.
-        note: A line of text that the page shows until the visitor has said something; None for no line.
-        voice: Whether the agent can hear and speak: the server accepts `Microphone` and sound.
+        note: A line of text that the page shows until the visitor has said something; None if there is none.
+        voice: Whether the agent can hear and speak. If so, the server accepts `Microphone` frames and sound.
         sight: The notice to show before the camera goes on, if the agent can see; None if it cannot.
     """
 
@@ -173,7 +173,7 @@ class Message:
         text: Plain text.
         time: The time of the utterance, in milliseconds since 1970 (UTC).
         id: The `id` of the client's `Say`, if the utterance came from a `Say`.
-        heard: The part of the utterance that the visitor heard, if the agent's speech was cut.
+        heard: The part of the utterance that the visitor heard, if the agent's speech was cut off.
     """
 
     n: Number
@@ -187,10 +187,10 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A piece of an utterance that is still growing: `text` replaces everything from character `at` on.
+    """A change to an utterance that is still growing: `text` replaces everything from position `at` on.
 
     Attributes:
-        at: The position in the utterance where `text` begins, in UTF-16 units as JavaScript counts.
+        at: The position in the utterance where `text` begins, in UTF-16 units, as in JavaScript.
         text: The utterance from `at` to its new end.
     """
 
@@ -217,7 +217,7 @@ class Paused:
 
 @dataclass(frozen=True, slots=True)
 class Caption:
-    """The words so far of an utterance that the visitor is still speaking; empty once it has become a `Message`."""
+    """The words so far of an utterance that the visitor is still speaking. Empty after it has become a `Message`."""
 
     text: Text
     type: Literal["caption"] = "caption"
@@ -225,7 +225,7 @@ class Caption:
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """The part of a message of the agent that the visitor heard: all of it, unless the agent's speech was cut.
+    """The part of an agent's message that the visitor heard: all of it, unless the agent's speech was cut off.
 
     Attributes:
         n: The message's number.
@@ -239,7 +239,7 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class Flush:
-    """The client drops all sound that it has not played. The sound after this frame is a new stream.
+    """An order to drop all unplayed sound. The sound after this frame is a new stream.
 
     Attributes:
         n: The number of the new stream.
@@ -251,7 +251,7 @@ class Flush:
 
 @dataclass(frozen=True, slots=True)
 class Listening:
-    """The agent takes the sound of this window's microphone. The agent may have had to load its models first."""
+    """The agent has begun to listen to this window's microphone. It may have had to load its models first."""
 
     type: Literal["listening"] = "listening"
 
@@ -266,10 +266,10 @@ class Taken:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """The agent wants a picture of this window's camera.
+    """The agent wants a picture from this window's camera.
 
     Attributes:
-        n: The number of this request. A `Picture` with an earlier number is ignored.
+        n: The number of this request. The server ignores a `Picture` with an earlier number.
     """
 
     n: Number
@@ -281,7 +281,7 @@ class Face:
     """A face that the agent sees.
 
     Attributes:
-        box: x, y, width and height, in shares of the picture's size, from the upper left corner.
+        box: x, y, width and height, as shares of the picture's width and height. (0, 0) is the upper left corner.
         name: The person's name; missing if the agent does not know it.
     """
 
