@@ -43,9 +43,7 @@ def test_who_recognises_faces_that_learn_stored_until_forget_removes_them(
     assert [float(distance) <= 0.45 for _, distance, _ in rows(out)] == [True, *[False] * 7]
     code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")))
     assert (code, out) == (0, "learnt 0 views of Barack\n")  # the view is known already
-    code, _, errors = call(
-        capsys, "vision", "learn", *memory, "Joe", str(photo("obama3"))
-    )  # another name for a known face
+    code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))  # a known face
     assert code == 1 and "memory knows this face as Barack" in errors and "memory forget" in errors
     code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
     assert (code, out) == (0, "forgot 3\n")
