@@ -75,9 +75,8 @@ def test_a_film_keeps_the_last_thirty_seconds() -> None:
     assert (film.poses[0].at, film.poses[-1].at) == (29.5, 59.5)
     assert [pose.at for pose in film.part(58.9, 100.0)] == [59.0, 59.5]
     assert film.with_pose(Pose(59.5, points)) is film
-    assert (
-        len(film.with_pose(Pose(1.0, points)).poses) == 1
-    )  # time went back: another clock, or a video that begins again
+    # If time goes back, the film drops the older poses: the clock is another one, or a video has begun again.
+    assert len(film.with_pose(Pose(1.0, points)).poses) == 1
     assert repr(film) == "Film(61 poses, 30.0 s)"
     assert repr(Film()) == "Film()"
 
