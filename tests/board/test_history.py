@@ -1,4 +1,4 @@
-"""The index of a trace for one causal group."""
+"""`History`, an index of the records of one causal group in a trace."""
 
 import pytest
 

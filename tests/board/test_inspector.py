@@ -62,7 +62,7 @@ async def test_an_inspector_that_names_no_conversation_gets_the_newest_or_begins
 
 
 @in_virtual_time
-async def test_the_list_shows_when_conversations_began_and_their_last_words_and_is_sent_after_changes() -> None:
+async def test_the_list_shows_the_start_and_last_words_of_conversations_and_is_updated() -> None:
     async with board() as app, Visit(app) as visit, Look(app) as look:
         await visit.hello()
         await look.begin(session=visit.session)
@@ -193,7 +193,8 @@ async def test_the_clock_can_be_paused_stepped_and_resumed() -> None:
         started = await step_until(look, "started", rule="gossip:classify")
         assert started["time"] < 1
         settled = await step_until(look, "settled", rule="gossip:classify")
-        assert settled["time"] == pytest.approx(started["time"] + 0.2)  # nothing was due, so the clock moved
+        # Nothing else was due, so a step advanced the clock.
+        assert settled["time"] == pytest.approx(started["time"] + 0.2)
         await passing(30)
         assert not look.found("settled", rule="gossip:talk")
         look.tell("resume")

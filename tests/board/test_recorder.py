@@ -101,7 +101,7 @@ async def test_each_context_has_its_own_single_recorder() -> None:
 async def test_a_recorder_is_freed_with_its_context() -> None:
     recorders = Recorders()
     gone: list[weakref.ref[Any]] = []
-    for length in (5, 300):  # the second one is idle when its context ends
+    for length in (5, 300):  # the second recorder has stopped recording when its context ends
         context, tick = ticking()
         recorder = recorders.of(context)
         recorder._burst = 100  # pyright: ignore[reportPrivateUsage]

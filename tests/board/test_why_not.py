@@ -301,7 +301,7 @@ def test_a_rule_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> Non
     assert found.missing[0].words == "demo:touch is an input and did not arrive"
 
 
-def test_a_missing_input_that_rules_may_raise_is_explained_as_input_and_by_its_rules(stage: Stage) -> None:
+def test_the_explanation_of_a_missing_input_names_the_rules_that_may_raise_it(stage: Stage) -> None:
     rung = stage.module.signal("rung", input=True)
 
     @stage.module.rule(when=stage.touch, emits=rung)
@@ -477,7 +477,7 @@ def test_the_first_declared_of_equal_rules_answers(stage: Stage) -> None:
     assert "demo:first" in found.words
 
 
-def test_the_question_may_be_about_a_later_input(stage: Stage) -> None:
+def test_why_not_can_be_asked_about_a_later_input(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "one")
@@ -632,7 +632,7 @@ def test_a_wait_with_a_true_predicate_names_the_rivals(stage: Stage) -> None:
         assert ask(sim, "gated").verdict == "outrun"
 
 
-def test_the_answer_does_not_name_a_rule_that_ran_for_another_cause(stage: Stage) -> None:
+def test_the_explanation_does_not_name_a_rule_that_ran_for_another_cause(stage: Stage) -> None:
     boot, ready = stage.module.signal("boot"), stage.module.signal("ready")
 
     @stage.module.rule(when=boot, emits=ready)
@@ -681,7 +681,7 @@ def two_runs(stage: Stage) -> None:
     async def talk(ctx: rs.RuleContext) -> None: ...
 
 
-def test_the_answer_names_the_run_that_ended_well_and_not_the_one_that_resigned(stage: Stage) -> None:
+def test_the_explanation_names_the_run_that_answered_and_not_the_one_that_resigned(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")

@@ -76,7 +76,7 @@ def test_wrong_use_is_reported(
 def test_walking_in_a_real_video_is_unknown_and_is_a_poor_demonstration(
     folder: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The recogniser does not know walking. Several people come and go in the video, so `teach` warns about it."""
+    """The recogniser does not know walking. Several people come and go in the video, so it is a poor demonstration."""
     assert VIDEO.is_file(), "the video of the tests is missing: run make test, which fetches it"
     monkeypatch.setattr(activity, "_poses", functools.cache(activity._poses))
     assert main(["activity", "guess", str(VIDEO), "--folder", folder]) == 0

@@ -58,9 +58,7 @@ def test_a_module_is_found_by_a_dotted_path(folder: Path, capsys: Capture) -> No
     assert load_module("pkg.inner:other").name == "other"
 
 
-def test_a_module_is_found_by_the_name_of_its_package_or_file_in_the_working_folder(
-    folder: Path, capsys: Capture
-) -> None:
+def test_a_module_is_found_by_its_package_or_file_name_in_the_working_folder(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg" / "__init__.py", HELLO)
     write(folder / "single.py", HELLO)
     assert run(capsys, "pkg").startswith("Hello")
@@ -356,7 +354,7 @@ def test_set_overrides_the_environment_which_overrides_the_file(
         ("hello.words=[a, b]", "Hello 1.0 ('a', 'b')"),
     ],
 )
-def test_set_reads_a_value_as_text_for_a_text_field_and_as_yaml_for_other_fields(
+def test_set_reads_text_for_a_text_field_and_yaml_for_other_fields(
     text: str, said: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "hello.py", HELLO)

@@ -28,7 +28,7 @@ def rows(text: str) -> list[tuple[str, str, str]]:
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 
 
-def test_who_recognises_faces_that_learn_stored_until_forget_removes_them(
+def test_who_names_a_face_after_learn_and_no_longer_after_forget(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))
@@ -43,7 +43,8 @@ def test_who_recognises_faces_that_learn_stored_until_forget_removes_them(
     assert [float(distance) <= 0.45 for _, distance, _ in rows(out)] == [True, *[False] * 7]
     code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")))
     assert (code, out) == (0, "learnt 0 views of Barack\n")  # the view is known already
-    code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))  # a known face
+    # Memory knows this face under another name.
+    code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))
     assert code == 1 and "memory knows this face as Barack" in errors and "memory forget" in errors
     code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
     assert (code, out) == (0, "forgot 3\n")

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from ravestate.draw.text import clean, shorten, width
 
 
-def test_wide_letters_have_a_greater_width() -> None:
+def test_the_width_of_a_text_depends_on_its_letters() -> None:
     assert width("WWW", 10.0) > width("aaa", 10.0) > width("iii", 10.0) > 0
     assert width("日本", 10.0) > width("ab", 10.0)
     assert width("e\u0301", 10.0) == width("e", 10.0)

@@ -99,7 +99,7 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
     }  # fmt: skip
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    # Do not look longer than necessary: `ros check` waits for nodes of a patrol, which do not exist.
+    # Look often enough to find all nodes on a busy machine. The nodes of the patrol never appear.
     monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 12)
     made = Reader(tmp_path, capsys, network.start_master)
     before = set(sys.modules)

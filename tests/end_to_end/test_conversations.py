@@ -20,7 +20,7 @@ def test_example_1_has_small_talk_and_questions_of_fact(tmp_path: Path, backend:
         assert (answer.module, "Lima" in answer.text) == ("genqa", True)
 
 
-def test_in_example_2_the_agent_asks_a_question_and_knows_the_answer_after_a_restart(tmp_path: Path) -> None:
+def test_in_example_2_the_agent_asks_a_question_and_remembers_the_answer(tmp_path: Path) -> None:
     with Conversation(tmp_path, {"persqa": {"topics": ["home"], "turns": 0}}) as talk:
         assert spoken_by(talk.say("what is your favorite animal")) in (["genqa"], ["agentqa"])
         asked = [line.text for line in talk.silence(60.0) if line.module == "persqa"]

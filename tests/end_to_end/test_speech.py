@@ -65,11 +65,8 @@ async def point(board: Page, lane: str, words: str) -> None:
 async def test_a_spoken_question_is_answered_and_the_answer_can_be_interrupted(stage: Stage, tmp_path: Path) -> None:
     settings: dict[str, Any] = {
         "webio": {"port": 0, "title": "Elske"},
-        "voiceio": {
-            "model": "tiny.en",
-            "voice": "espeak",
-            "captions": 0,
-        },  # without captions, which take computing time
+        # Captions would take computing time.
+        "voiceio": {"model": "tiny.en", "voice": "espeak", "captions": 0},
     }
     agent = RecordedAgent(voiceio, guide, webio, settings=settings)
     recording = ask_again_and_again(tmp_path / "question.wav")

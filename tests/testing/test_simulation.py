@@ -17,7 +17,7 @@ class Options(rs.Settings):
 
 
 def talk() -> rs.Module:
-    """A module that greets, answers and says goodbye."""
+    """Return a module that greets, answers and says goodbye."""
     module = rs.Module("talk", requires=[rawio], settings=Options)
 
     @module.rule(when=rs.startup, writes=rawio.output)

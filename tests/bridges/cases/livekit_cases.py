@@ -196,7 +196,7 @@ async def test_the_end_of_the_session_stops_the_agent() -> None:
         await context.next(rawio.output.changed)
 
 
-async def test_the_end_of_the_session_does_not_wait_for_an_utterance_that_nobody_will_hear() -> None:
+async def test_the_end_of_the_session_does_not_wait_for_an_unfinished_utterance() -> None:
     slow, begun, said = rs.Module("slow", requires=[rawio]), asyncio.Event(), list[str]()
 
     @slow.rule(when=rs.startup, writes=rawio.output)

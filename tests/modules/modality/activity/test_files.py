@@ -81,7 +81,7 @@ def test_a_film_keeps_the_last_thirty_seconds() -> None:
     assert repr(Film()) == "Film()"
 
 
-def test_a_long_recording_is_cut_into_windows_and_a_short_one_is_a_single_window() -> None:
+def test_a_long_recording_has_several_windows_and_a_short_one_has_one() -> None:
     points = np.zeros((33, 4), np.float32)
     poses = [Pose(at / 10, points) for at in range(101)]
     assert [(part[0].at, part[-1].at) for part in windows(poses, 3.0, 3.0)] == [(0, 3), (3, 6), (6, 9), (9, 10)]

@@ -33,7 +33,7 @@ def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Mod
 
 
 def calm(*modules: Any, **settings: Any) -> Simulation:
-    # Without the gate, which admits only whole sentences.
+    # The pieces of `Model` are not sentences, so the gate would refuse them.
     more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}
     return simulate(emotion, *modules, settings={"emotion": {**CALM, **settings}, **more})
 

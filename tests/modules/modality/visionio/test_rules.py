@@ -60,7 +60,7 @@ def remembered(memory: Path) -> dict[str, int]:
         opened.close().result(20)
 
 
-def test_a_stranger_is_greeted_without_a_name_and_later_by_name_even_after_a_restart(memory: Path) -> None:
+def test_a_stranger_is_greeted_without_a_name_and_at_the_next_visit_by_name(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         stage.show(sim, "obama")
@@ -216,7 +216,7 @@ def test_the_user_of_another_platform_gets_the_name_of_the_person_before_the_cam
         assert sim.read(persqa.who) is None
 
 
-def test_the_name_that_a_user_tells_before_the_camera_is_on_applies_to_their_face(memory: Path) -> None:
+def test_a_name_told_before_the_camera_is_on_applies_to_the_users_face(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()
         sim.put(interloc.users, {"page": None})

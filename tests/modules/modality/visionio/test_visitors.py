@@ -51,10 +51,7 @@ def test_a_visitor_keeps_the_best_of_similar_vectors() -> None:
     for x, quality in ((0.0, 0.5), (0.01, 0.9), (0.3, 0.4), (0.5, 0.1), (0.9, 0.9)):
         one = one.met(face(x, quality=quality), least=0.3, threshold=0.5)
     # Not 0.5, which was hardly visible, and not 0.9, which is another face.
-    assert one.vectors == (
-        (0.9, (0.01, 0.0)),
-        (0.4, (0.3, 0.0)),
-    )
+    assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))
     assert one.good(0.5) == ((0.9, (0.01, 0.0)),)
     assert best([(0.1 * n, (float(n),)) for n in range(20)], 3) == (
         (0.1 * 19, (19.0,)),

@@ -35,7 +35,7 @@ async def greet(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_a_user_who_blocks_the_agent_during_a_slow_answer_ends_only_their_own_chat(tmp_path: Path) -> None:
+async def test_a_user_who_blocks_the_agent_during_an_answer_ends_only_their_own_chat(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow) as opened:
         opened.receive([letter("one", "a"), letter("two", "b")])

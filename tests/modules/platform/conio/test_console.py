@@ -109,7 +109,7 @@ def test_output_is_clean_and_in_order() -> None:
     assert screen.log == ["show one\ntwo", "stream th", "stream ree", "end", "show four"]
 
 
-def test_an_utterance_shows_only_the_part_that_its_pieces_lack() -> None:
+def test_after_streamed_pieces_only_the_rest_of_the_utterance_is_shown() -> None:
     screen = Script()
     console = Console(screen)
     for whole in ("Hello you!", "Hello", "Help!", "again"):

@@ -125,7 +125,7 @@ def test_models_load_without_a_console(monkeypatch: pytest.MonkeyPatch) -> None:
         assert may_load()
 
 
-def test_while_the_console_opens_a_model_that_is_needed_can_be_loaded(
+def test_a_model_that_is_needed_can_be_loaded_while_the_console_opens(
     keys: Keys, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     free: list[bool] = []

@@ -78,9 +78,8 @@ class Homeserver:
     def start(self) -> None:
         ready = self._folder / "ready"
         ready.unlink(missing_ok=True)
-        with socket.socket(
-            socket.AF_UNIX, socket.SOCK_DGRAM
-        ) as notice:  # Synapse reports here that it is ready, as it would to systemd
+        # Synapse reports to this socket that it is ready, as it would to systemd.
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notice:
             notice.bind(str(ready))
             notice.settimeout(PATIENCE)
             environment = {**os.environ, "NOTIFY_SOCKET": str(ready)}

@@ -33,7 +33,7 @@ async def quickly(seconds: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["roboy", "turtlebot"])
-def test_the_agent_hears_people_through_the_robot_and_controls_its_voice_face_head_and_hand(name: str) -> None:
+def test_the_agent_hears_through_the_robot_and_controls_its_voice_face_head_and_hand(name: str) -> None:
     seen: list[dict[str, Any]] = []
 
     async def main() -> None:
@@ -97,7 +97,7 @@ def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
     ros1_network.run(main)
 
 
-def test_the_robot_looks_at_the_speaker_shows_that_it_thinks_and_looks_around_in_silence() -> None:
+def test_the_robot_looks_at_the_speaker_and_then_shows_thinking_and_later_looks_around() -> None:
     slow = rs.Module("slow", requires=[rawio])
 
     @slow.rule(when=rawio.input.changed, writes=rawio.output)

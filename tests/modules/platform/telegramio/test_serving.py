@@ -535,9 +535,8 @@ def test_the_token_is_never_logged(bot: Bot, tmp_path: Path, caplog: pytest.LogC
             await bot.said(1)
 
     test(bot, tmp_path)
-    theirs = [
-        r for r in caplog.records if f"/control/{bot.token}" not in r.getMessage()
-    ]  # without the requests of the test itself
+    # Skip the requests of the test itself.
+    theirs = [r for r in caplog.records if f"/control/{bot.token}" not in r.getMessage()]
     logged = "\n".join(f"{r.getMessage()} {r.exc_text}" for r in theirs)
     assert "[secret]" in logged
     assert bot.token not in logged

@@ -60,7 +60,7 @@ def wav(path: Path, pcm: bytes) -> Path:
 
 
 def word_errors(wanted: str, found: str) -> int:
-    """Return the number of words of `found` that are missing, wrong or superfluous."""
+    """Return the number of missing, wrong and superfluous words in `found`, compared with `wanted`."""
     a, b = plain(wanted), plain(found)
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):

@@ -77,7 +77,7 @@ def audio(monkeypatch: pytest.MonkeyPatch) -> PortAudio:
     return one
 
 
-def test_sound_goes_from_the_microphone_to_the_agent_and_from_the_agent_to_the_loudspeaker(audio: PortAudio) -> None:
+def test_sound_passes_from_the_microphone_and_to_the_loudspeaker(audio: PortAudio) -> None:
     async def follow() -> None:
         line = DeviceLine("default", "Headset")
         assert (audio.microphone.rate, audio.loudspeaker.rate) == (16000, 24000)

@@ -225,7 +225,7 @@ def test_a_recognition_that_fails_after_its_rule_was_cancelled_is_not_reported(m
         ("the mountains and my grandmother", 0.5, 1.8, "utterance"),
     ],
 )
-def test_a_short_sound_interrupts_the_agent_only_if_its_words_are_clear_or_mean_stop(
+def test_a_short_sound_interrupts_only_if_its_words_are_clear_or_mean_stop(
     text: str, confidence: float, length: float, what: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def talk() -> None:

@@ -17,7 +17,7 @@ def voice(monkeypatch: pytest.MonkeyPatch) -> Any:
     return import_module("benchmarks.questions.voice")
 
 
-def test_the_agent_rarely_takes_a_pause_for_the_end_of_a_turn_or_the_reverse(voice: Any) -> None:
+def test_the_agent_rarely_confuses_pauses_with_ends_of_turns(voice: Any) -> None:
     cuts, missed, count = voice.ends_of_turns("tiny.en", 6)
     assert count == 6 and cuts <= 0.17 and missed <= 0.17
 

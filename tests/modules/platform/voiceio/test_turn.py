@@ -30,7 +30,7 @@ SETTINGS = Settings(pause=0.2, doubtful_pause=0.7, longest_pause=1.4)
         ("", 0.9, 0.2),
     ],
 )
-def test_words_and_melody_decide_how_long_a_silence_ends_the_turn(
+def test_words_and_melody_decide_how_much_silence_ends_a_turn(
     text: str, complete: float | None, silence: float
 ) -> None:
     assert wanted_silence(text, complete, SETTINGS) == silence
@@ -46,7 +46,7 @@ def test_words_and_melody_decide_how_long_a_silence_ends_the_turn(
         ("I am looking for a", {"a": 0.99}, 1.4),
     ],
 )
-def test_alternatives_for_the_last_word_change_how_long_a_silence_ends_the_turn(
+def test_alternatives_for_the_last_word_change_how_much_silence_ends_a_turn(
     text: str, last: dict[str, float], silence: float
 ) -> None:
     assert wanted_silence(text, 0.9, SETTINGS, last) == silence

@@ -97,11 +97,7 @@ def test_foreign_embedder_returns_a_site_that_embeds_the_chat_without_permission
     [
         {**EMBEDDED, "referer": "https://museum.example/"},  # a site that may embed the chat
         {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # the page's own site
-        {
-            **EMBEDDED,
-            "referer": "https://evil.example/",
-            "sec-fetch-dest": "document",
-        },  # the visitor followed a link; the site does not embed the chat
+        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # from a link, not a frame
         {**EMBEDDED, "referer": "about:client"},
         EMBEDDED,
         {},

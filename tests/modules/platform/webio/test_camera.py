@@ -32,7 +32,7 @@ def show(visit: Visit, number: int, data: bytes = JPEG) -> None:
 
 
 @in_virtual_time
-async def test_the_agent_gets_the_picture_that_it_asks_for_and_the_page_gets_the_faces() -> None:
+async def test_the_agent_gets_the_requested_picture_and_the_page_gets_the_faces() -> None:
     async with watching() as (session, visit, _):
         assert visit.nothing_more()  # the agent has not asked for a picture yet
         session.context.emit(glance)

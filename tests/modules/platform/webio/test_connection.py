@@ -191,7 +191,7 @@ async def test_a_client_that_does_not_read_the_replies_to_its_frames_is_dropped(
 
 
 @in_virtual_time
-async def test_a_client_that_reads_too_slowly_is_dropped_and_later_gets_all_messages_that_are_kept() -> None:
+async def test_a_client_that_reads_too_slowly_is_dropped_and_can_resume_later() -> None:
     async with page(flood) as app, Visit(app) as slow:
         await slow.hello()
         slow.reading.clear()

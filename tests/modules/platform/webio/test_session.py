@@ -140,10 +140,8 @@ async def test_the_page_shows_the_agents_name_and_later_its_new_name() -> None:
             assert (await again.next())["type"] == "ended"  # no `renamed` before it, because the welcome had the name
         async with Visit(app) as other:
             await other.hello()
-            assert await other.next() == {
-                "type": "renamed",
-                "agent": "Robin",
-            }  # another conversation, with its own name for the agent
+            # Another conversation has its own name for the agent.
+            assert await other.next() == {"type": "renamed", "agent": "Robin"}
 
 
 @in_virtual_time
@@ -196,7 +194,7 @@ async def test_the_setting_title_overrides_the_agents_own_name() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_who_leaves_reads_another_reason_than_others() -> None:
+async def test_a_visitor_who_leaves_reads_you_left_and_others_the_visitor_left() -> None:
     async with page(parrot) as app, Visit(app) as visit, Visit(app) as window:
         await visit.hello()
         await window.hello(session=visit.session)

@@ -125,7 +125,7 @@ async def test_the_sound_is_sent_at_most_a_second_ahead_of_the_loudspeaker() -> 
 
 
 @in_virtual_time
-async def test_after_stop_no_sound_is_sent_and_the_message_is_marked_with_the_heard_words() -> None:
+async def test_after_stop_no_sound_is_sent_and_the_message_has_the_heard_words() -> None:
     async with calling() as (_, caller):
         caller.speak()
         await caller.until("sound")
