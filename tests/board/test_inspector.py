@@ -177,7 +177,7 @@ async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
         await passing(1)
         look.tell("ping")
         await look.answer("pong")
-    raise AssertionError(f"20 steps have brought no {kind} {fields}")
+    raise AssertionError(f"no record of kind {kind} with {fields} after 20 steps")
 
 
 @in_virtual_time

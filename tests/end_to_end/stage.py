@@ -106,7 +106,7 @@ class Stage:
         found = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
         if found is None:
             raise AssertionError(
-                "the browser tests need Chromium: apt-get install chromium, or say where it is: CHROMIUM=/path/to/it"
+                "the browser tests need Chromium: apt-get install chromium, or set CHROMIUM=/path/to/chromium"
             )
         browser = await self._playwright.chromium.launch(executable_path=found, args=[*FLAGS, *flags])
         try:

@@ -20,7 +20,7 @@ SCRIPT = 60_000
 async def findings(page: Page) -> list[str]:
     """Return axe's serious and critical findings."""
     if not AXE.exists():
-        raise AssertionError("the check of accessibility needs axe-core: npm ci --prefix frontend")
+        raise AssertionError("the accessibility tests need axe-core: run npm ci --prefix frontend")
     # The page forbids other scripts, so run axe as the browser's developer tools would.
     await page.evaluate(AXE.read_text(encoding="utf-8"))
     found = await page.evaluate("axe.run({resultTypes: ['violations']})")

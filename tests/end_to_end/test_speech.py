@@ -58,7 +58,7 @@ async def point(board: Page, lane: str, words: str) -> None:
             await board.evaluate("() => new Promise(requestAnimationFrame)")
             if await tip.count() and words in await tip.inner_text():
                 return
-    raise AssertionError(f"no tip in the lane {lane!r} says {words!r}")
+    raise AssertionError(f"no tooltip in the lane {lane!r} has the words {words!r}")
 
 
 @on_stage

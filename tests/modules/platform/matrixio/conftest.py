@@ -35,7 +35,7 @@ class Homeserver:
         self._folder = folder
         self._python = ROOT / ".venvs" / "synapse" / "bin" / "python"
         if not self._python.exists():
-            pytest.fail("the tests of matrixio need Synapse: make test sets it up")
+            pytest.fail("the tests of matrixio need Synapse: run make test, which sets it up")
         self._process: subprocess.Popen[bytes] | None = None
         self._configure()
 
